@@ -1,0 +1,498 @@
+/* Lightwell: real-time indirect light for any renderer, on any OpenCL device.
+ *
+ * Copyright 2026 The Lightwell authors. Licensed under the Apache License, Version 2.0.
+ *
+ * This is the whole API, in C99. A host hands over what it has already drawn (G-buffers of its
+ * views, reflective shadow maps of its lights) and gets indirect diffuse irradiance back:
+ *
+ *     lwCreateDevice -> lwCreateView -> lwCreateTechnique
+ *     each frame:  lwUpdate(technique, &frame)                    the world part, once
+ *                  lwRender(technique, view, &gbuffer, &output)   once per view
+ *                  lwFinish(device)                               or wait on the signalled event
+ *
+ * UNITS AND CONVENTIONS, the same for every function:
+ *  - lengths in one unit of the host's choice (metres unless it says otherwise; no result depends on
+ *    it); angles in radians; colours linear RGB, scene-referred.
+ *  - flux W, irradiance W/m^2, radiance W/(sr m^2), radiant intensity W/sr.
+ *  - world space is right-handed in the documentation; every computation is free of handedness.
+ *  - matrices are row-major and multiply column vectors: clip = projection * view * (x, y, z, 1).
+ *    Clip space has +y up; row 0 of an image is its top row (clip y = +1) unless the row stride is
+ *    negative.
+ *  - normals are unit vectors in world space, on the visible (G-buffer) or lit (RSM) side. A zero
+ *    normal marks a pixel without a surface: it receives and sends exactly zero.
+ *  - G-buffer `directRadiance` is the *diffuse* outgoing radiance L_d = albedo / pi * E_direct.
+ *  - RSM `flux` is albedo * incident flux through the texel, in W.
+ *  - the host composites L = L_d + albedo / pi * irradiance.
+ *
+ * VERSIONING: the first field of every struct is `structSize`; set it to sizeof(struct), which
+ * lwDefault* and the LW_INIT macro do. Zero in any other field means "absent" or "the default".
+ *
+ * THREADS: calls on one device are serialised by a lock of that device and may come from any thread;
+ * devices are independent of each other. A log callback must not call Lightwell (it gets
+ * LW_ERROR_REENTRANT).
+ *
+ * OWNERSHIP: handles are reference-counted; lwCreate* gives one reference. A child (view, technique)
+ * keeps its device alive. A released or foreign handle is refused with LW_ERROR_INVALID_HANDLE.
+ * Structs and the arrays they point to are read during the call only; *pixels* (host memory and
+ * cl_mem) must stay valid and unchanged until the signalled event, or lwFinish.
+ *
+ * ERRORS: every fallible call returns an LWStatus. The first failure since the last lwGetLastError is
+ * kept with a message that names the argument, what was expected and what came. After a failed call
+ * the objects are as they were before it. Errors of the device's execution surface at lwFinish and at
+ * the next call.
+ */
+#ifndef LIGHTWELL_LIGHTWELL_H
+#define LIGHTWELL_LIGHTWELL_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#define LW_VERSION_MAJOR 0
+#define LW_VERSION_MINOR 1
+#define LW_VERSION_PATCH 0
+
+#if defined(_WIN32)
+#if defined(LIGHTWELL_BUILDING)
+#define LW_API __declspec(dllexport)
+#else
+#define LW_API __declspec(dllimport)
+#endif
+#else
+#define LW_API __attribute__((visibility("default")))
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Zeroes a struct and sets its `structSize`: `LWFrame frame; LW_INIT(frame);` */
+#define LW_INIT(object)                               \
+    do {                                              \
+        static const char lwZero_[sizeof(object)];    \
+        const char* lwFrom_ = lwZero_;                \
+        char* lwTo_ = (char*)&(object);               \
+        size_t lwByte_;                               \
+        for (lwByte_ = 0; lwByte_ < sizeof(object); ++lwByte_) lwTo_[lwByte_] = lwFrom_[lwByte_]; \
+        (object).structSize = (uint32_t)sizeof(object); \
+    } while (0)
+
+/* ------------------------------------------------------------------------------ status, handles */
+
+typedef enum LWStatus {
+    LW_SUCCESS = 0,
+    LW_ERROR_INVALID_ARGUMENT = 1, /**< a value outside its range; the message names it */
+    LW_ERROR_INVALID_HANDLE = 2,   /**< null, released, or a handle of another kind or device */
+    LW_ERROR_OUT_OF_MEMORY = 3,    /**< host or device; nothing was changed */
+    LW_ERROR_UNSUPPORTED = 4,      /**< this device or build lacks a feature; the message says which */
+    LW_ERROR_NO_DEVICE = 5,        /**< no OpenCL device matches the selector */
+    LW_ERROR_BUILD_FAILED = 6,     /**< a kernel does not build; the message carries the log */
+    LW_ERROR_DEVICE = 7,           /**< the OpenCL driver reported an error while executing */
+    LW_ERROR_NOT_UPDATED = 8,      /**< lwRender before any lwUpdate, or after a failed one */
+    LW_ERROR_REENTRANT = 9,        /**< called from inside a log callback */
+    LW_ERROR_INTERNAL = 10         /**< a defect of Lightwell; please report the message */
+} LWStatus;
+
+typedef struct LWDeviceHandle* LWDevice;       /**< context, queue, program cache */
+typedef struct LWViewHandle* LWView;           /**< one viewport: an eye, a monitor */
+typedef struct LWTechniqueHandle* LWTechnique; /**< one method with its parameters and state */
+
+/** The status's name, e.g. "LW_ERROR_DEVICE". Never null. */
+LW_API const char* lwStatusName(LWStatus status);
+
+/** The version as "major.minor.patch". */
+LW_API const char* lwVersion(void);
+
+/** Returns the first error since the last call of this function on `device`, and clears it.
+ *  `device` null: the last failed call of this thread that had no (valid) device.
+ *  `*message` (may be null) stays valid until this thread's next Lightwell call; never null. */
+LW_API LWStatus lwGetLastError(LWDevice device, const char** message);
+
+/* --------------------------------------------------------------------------------------- device */
+
+typedef enum LWLogLevel { LW_LOG_INFO = 0, LW_LOG_WARNING = 1, LW_LOG_ERROR = 2 } LWLogLevel;
+
+/** Called on the thread of the Lightwell call that logs. Must not call Lightwell. */
+typedef void (*LWLogCallback)(void* user, LWLogLevel level, const char* message);
+
+typedef struct LWDeviceDesc {
+    uint32_t structSize;
+    uint32_t maxComputeUnits; /**< 0: all; else a sub-device of so many, where the device can be split */
+    const char* selector; /**< null: LIGHTWELL_DEVICE, else the best. "gpu", "cpu", "P:D" (indices of
+                               platform and device) or a part of the platform's or device's name */
+    uint32_t width;       /**< lanes per work-item 1, 4, 8, 16; 0: LIGHTWELL_WIDTH, else by probe */
+    uint32_t noProfiling; /**< 1: no event timing; LWStats then reports "unavailable" (-1) */
+    void* clContext;      /**< cl_context to adopt (with clQueue), or null */
+    void* clQueue;        /**< cl_command_queue to adopt, in-order or out-of-order, or null */
+    const char* cacheDirectory; /**< program binaries; null: LIGHTWELL_CACHE_DIR, else the user's cache
+                                     directory; "" : no cache on disk */
+    LWLogCallback log; /**< null: warnings and errors go to stderr */
+    void* logUser;
+} LWDeviceDesc;
+
+typedef struct LWDeviceInfo {
+    uint32_t structSize;
+    uint32_t computeUnits;
+    uint32_t width;                 /**< lanes per work-item in use */
+    uint32_t isGpu, hostUnifiedMemory, hasProfiling;
+    uint64_t globalMemoryBytes, maxAllocationBytes;
+    uint64_t allocatedBytes;        /**< device memory that Lightwell holds now */
+    uint64_t programsBuilt;         /**< programs compiled from source since creation */
+    uint64_t programsLoaded;        /**< programs read from the disk cache since creation */
+    uint64_t kernelsSpecialised;    /**< first launches of a (kernel, local size) since creation */
+    char name[128], platform[128], driver[128], openclVersion[64];
+} LWDeviceInfo;
+
+/** Measured by lwProbeDevice. */
+typedef struct LWRoofline {
+    uint32_t structSize;
+    uint32_t width;               /**< lanes per work-item of the probe */
+    double multiplyAddGflops;     /**< 10^9 operations per second; one multiply-add counts two */
+    double bandwidthGBps;         /**< 10^9 bytes per second, read + written, of a streaming triad */
+    double launchMicroseconds;    /**< per dependent small kernel in one queue */
+} LWRoofline;
+
+/** Fills the descriptor with defaults (best device, own context and queue). */
+LW_API void lwDefaultDevice(LWDeviceDesc* desc);
+
+/** Creates a device. `desc` null: defaults. Blocks (context creation, width probe when not cached).
+ *  Errors: NO_DEVICE, INVALID_ARGUMENT, UNSUPPORTED, OUT_OF_MEMORY, BUILD_FAILED. */
+LW_API LWStatus lwCreateDevice(const LWDeviceDesc* desc, LWDevice* device);
+LW_API LWStatus lwRetainDevice(LWDevice device);
+LW_API LWStatus lwReleaseDevice(LWDevice device);
+LW_API LWStatus lwGetDeviceInfo(LWDevice device, LWDeviceInfo* info);
+
+/** Number of OpenCL devices on this machine, and a description of each without creating it
+ *  (`width`, memory and counters held are 0). */
+LW_API LWStatus lwCountDevices(uint32_t* count);
+LW_API LWStatus lwDescribeDevice(uint32_t index, LWDeviceInfo* info);
+
+/** Measures the device's peak rates. Blocks for less than two seconds. */
+LW_API LWStatus lwProbeDevice(LWDevice device, LWRoofline* roofline);
+
+/** Waits until everything enqueued on the device has finished and reports errors of its execution. */
+LW_API LWStatus lwFinish(LWDevice device);
+
+/* --------------------------------------------------------------------------------------- images */
+
+typedef enum LWFormat {
+    LW_FORMAT_NONE = 0,
+    LW_FORMAT_FLOAT1 = 1,         /**< one float32: depth, validity, occlusion */
+    LW_FORMAT_FLOAT2 = 2,         /**< two float32: motion */
+    LW_FORMAT_FLOAT3 = 3,         /**< three float32, interleaved */
+    LW_FORMAT_FLOAT4 = 4,         /**< four float32, interleaved; the fourth is ignored, or written 1 */
+    LW_FORMAT_HALF4 = 5,          /**< four float16, interleaved */
+    LW_FORMAT_UNORM8X4 = 6,       /**< 0..255 -> 0..1; a normal is stored as n/2 + 1/2 */
+    LW_FORMAT_UNORM8X4_SRGB = 7,  /**< the same with the sRGB curve, for albedo */
+    LW_FORMAT_OCT16X2 = 8,        /**< octahedral unit vector, two snorm16 */
+    LW_FORMAT_PLANAR_FLOAT2 = 9,  /**< float32 planes, bytePlaneStride apart */
+    LW_FORMAT_PLANAR_FLOAT3 = 10, /**< float32 planes, bytePlaneStride apart */
+    LW_FORMAT_UINT8 = 11          /**< one byte: masks; zero or not */
+} LWFormat;
+
+/** A view of pixels: never owned by Lightwell. Exactly one of `host` and `clMem` is set.
+ *
+ *  Used in place, without copy or conversion: LW_FORMAT_PLANAR_* and LW_FORMAT_FLOAT1 whose rows are
+ *  16 pixels long or a multiple of it (byteRowStride % 64 == 0), whose start is 64-byte aligned, with
+ *  all rows' padding allocated, on a device that shares memory with the host (or as cl_mem). Padding
+ *  may hold anything. Everything else is unpacked on the device; the cost stands in the stats as
+ *  `gbuffer_input.*`, `rsm_input.*` and `output.*`. */
+typedef struct LWImage {
+    const void* host;         /**< address of pixel (0, 0) less byteOffset; written for outputs */
+    void* clMem;              /**< cl_mem of the device's context, or null */
+    LWFormat format;
+    uint32_t width, height;   /**< pixels */
+    uint64_t byteOffset;      /**< from the start of memory to pixel (0, 0) */
+    int64_t bytePixelStride;  /**< 0: packed */
+    int64_t byteRowStride;    /**< 0: width * pixel stride; negative: rows run bottom-up */
+    int64_t bytePlaneStride;  /**< PLANAR_*: 0: height * row stride */
+} LWImage;
+
+/** Optional synchronisation with the host's own commands (cl_event each). */
+typedef struct LWSync {
+    uint32_t structSize;
+    uint32_t waitEventCount;
+    void* const* waitEvents;  /**< the call's commands start after these */
+    void** signalEvent;       /**< receives an event of the call's last command; release it with
+                                   clReleaseEvent */
+} LWSync;
+
+typedef enum LWDepthKind {
+    LW_DEPTH_ZERO_TO_ONE = 0,     /**< clip z / w in [0,1]: Direct3D, Vulkan, Metal; reversed or not */
+    LW_DEPTH_GL = 1,              /**< OpenGL's window depth in [0,1] = (clip z / w + 1) / 2 */
+    LW_DEPTH_AXIAL = 2,           /**< distance along the camera axis, in world units */
+    LW_DEPTH_RADIAL = 3           /**< distance from the eye, in world units */
+} LWDepthKind;
+
+typedef struct LWCamera {
+    float view[16];        /**< world -> view, row-major */
+    float projection[16];  /**< view -> clip, row-major; perspective or orthographic */
+} LWCamera;
+
+/* -------------------------------------------------------------------------- what the host gives */
+
+/** One view's G-buffer. `normal` is required, and `position` or `depth`; a technique that needs more
+ *  says so in its page and refuses a G-buffer without it. All images have the view's current size. */
+typedef struct LWGBuffer {
+    uint32_t structSize;
+    LWDepthKind depthKind;
+    LWImage position;        /**< world position; 3 channels */
+    LWImage depth;           /**< instead of `position`: 1 channel, with `camera` */
+    LWImage normal;          /**< world normal; 3 channels; zero = no surface (optional with depth:
+                                  pixels whose depth does not unproject to a finite point have none) */
+    LWImage albedo;          /**< diffuse reflectance in [0,1] */
+    LWImage directRadiance;  /**< L_d, W/(sr m^2) */
+    LWImage roughness;       /**< 1 channel, [0,1] */
+    LWImage motion;          /**< 2 channels: this pixel's position of the previous frame less this
+                                  frame's, in pixels, +x right, +y down */
+    LWImage receiveMask;     /**< 1 channel: nonzero pixels receive indirect light but send none */
+    LWCamera camera, previousCamera;
+} LWGBuffer;
+
+typedef enum LWLightKind {
+    LW_LIGHT_DIRECTIONAL = 0,
+    LW_LIGHT_POINT = 1,
+    LW_LIGHT_SPOT = 2
+} LWLightKind;
+
+/** One reflective shadow map. Images of one size; rows and columns as the camera projects them. */
+typedef struct LWRsm {
+    uint32_t structSize;
+    LWDepthKind depthKind;
+    LWImage position;  /**< world position, or */
+    LWImage depth;     /**< depth with `camera` */
+    LWImage normal;    /**< world normal on the lit side; zero = nothing lit */
+    LWImage flux;      /**< reflected flux of the texel, W */
+    LWCamera camera;   /**< orthographic for a directional light, perspective otherwise */
+} LWRsm;
+
+/** A light, and the surfaces it lights as RSMs: none (analytic only), one, six faces of a point light,
+ *  or nested cascades of a directional light, finest first. A coarser cascade's texel whose centre
+ *  lies inside a finer cascade's footprint carries no flux. */
+typedef struct LWLight {
+    uint32_t structSize;
+    LWLightKind kind;
+    float position[3];         /**< point, spot */
+    float direction[3];        /**< directional, spot: the way the light travels; need not be unit */
+    float irradiance[3];       /**< directional: E_perp on a plane facing the light, W/m^2 */
+    float radiantIntensity[3]; /**< point, spot (on its axis): W/sr */
+    float innerConeAngle, outerConeAngle; /**< spot: half angles; the intensity falls between them as
+                                   glTF's KHR_lights_punctual says */
+    uint32_t rsmCount;
+    const LWRsm* rsms;
+} LWLight;
+
+/** A small Lambertian emitter made by the host: intensity flux / pi * cos. */
+typedef struct LWVpl {
+    float position[3];
+    float area;       /**< m^2; bounds the light near the emitter; 0: a point */
+    float normal[3];  /**< unit */
+    float reserved;
+    float flux[3];    /**< W */
+    float reserved2;
+} LWVpl;
+
+/** A sphere that dims the light passing it softly (static_vpl). */
+typedef struct LWBlocker {
+    float center[3];
+    float radius;
+} LWBlocker;
+
+/** Optional geometry: an array of surfels, triangles, or both. */
+typedef struct LWGeometry {
+    uint32_t structSize;
+    uint32_t surfelCount, triangleCount;
+    LWImage surfelPosition, surfelNormal, surfelAlbedo, surfelEmission; /**< surfelCount x 1 */
+    LWImage surfelArea;
+    const float* vertices;      /**< xyz, host memory */
+    const uint32_t* indices;    /**< three per triangle; null: consecutive vertices */
+    const float* triangleAlbedo;   /**< rgb per triangle, or null (0.5) */
+    const float* triangleEmission; /**< rgb radiance per triangle, or null (0) */
+    uint32_t vertexCount;
+    uint64_t version;           /**< raise it when anything above changes */
+} LWGeometry;
+
+typedef struct LWSourceView {
+    LWView view;
+    const LWGBuffer* gbuffer;
+} LWSourceView;
+
+typedef struct LWFrame {
+    uint32_t structSize;
+    uint32_t reset;            /**< 1: the scene changed discontinuously (cut, teleport); drop history */
+    uint64_t frameIndex;       /**< the host's; comes back in the stats */
+    uint32_t lightCount, vplCount, blockerCount, sourceViewCount;
+    const LWLight* lights;
+    const LWVpl* vpls;
+    const LWBlocker* blockers;
+    const LWSourceView* sourceViews; /**< views whose pixels feed the world part */
+    const LWGeometry* geometry;
+    float environment[3];      /**< radiance from infinity, constant over directions */
+    const LWSync* sync;
+} LWFrame;
+
+/** Where results go; each image optional (format LW_FORMAT_NONE), at least one given. Writable host
+ *  memory or cl_mem of the view's current size. A technique refuses an output it cannot make. */
+typedef struct LWOutput {
+    uint32_t structSize;
+    LWImage irradiance;        /**< indirect diffuse irradiance, 3 channels, W/m^2 */
+    LWImage validity;          /**< 1 channel in [0,1]: share of the hemisphere accounted for */
+    LWImage ambientOcclusion;  /**< 1 channel in [0,1]: 1 = open */
+    LWImage specularRadiance;  /**< 3 channels */
+    LWImage shadow;            /**< 1 channel */
+    const LWSync* sync;
+} LWOutput;
+
+/* ---------------------------------------------------------------------------------------- views */
+
+typedef struct LWViewDesc {
+    uint32_t structSize;
+    uint32_t maxWidth, maxHeight; /**< 1 .. 16384 each; memory is reserved for this size */
+} LWViewDesc;
+
+/** Creates a view whose current size is the maximum. Errors: INVALID_ARGUMENT, OUT_OF_MEMORY. */
+LW_API LWStatus lwCreateView(LWDevice device, const LWViewDesc* desc, LWView* view);
+LW_API LWStatus lwRetainView(LWView view);
+LW_API LWStatus lwReleaseView(LWView view);
+
+/** Changes the current size, up to the maximum, without allocating (dynamic resolution). */
+LW_API LWStatus lwSetViewSize(LWView view, uint32_t width, uint32_t height);
+LW_API LWStatus lwGetViewSize(LWView view, uint32_t* width, uint32_t* height);
+
+/* ----------------------------------------------------------------------------------- techniques */
+
+typedef enum LWResolution { LW_RESOLUTION_FULL = 0, LW_RESOLUTION_HALF = 1 } LWResolution;
+
+typedef enum LWVplSampling {
+    LW_SAMPLING_FLUX = 0,   /**< Hammersley set warped by the flux distribution of all RSMs */
+    LW_SAMPLING_UNIFORM = 1 /**< Hammersley set over the texels */
+} LWVplSampling;
+
+/** Technique "rsm": virtual point lights from reflective shadow maps, gathered without visibility. */
+typedef struct LWRsmDesc {
+    uint32_t structSize;
+    uint32_t vpls;           /**< drawn from all RSMs together; 0: every texel */
+    LWVplSampling sampling;
+    uint32_t interleave;     /**< n of n x n: each pixel takes 1/n^2 of the VPLs, then a filter; 1, 2, 4, 8 */
+    uint32_t filter;         /**< 1: the edge-aware n x n filter; 0: the raw interleaved image */
+    LWResolution resolution; /**< HALF: gathered on every second pixel and row, then up-sampled */
+    uint32_t seed;           /**< shifts the sample set (Cranley-Patterson); 0: unshifted */
+} LWRsmDesc;
+
+LW_API void lwDefaultRsm(LWRsmDesc* desc);
+
+/* A technique's parameters, described for tools: the command line's --set and every chart read them
+ * here, so a new technique needs no other registration. */
+typedef enum LWParameterKind {
+    LW_PARAMETER_UINT = 0,  /**< uint32_t */
+    LW_PARAMETER_FLOAT = 1, /**< float */
+    LW_PARAMETER_ENUM = 2,  /**< int32_t; `choices` lists the names, the value is the index */
+    LW_PARAMETER_BOOL = 3   /**< uint32_t, 0 or 1 */
+} LWParameterKind;
+
+typedef struct LWParameter {
+    const char* name;          /**< the descriptor's field in snake_case */
+    const char* description;   /**< one line: meaning, unit, what raising it buys and costs */
+    LWParameterKind kind;
+    uint32_t byteOffset;       /**< of the field in the descriptor */
+    double minimum, maximum, defaultValue;
+    const char* const* choices; /**< ENUM: null-terminated names; BOOL, UINT, FLOAT: null */
+    const double* allowed;     /**< UINT: the only valid values, or null for the whole range */
+    uint32_t allowedCount;
+    const double* sweep;       /**< values worth charting, or null */
+    uint32_t sweepCount;
+} LWParameter;
+
+typedef struct LWTechniqueInfo {
+    uint32_t structSize;
+    uint32_t descSize;         /**< sizeof the descriptor */
+    const char* name;          /**< "rsm", ... */
+    const char* summary;       /**< one line */
+    const LWParameter* parameters;
+    uint32_t parameterCount;
+    void (*setDefaults)(void* desc); /**< lwDefaultRsm and its kin */
+} LWTechniqueInfo;
+
+LW_API uint32_t lwCountTechniques(void);
+/** Strings and arrays in `info` live as long as the library. */
+LW_API LWStatus lwDescribeTechnique(uint32_t index, LWTechniqueInfo* info);
+
+/** Creates a technique by name with its descriptor (null: defaults).
+ *  Errors: INVALID_ARGUMENT (unknown name: the message lists the valid ones; a parameter out of range),
+ *  OUT_OF_MEMORY, BUILD_FAILED. */
+LW_API LWStatus lwCreateTechnique(LWDevice device, const char* name, const void* desc,
+                                  LWTechnique* technique);
+LW_API LWStatus lwCreateRsm(LWDevice device, const LWRsmDesc* desc, LWTechnique* technique);
+LW_API LWStatus lwRetainTechnique(LWTechnique technique);
+LW_API LWStatus lwReleaseTechnique(LWTechnique technique);
+
+/** Device bytes that the technique will hold for one view of this size and RSMs of `rsmTexels` texels
+ *  in all, input conversion included, without creating anything. */
+LW_API LWStatus lwEstimateMemory(LWDevice device, const char* name, const void* desc,
+                                 const LWViewDesc* view, uint64_t rsmTexels, uint64_t* bytes);
+
+/** Builds and launches once every kernel that the technique can need for this view, so that no later
+ *  frame compiles anything. Blocks. */
+LW_API LWStatus lwPrewarm(LWTechnique technique, LWView view);
+
+/** Enqueues the world part of a frame: draws VPLs, fills volumes. Errors: INVALID_*, OUT_OF_MEMORY. */
+LW_API LWStatus lwUpdate(LWTechnique technique, const LWFrame* frame);
+
+/** Enqueues one view's indirect light from the last lwUpdate. The G-buffer's images must have the
+ *  view's current size. Errors: INVALID_*, NOT_UPDATED, OUT_OF_MEMORY. */
+LW_API LWStatus lwRender(LWTechnique technique, LWView view, const LWGBuffer* gbuffer,
+                         const LWOutput* output);
+
+/* ------------------------------------------------------------------------- statistics, debugging */
+
+typedef struct LWPassTime {
+    const char* name;    /**< "<pass>.<verb>", e.g. "interleaved_gather.gather" */
+    double milliseconds; /**< device time, summed over the pass's launches; -1: unavailable */
+    uint32_t launches;
+} LWPassTime;
+
+typedef struct LWCount {
+    const char* name;    /**< "vpls", "rejected_pixels", "rejected_texels", "upsample_fallbacks", ... */
+    uint64_t value;
+} LWCount;
+
+typedef struct LWChoice {
+    const char* name;    /**< what was decided, e.g. "position" */
+    const char* reason;  /**< e.g. "planar, used in place" */
+} LWChoice;
+
+typedef struct LWStats {
+    uint32_t structSize;
+    uint32_t passCount, countCount, choiceCount;
+    uint64_t frameIndex;          /**< of the last completed lwUpdate */
+    const LWPassTime* passes;     /**< of the last lwUpdate and all lwRender since, in order */
+    const LWCount* counts;
+    const LWChoice* choices;
+    double totalMilliseconds;     /**< from the first pass's start to the last one's end; -1 */
+    uint64_t deviceBytes;         /**< memory held by the technique and its views' buffers */
+    uint64_t hostCopyBytes;       /**< bytes copied between host and device for the frame */
+} LWStats;
+
+/** Waits for the technique's enqueued work, then reports it. Arrays stay valid until the next call of
+ *  this function on the technique, or its release. */
+LW_API LWStatus lwGetStats(LWTechnique technique, LWStats* stats);
+
+typedef struct LWDebugView {
+    uint32_t structSize;
+    uint32_t width, height, channels;
+    const char* name;
+    const char* description; /**< with the unit of each channel */
+} LWDebugView;
+
+/** The technique's intermediate buffers of its last frame, e.g. "vpls", "gather". `view` may be null
+ *  for those of the world part. */
+LW_API LWStatus lwCountDebugViews(LWTechnique technique, LWView view, uint32_t* count);
+LW_API LWStatus lwDescribeDebugView(LWTechnique technique, LWView view, uint32_t index,
+                                    LWDebugView* info);
+/** Waits, then copies `channels` planes of width * height floats, packed. `capacity` counts floats. */
+LW_API LWStatus lwReadDebugView(LWTechnique technique, LWView view, const char* name, float* pixels,
+                                uint64_t capacity);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,42 @@
+// Float images with named channels, read and written as EXR (scene-linear layers) or PNG (display).
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace studio {
+
+// Rows top to bottom; one packed plane of width * height floats per channel, e.g. "R", "direct.G".
+// Metadata are EXR string attributes (reference noise, sample counts, scene, camera).
+struct Image {
+    int width = 0, height = 0;
+    std::map<std::string, std::vector<float>> channels;
+    std::map<std::string, std::string> metadata;
+
+    Image() = default;
+    Image(int w, int h) : width(w), height(h) {}
+    std::size_t pixelCount() const { return std::size_t(width) * std::size_t(height); }
+    bool has(const std::string& channel) const { return channels.count(channel) != 0; }
+    // Creates the plane, zeroed, when it is missing.
+    std::vector<float>& plane(const std::string& channel);
+    // Throws std::runtime_error naming the missing channel and those present.
+    const std::vector<float>& plane(const std::string& channel) const;
+};
+
+// Errors: std::runtime_error naming the path and the library's reason.
+Image readImage(const std::string& path);
+// `half`: 16-bit float channels (references shipped in the tree).
+void writeExr(const std::string& path, const Image& image, bool half = false);
+// 8-bit sRGB PNG of a display-referred linear image's R, G, B in [0,1].
+void writePng(const std::string& path, const Image& image);
+
+// Composite L = L_d + albedo / pi * E of an image with layers R,G,B (irradiance), direct.*, albedo.*.
+Image composite(const Image& image);
+// Reinhard's global operator L / (1 + L) per channel after `exposure`; display-referred linear [0,1].
+Image toneMap(const Image& radiance, float exposure = 1.0f);
+// One exposure for a set of pictures: maps the log-average luminance of `radiance` to 0.18.
+float autoExposure(const Image& radiance);
+
+}  // namespace studio

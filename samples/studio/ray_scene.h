@@ -1,0 +1,53 @@
+// The scene as Embree sees it at one time: intersection with alpha masks, and what a hit looks like.
+#pragma once
+
+#include <memory>
+
+#include <glm/glm.hpp>
+
+#include "scene.h"
+
+namespace studio {
+
+struct Hit {
+    float distance = 0.0f;
+    glm::vec3 position{0.0f};
+    glm::vec3 geometricNormal{0.0f};  // unit, on the ray's side
+    glm::vec3 normal{0.0f};           // shading normal, unit, on the same side as geometricNormal
+    glm::vec3 albedo{0.0f};
+    glm::vec3 emission{0.0f};         // radiance towards the ray (both sides emit); 0 unless enabled
+    int mesh = -1, triangle = -1;
+    float u = 0.0f, v = 0.0f;         // barycentric weights of the second and third vertex
+};
+
+// Thread-safe for const use.
+class RayScene {
+public:
+    RayScene(std::shared_ptr<const Scene> scene, float time);
+    ~RayScene();
+    RayScene(const RayScene&) = delete;
+    RayScene& operator=(const RayScene&) = delete;
+
+    const Scene& scene() const;
+    float time() const;
+    float diagonal() const;  // of the bounding box
+
+    // Nearest surface along a unit direction, from `from` (m) on; false when the ray leaves the scene.
+    bool trace(const glm::vec3& origin, const glm::vec3& direction, float from, float to, Hit& hit) const;
+    bool occluded(const glm::vec3& origin, const glm::vec3& direction, float from, float to) const;
+    // Origin moved off a surface along its geometric normal, by a bias relative to its coordinates.
+    glm::vec3 offset(const glm::vec3& position, const glm::vec3& geometricNormal) const;
+
+    // Direct irradiance at a surface from the scene's punctual lights at this time, with shadow rays.
+    // A surface facing away (by geometric or shading normal) gets 0.
+    glm::vec3 directIrradiance(const glm::vec3& position, const glm::vec3& geometricNormal,
+                               const glm::vec3& normal) const;
+    // World position of the same surface point (mesh, triangle, u, v) at another time.
+    glm::vec3 surfacePointAt(const Hit& hit, float otherTime) const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace studio
