@@ -1,0 +1,66 @@
+// One OpenCL device: context, queue, limits, program cache, log.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "compute/cl.h"
+#include "compute/program.h"
+#include "lightwell/lightwell.h"
+
+namespace lightwell {
+
+// Not thread-safe: src/api serialises the calls on one device.
+class Device {
+public:
+    explicit Device(const LWDeviceDesc& desc);
+    ~Device();
+    Device(const Device&) = delete;
+    Device& operator=(const Device&) = delete;
+
+    cl_context context() const { return context_; }
+    cl_command_queue queue() const { return queue_; }
+    cl_device_id id() const { return id_; }
+
+    std::uint32_t width() const { return width_; }  // lanes per work-item of wide kernels
+    bool unifiedMemory() const { return unifiedMemory_; }
+    bool profiling() const { return profiling_; }
+    bool outOfOrder() const { return outOfOrder_; }
+    std::uint64_t maxAllocation() const { return maxAllocation_; }
+    std::uint64_t globalMemory() const { return globalMemory_; }
+    std::uint32_t computeUnits() const { return computeUnits_; }
+    ProgramCache& programs() { return *programs_; }
+
+    void log(LWLogLevel level, const std::string& message) const;
+    bool insideLog() const;  // this thread is inside the device's log callback
+    void describe(LWDeviceInfo& info) const;
+    void finish();  // clFinish, then saves new binaries; throws DEVICE on an execution error
+
+    void countAllocation(std::int64_t bytes) { allocatedBytes_ += std::uint64_t(bytes); }
+    std::uint64_t allocatedBytes() const { return allocatedBytes_; }
+    void countSpecialisation() { ++kernelsSpecialised_; }
+
+private:
+    void open(const LWDeviceDesc& desc);
+    void adopt(const LWDeviceDesc& desc);
+    void readLimits();
+    std::uint32_t chooseWidth(const LWDeviceDesc& desc);
+
+    cl_platform_id platform_ = nullptr;
+    cl_device_id id_ = nullptr;
+    cl_device_id subDevice_ = nullptr;  // owned when a compute-unit limit is set
+    cl_context context_ = nullptr;
+    cl_command_queue queue_ = nullptr;
+    std::uint32_t width_ = 0, computeUnits_ = 0;
+    bool unifiedMemory_ = false, profiling_ = false, outOfOrder_ = false;
+    std::uint64_t maxAllocation_ = 0, globalMemory_ = 0, allocatedBytes_ = 0, kernelsSpecialised_ = 0;
+    LWLogCallback log_ = nullptr;
+    void* logUser_ = nullptr;
+    std::unique_ptr<ProgramCache> programs_;
+};
+
+std::uint32_t countDevices();
+void describeDevice(std::uint32_t index, LWDeviceInfo& info);
+
+}  // namespace lightwell

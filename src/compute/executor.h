@@ -1,0 +1,86 @@
+// Enqueues the kernels of a frame on the device's queue, in order, and times them as passes.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "compute/buffer.h"
+#include "compute/cl.h"
+#include "compute/program.h"
+#include "lightwell/lightwell.h"
+
+namespace lightwell {
+
+class Device;
+
+// Device times of named passes. One per technique; update() starts a new frame.
+class Profile {
+public:
+    Profile() = default;
+    ~Profile();
+    Profile(const Profile&) = delete;
+    Profile& operator=(const Profile&) = delete;
+
+    void clear();
+    void add(const char* pass, cl_event event);  // takes the event over; null: counted, not timed
+    // Waits for nothing: call after Device::finish. `names` are string literals.
+    std::vector<LWPassTime> passes() const;
+    double totalMilliseconds() const;
+
+private:
+    struct Entry { const char* pass; cl_event event; };
+    std::vector<Entry> entries_;
+};
+
+using Range = std::array<std::size_t, 2>;
+
+class Executor {
+public:
+    Executor(Device& device, Profile& profile) : device_(device), profile_(profile) {}
+
+    Device& device() { return device_; }
+
+    // Enqueues `kernel` over `global` work-items, rounded up to `local` (the kernel must leave surplus
+    // items idle). `pass` is a string literal "<pass>.<verb>". Arguments in the kernel's order: cl_mem,
+    // Buffer, Planes (two arguments: memory and int4 layout), arithmetic values, shared structs.
+    template <class... Args>
+    void run(const char* pass, Kernel& kernel, Range global, Range local, const Args&... args) {
+        cl_uint index = 0;
+        (setArg(kernel, index, args), ...);
+        enqueue(pass, kernel, global, local);
+    }
+
+    // Non-blocking transfers, timed as passes too. Host memory must stay valid until they are done.
+    void write(const char* pass, const Buffer& to, std::size_t byteOffset, std::size_t bytes, const void* from);
+    void read(const char* pass, cl_mem from, std::size_t byteOffset, std::size_t bytes, void* to);
+    void fill(const char* pass, const Buffer& buffer, std::uint32_t pattern, std::size_t byteOffset, std::size_t bytes);
+    void copy(const char* pass, cl_mem from, cl_mem to, std::size_t fromOffset, std::size_t toOffset, std::size_t bytes);
+    // Makes what kernels wrote to a Buffer::overHost visible to the host (map and unmap), non-blocking.
+    void publish(const char* pass, const Buffer& buffer);
+
+    void waitFor(const LWSync* sync);  // commands enqueued from here on start after the host's events
+    void signal(const LWSync* sync);   // gives the host an event of everything enqueued so far
+    void flush();
+    std::uint64_t copiedBytes() const { return copiedBytes_; }  // between host and device
+
+private:
+    void setRaw(Kernel& kernel, cl_uint& index, std::size_t bytes, const void* value);
+    void setArg(Kernel& kernel, cl_uint& index, cl_mem memory) { setRaw(kernel, index, sizeof memory, &memory); }
+    void setArg(Kernel& kernel, cl_uint& index, const Buffer& buffer) { setArg(kernel, index, buffer.get()); }
+    void setArg(Kernel& kernel, cl_uint& index, const Planes& planes);
+    template <class T, class = std::enable_if_t<std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>>>
+    void setArg(Kernel& kernel, cl_uint& index, const T& value) {
+        setRaw(kernel, index, sizeof value, &value);
+    }
+    void enqueue(const char* pass, Kernel& kernel, Range global, Range local);
+    void done(const char* pass, cl_event event);  // profile; a barrier on an out-of-order queue
+
+    Device& device_;
+    Profile& profile_;
+    std::uint64_t copiedBytes_ = 0;
+};
+
+}  // namespace lightwell

@@ -1,0 +1,34 @@
+// Where a technique's result planes go: the host's image in place, or packed into its format.
+#pragma once
+
+#include <memory>
+
+#include "compute/buffer.h"
+#include "compute/executor.h"
+#include "lightwell/lightwell.h"
+#include "techniques/technique.h"
+
+namespace lightwell {
+
+class OutputTarget {
+public:
+    OutputTarget();
+    ~OutputTarget();
+    OutputTarget(OutputTarget&&) noexcept;
+    OutputTarget& operator=(OutputTarget&&) noexcept;
+
+    // The planes that kernels write for `image` (1 or 3): the host's own memory where its layout allows,
+    // else an image of ours. Empty when the format is LW_FORMAT_NONE. `name`: "output.irradiance" ...
+    Planes begin(Executor& executor, const View& view, const LWImage& image, std::uint32_t planeCount, const char* name);
+    // Packs (pass "output.pack"), copies or publishes what kernels wrote since begin().
+    void end(Executor& executor);
+
+    void report(Report& report) const;
+    std::uint64_t bytes() const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace lightwell

@@ -1,0 +1,51 @@
+// All RSMs of a frame's lights as one set of texel planes with flux and area, in the units of the
+// library: what VPLs are drawn from.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "compute/buffer.h"
+#include "compute/executor.h"
+#include "lightwell/lightwell.h"
+#include "techniques/technique.h"
+
+namespace lightwell {
+
+// One RSM's place in the set.
+struct RsmSpan {
+    std::uint32_t light;       // index in LWFrame::lights
+    std::uint32_t firstTexel;  // in the planes, a multiple of 16
+    std::uint32_t firstRow;    // in the table of rows
+    std::uint32_t width, height;
+};
+
+class RsmInput {
+public:
+    // Planes of `texels`: consecutive rows of all RSMs, each row padded to 16 texels with zero flux.
+    enum Plane { kPositionX, kPositionY, kPositionZ, kNormalX, kNormalY, kNormalZ, kFluxR, kFluxG, kFluxB, kArea, kPlaneCount };
+
+    RsmInput();
+    ~RsmInput();
+
+    // Records the unpacking of every RSM (passes "rsm_input.*"): flux 0 and normal 0 where the host gave
+    // none, gave something not finite or negative (counted as rejected), or where a finer cascade of the
+    // same directional light covers the texel; area A_p as lightwell.h's lights define it.
+    void import(Executor& executor, const LWFrame& frame);
+
+    Planes texels;                // kPlaneCount planes, height 1, width = all texels with padding
+    Buffer rows;                  // int4 per row: first texel, width, span index, 0
+    std::uint32_t rowCount = 0;
+    std::uint32_t texelCount = 0; // valid texels, padding left out (covered cascade texels included)
+    std::vector<RsmSpan> spans;
+
+    void report(Report& report) const;  // rejected_texels, covered_texels, choices; after Device::finish
+    std::uint64_t bytes() const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace lightwell

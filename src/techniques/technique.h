@@ -1,0 +1,95 @@
+// What every technique is to the API: a world part once per frame, a view part once per view.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "compute/executor.h"
+#include "lightwell/lightwell.h"
+
+namespace lightwell {
+
+class Device;
+
+// One viewport. Techniques keep their per-view buffers by view (PerView below).
+class View {
+public:
+    View(std::uint32_t maxW, std::uint32_t maxH) : maxWidth(maxW), maxHeight(maxH), width(maxW), height(maxH) {}
+    const std::uint32_t maxWidth, maxHeight;
+    std::uint32_t width, height;
+};
+
+struct DebugView {
+    const char* name;
+    const char* description;
+    Planes planes;
+};
+
+// What happened in the frames since update(): counts and choices for LWStats. Names and reasons are
+// string literals.
+struct Report {
+    std::vector<LWCount> counts;
+    std::vector<LWChoice> choices;
+};
+
+class Technique {
+public:
+    virtual ~Technique() = default;
+
+    // Record the frame's world part / one view's part. The API has checked handles, struct sizes and
+    // that pointers are present where counts say so; inputs/ checks images; the technique checks the rest.
+    virtual void update(Executor& executor, const LWFrame& frame) = 0;
+    virtual void render(Executor& executor, const std::shared_ptr<View>& view, const LWGBuffer& gbuffer,
+                        const LWOutput& output) = 0;
+    // Builds and launches every kernel that the parameters can need.
+    virtual void prewarm(Executor& executor, const std::shared_ptr<View>& view) = 0;
+
+    virtual Report report() = 0;  // after Device::finish
+    virtual std::vector<DebugView> debugViews(const View* view) = 0;
+    virtual std::uint64_t bytes() const = 0;
+};
+
+struct TechniqueEntry {
+    LWTechniqueInfo info;
+    // `desc` has been checked against info.parameters.
+    std::unique_ptr<Technique> (*create)(Device& device, const void* desc);
+    std::uint64_t (*estimateBytes)(const void* desc, const LWViewDesc& view, std::uint64_t rsmTexels);
+};
+// The registry: one line per technique in registry.cpp.
+const std::vector<TechniqueEntry>& techniqueEntries();
+
+// Per-view state of a technique; dropped when the view is gone.
+template <class State>
+class PerView {
+public:
+    // The state of `view`, made by `make()` on first use.
+    template <class Make>
+    State& get(const std::shared_ptr<View>& view, Make make) {
+        purge();
+        for (auto& [key, state] : states_)
+            if (key.lock() == view) return *state;
+        states_.emplace_back(view, make());
+        return *states_.back().second;
+    }
+    State* find(const View* view) {
+        for (auto& [key, state] : states_)
+            if (key.lock().get() == view && view) return state.get();
+        return nullptr;
+    }
+    template <class Visit>
+    void each(Visit visit) const {
+        for (const auto& entry : states_) visit(*entry.second);
+    }
+
+private:
+    void purge() {
+        for (std::size_t i = states_.size(); i-- > 0;)
+            if (states_[i].first.expired()) states_.erase(states_.begin() + std::ptrdiff_t(i));
+    }
+    std::vector<std::pair<std::weak_ptr<View>, std::unique_ptr<State>>> states_;
+};
+
+}  // namespace lightwell
