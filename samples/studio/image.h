@@ -25,18 +25,25 @@ struct Image {
     const std::vector<float>& plane(const std::string& channel) const;
 };
 
-// Errors: std::runtime_error naming the path and the library's reason.
+// Errors: std::runtime_error naming the path and the library's reason. Files of integer pixels (PNG) are
+// taken as sRGB-encoded and come out linear in R, G, B; string attributes become metadata.
 Image readImage(const std::string& path);
-// `half`: 16-bit float channels (references shipped in the tree).
+// `half`: 16-bit float channels (references shipped in the tree); throws on a value beyond 65504.
 void writeExr(const std::string& path, const Image& image, bool half = false);
-// 8-bit sRGB PNG of a display-referred linear image's R, G, B in [0,1].
+// 8-bit sRGB PNG of a display-referred linear image's R, G, B; throws on a value outside [0,1].
 void writePng(const std::string& path, const Image& image);
+
+// The sRGB transfer function (IEC 61966-2-1) and its inverse, on [0,1].
+float srgbEncode(float linear);
+float srgbDecode(float encoded);
 
 // Composite L = L_d + albedo / pi * E of an image with layers R,G,B (irradiance), direct.*, albedo.*.
 Image composite(const Image& image);
 // Reinhard's global operator L / (1 + L) per channel after `exposure`; display-referred linear [0,1].
+// Negative radiance becomes 0, infinity 1; NaN stays NaN.
 Image toneMap(const Image& radiance, float exposure = 1.0f);
-// One exposure for a set of pictures: maps the log-average luminance of `radiance` to 0.18.
+// One exposure for a set of pictures: maps the log-average luminance of `radiance` (black pixels left
+// out) to 0.18. 1 for a black picture; throws on NaN or infinity.
 float autoExposure(const Image& radiance);
 
 }  // namespace studio
