@@ -159,7 +159,8 @@ TEST_CASE("a missing channel is named with those present") {
     const Image image = constantImage(2, 2, 0.0f, 0.0f, 0.0f);
     CHECK_THROWS_WITH(image.plane("direct.R"), Contains("direct.R") && Contains("B, G, R"));
     CHECK_THROWS_WITH(composite(image), Contains("direct.R"));
-    CHECK_THROWS_WITH(Image(1, 1).plane("R"), Contains("none"));
+    const Image empty(1, 1);
+    CHECK_THROWS_WITH(empty.plane("R"), Contains("none"));
 }
 
 TEST_CASE("composite adds reflected irradiance to direct radiance") {
