@@ -1,0 +1,123 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds everything with warnings as errors, runs every test suite and prints
+# its time against its budget. Needs Debian 12 and root or sudo for the first run only.
+#
+#   tests/run.sh                      everything; this is what .ci/run does
+#   tests/run.sh -R rsm               only suites whose name matches (any ctest option may follow)
+#   LIGHTWELL_SCENES=DIR tests/run.sh also the suites that need the large scenes
+#   LIGHTWELL_TEST_DEVICE=gpu tests/run.sh   another OpenCL device than the CPU's
+#   LIGHTWELL_NO_INSTALL=1            never call apt-get
+#
+# Exit code: 0 when every suite passed, 1 when one failed or nothing ran, 2 when it could not build.
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd) || exit 2
+cd "$root" || exit 2
+# shellcheck source=tests/support/packages.sh
+source tests/support/packages.sh
+
+preset=ci
+build=build/$preset
+log=$build/log
+mkdir -p "$log" || exit 2
+started=$SECONDS
+
+# --- packages ---------------------------------------------------------------------------------------
+lightwell_need "build and test" "${LIGHTWELL_LIBRARY_PACKAGES[@]}" "${LIGHTWELL_SAMPLE_PACKAGES[@]}" \
+    "${LIGHTWELL_TEST_PACKAGES[@]}" || exit 2
+lightwell_want "extra suites" "${LIGHTWELL_TEST_TOOLS[@]}"
+
+# --- environment: nobody's settings but ours --------------------------------------------------------
+scenes=${LIGHTWELL_SCENES:-}
+device=${LIGHTWELL_TEST_DEVICE:-cpu}
+for name in $(compgen -e); do
+    case $name in
+        LIGHTWELL_* | POCL_* | RUSTICL_* | CTEST_* | CMAKE_* | EMBREE_* | OPENIMAGEIO_*) unset "$name" ;;
+        CFLAGS | CXXFLAGS | CPPFLAGS | LDFLAGS | NINJA_STATUS) unset "$name" ;;
+    esac
+done
+export LC_ALL=C
+export LIGHTWELL_DEVICE=$device
+export LIGHTWELL_CACHE_DIR=$root/$build/cache/lightwell
+export POCL_CACHE_DIR=$root/$build/cache/pocl
+mkdir -p "$LIGHTWELL_CACHE_DIR" "$POCL_CACHE_DIR" || exit 2
+if [ -n "$scenes" ]; then
+    if [ ! -d "$scenes" ]; then
+        lightwell_complain "LIGHTWELL_SCENES: expected a folder, got '$scenes'"
+        exit 2
+    fi
+    LIGHTWELL_SCENES=$(cd "$scenes" && pwd) || exit 2
+    export LIGHTWELL_SCENES
+    lightwell_say "large scenes from $LIGHTWELL_SCENES"
+else
+    lightwell_say "LIGHTWELL_SCENES is not set: what needs the large scenes is skipped"
+fi
+
+# --- build ------------------------------------------------------------------------------------------
+# Runs a step into a log; on failure prints its errors (or its end) and stops.
+step() {
+    local name=$1 begin=$SECONDS
+    shift
+    if "$@" >"$log/$name.txt" 2>&1 </dev/null; then
+        lightwell_say "$name: $((SECONDS - begin)) s"
+        return 0
+    fi
+    lightwell_complain "$name failed after $((SECONDS - begin)) s: $*"
+    grep -n -E 'error|FAILED|CMake Error' "$log/$name.txt" | head -n 40 >&2
+    lightwell_complain "end of $log/$name.txt:"
+    tail -n 40 "$log/$name.txt" >&2
+    return 1
+}
+stop() {
+    printf '\n0 passed, 1 failed\n'
+    exit 2
+}
+step configure cmake --preset "$preset" || stop
+step build cmake --build "$build" --parallel "$(nproc)" || stop
+
+# --- test -------------------------------------------------------------------------------------------
+lightwell_say "device: $LIGHTWELL_DEVICE; testing"
+results=$log/ctest.txt
+# One suite at a time: kernels and path tracer use all cores, and the seconds should mean something.
+(cd "$build" && ctest --output-on-failure --no-label-summary --no-tests=error "$@" </dev/null 2>&1) | tee "$results"
+ctest_status=${PIPESTATUS[0]}
+
+# --- table ------------------------------------------------------------------------------------------
+# Budgets (seconds on two cores) stand in tests/budgets.txt; a suite that is late is marked, and one
+# that takes its time limit (CMake: three times the budget) has failed.
+awk -v budgets=tests/budgets.txt -v total=$((SECONDS - started)) -v status="$ctest_status" '
+    BEGIN {
+        while ((getline line < budgets) > 0) {
+            split(line, field, " ")
+            if (field[1] != "" && field[1] !~ /^#/) budget[field[1]] = field[2]
+        }
+        passed = failed = skipped = late = 0
+        printf "\n%-28s %-8s %8s %8s\n", "suite", "result", "seconds", "budget"
+    }
+    # "  3/12 Test  #3: api_test ........   Passed    1.25 sec"
+    /^ *[0-9]+\/[0-9]+ Test +#[0-9]+: / {
+        name = $0
+        sub(/^ *[0-9]+\/[0-9]+ Test +#[0-9]+: /, "", name)
+        sub(/[ .].*$/, "", name)
+        seconds = $0
+        sub(/ sec.*$/, "", seconds)
+        sub(/^.* /, "", seconds)
+        if ($0 ~ /\*\*\*Skipped/ || $0 ~ /\*\*\*Not Run \(Disabled\)/) { result = "skipped"; ++skipped }
+        else if ($0 ~ / Passed +[0-9.]+ sec/) { result = "passed"; ++passed }
+        else { result = "FAILED"; ++failed }
+        mark = ""
+        if (!(name in budget)) budget[name] = 60
+        if (seconds + 0 > budget[name]) { mark = "  over budget"; ++late }
+        printf "%-28s %-8s %8.1f %8s%s\n", name, result, seconds, budget[name], mark
+        sum += seconds
+    }
+    END {
+        printf "%-28s %-8s %8.1f\n", "all suites", "", sum
+        printf "%-28s %-8s %8.0f %8d\n\n", "with install and build", "", total, 1500
+        if (late) printf "%d over budget\n", late
+        # A ctest that ended badly without a failed line (none ran, or it crashed) is a failure too.
+        if (status != 0 && failed == 0) failed = 1
+        if (passed == 0 && failed == 0) failed = 1
+        if (skipped) printf "%d passed, %d failed, %d skipped\n", passed, failed, skipped
+        else printf "%d passed, %d failed\n", passed, failed
+        exit failed ? 1 : 0
+    }' "$results"
