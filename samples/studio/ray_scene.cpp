@@ -1,0 +1,269 @@
+// The scene in Embree (3.13, or 4 with the few names that changed) at one time.
+//
+// Surfaces are double-sided: normals are turned to the ray's side. Alpha masks are cut by a filter on
+// both kinds of ray, so that shadows have holes where the picture has. All biases are relative to
+// coordinates or to the scene's diagonal, so a scene in other units gives the same picture.
+#include "ray_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#define STUDIO_EMBREE4 1
+#else
+#include <embree3/rtcore.h>
+#define STUDIO_EMBREE4 0
+#endif
+
+namespace studio {
+namespace {
+
+// Ray origins move off their surface by this share of their largest coordinate, or of the diagonal
+// where that is larger times kDiagonalShare. A float's spacing is 6e-8 of its value and a hit carries
+// a few roundings: a tenth of this begins to show acne, ten times as much detaches contact shadows.
+constexpr float kRelativeOffset = 1e-5f;
+constexpr float kDiagonalShare = 0.1f;
+// Shadow rays stop short of a punctual light by this share of their length.
+constexpr float kLightGap = 1e-5f;
+
+struct WorldMesh {
+    const Mesh* mesh = nullptr;
+    const Material* material = nullptr;
+    const Texture* texture = nullptr;  // base colour and alpha, or null
+    glm::mat4 pose{1.0f};
+    bool moved = false;
+    glm::vec3 point(unsigned vertex) const {
+        const glm::vec3& p = mesh->positions[vertex];
+        return moved ? glm::vec3(pose * glm::vec4(p, 1.0f)) : p;
+    }
+};
+
+template <class T>
+T interpolate(const std::vector<T>& values, const glm::uvec3& t, float u, float v) {
+    return values[t.x] * (1.0f - u - v) + values[t.y] * u + values[t.z] * v;
+}
+
+void alphaFilter(const RTCFilterFunctionNArguments* args) {
+    const auto* world = static_cast<const WorldMesh*>(args->geometryUserPtr);
+    for (unsigned i = 0; i < args->N; ++i) {
+        if (args->valid[i] != -1) continue;
+        const unsigned primitive = RTCHitN_primID(args->hit, args->N, i);
+        const float u = RTCHitN_u(args->hit, args->N, i), v = RTCHitN_v(args->hit, args->N, i);
+        const glm::vec2 uv = interpolate(world->mesh->uvs, world->mesh->triangles[primitive], u, v);
+        if (world->texture->lookup(uv).a < world->material->alphaCutoff) args->valid[i] = 0;
+    }
+}
+
+void setRay(RTCRay& ray, const glm::vec3& o, const glm::vec3& d, float from, float to) {
+    ray.org_x = o.x, ray.org_y = o.y, ray.org_z = o.z;
+    ray.dir_x = d.x, ray.dir_y = d.y, ray.dir_z = d.z;
+    ray.tnear = from;
+    ray.tfar = to;
+    ray.time = 0.0f;
+    ray.mask = ~0u;
+    ray.id = ray.flags = 0;
+}
+
+void checkDevice(RTCDevice device, const std::string& what) {
+    const RTCError error = rtcGetDeviceError(device);
+    if (error != RTC_ERROR_NONE)
+        throw std::runtime_error(fmt::format("Embree: {}: error {}", what, int(error)));
+}
+
+}  // namespace
+
+struct RayScene::Impl {
+    std::shared_ptr<const Scene> scene;
+    float time = 0.0f, diagonal = 0.0f;
+    std::vector<WorldMesh> meshes;
+    std::vector<Light> lights;
+    RTCDevice device = nullptr;
+    RTCScene embree = nullptr;
+
+    ~Impl() {
+        if (embree != nullptr) rtcReleaseScene(embree);
+        if (device != nullptr) rtcReleaseDevice(device);
+    }
+    void addMesh(unsigned id);
+};
+
+void RayScene::Impl::addMesh(unsigned id) {
+    WorldMesh& world = meshes[id];
+    const Mesh& mesh = *world.mesh;
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* vertices = static_cast<glm::vec3*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                sizeof(glm::vec3), mesh.positions.size()));
+    auto* indices = static_cast<glm::uvec3*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3),
+                                mesh.triangles.size()));
+    if (vertices != nullptr && indices != nullptr) {
+        for (std::size_t i = 0; i < mesh.positions.size(); ++i) vertices[i] = world.point(unsigned(i));
+        std::copy(mesh.triangles.begin(), mesh.triangles.end(), indices);
+        if (world.texture != nullptr && world.material->alphaCutoff > 0.0f) {
+            rtcSetGeometryUserData(geometry, &world);
+            rtcSetGeometryIntersectFilterFunction(geometry, alphaFilter);
+            rtcSetGeometryOccludedFilterFunction(geometry, alphaFilter);
+        }
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometryByID(embree, geometry, id);
+    }
+    rtcReleaseGeometry(geometry);
+    checkDevice(device, fmt::format("mesh \"{}\"", mesh.name));
+}
+
+RayScene::RayScene(std::shared_ptr<const Scene> scene, float time) : impl_(std::make_unique<Impl>()) {
+    Impl& s = *impl_;
+    s.scene = std::move(scene);
+    s.time = time;
+    s.device = rtcNewDevice(nullptr);
+    if (s.device == nullptr)
+        throw std::runtime_error(
+            fmt::format("Embree: no device: error {}", int(rtcGetDeviceError(nullptr))));
+    s.embree = rtcNewScene(s.device);
+    // Robust: rays through shared edges never slip between the triangles.
+    rtcSetSceneFlags(s.embree, RTC_SCENE_FLAG_ROBUST);
+
+    s.meshes.resize(s.scene->meshes.size());
+    for (std::size_t i = 0; i < s.meshes.size(); ++i) {
+        WorldMesh& world = s.meshes[i];
+        world.mesh = &s.scene->meshes[i];
+        world.material = &s.scene->materials.at(std::size_t(world.mesh->material));
+        if (world.material->texture >= 0 && !world.mesh->uvs.empty())
+            world.texture = &s.scene->textures.at(std::size_t(world.material->texture));
+        const Object& object = s.scene->objects.at(std::size_t(world.mesh->object));
+        world.moved = !object.keys.empty();
+        world.pose = object.poseAt(time);
+    }
+    for (unsigned i = 0; i < s.meshes.size(); ++i) s.addMesh(i);
+    rtcCommitScene(s.embree);
+    checkDevice(s.device, "building the scene");
+
+    RTCBounds bounds;
+    rtcGetSceneBounds(s.embree, &bounds);
+    const glm::vec3 size(bounds.upper_x - bounds.lower_x, bounds.upper_y - bounds.lower_y,
+                         bounds.upper_z - bounds.lower_z);
+    s.diagonal = glm::length(size);
+    if (!std::isfinite(s.diagonal) || s.diagonal <= 0.0f)
+        throw std::runtime_error(
+            fmt::format("scene \"{}\": expected at least one triangle", s.scene->name));
+    for (std::size_t i = 0; i < s.scene->lights.size(); ++i)
+        s.lights.push_back(s.scene->lightAt(int(i), time));
+}
+
+RayScene::~RayScene() = default;
+
+const Scene& RayScene::scene() const {
+    return *impl_->scene;
+}
+float RayScene::time() const {
+    return impl_->time;
+}
+float RayScene::diagonal() const {
+    return impl_->diagonal;
+}
+
+bool RayScene::trace(const glm::vec3& origin, const glm::vec3& direction, float from, float to,
+                     Hit& hit) const {
+    RTCRayHit ray;
+    setRay(ray.ray, origin, direction, from, to);
+    ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+#if STUDIO_EMBREE4
+    rtcIntersect1(impl_->embree, &ray, nullptr);
+#else
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(impl_->embree, &context, &ray);
+#endif
+    if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+
+    const WorldMesh& world = impl_->meshes[ray.hit.geomID];
+    const Mesh& mesh = *world.mesh;
+    const glm::uvec3& t = mesh.triangles[ray.hit.primID];
+    const float u = ray.hit.u, v = ray.hit.v;
+    hit.mesh = int(ray.hit.geomID);
+    hit.triangle = int(ray.hit.primID);
+    hit.u = u;
+    hit.v = v;
+    hit.distance = ray.ray.tfar;
+    const glm::vec3 a = world.point(t.x), b = world.point(t.y), c = world.point(t.z);
+    hit.position = a * (1.0f - u - v) + b * u + c * v;
+
+    // In double: the sides of a sliver are too nearly parallel for a float cross product.
+    const glm::vec3 face(
+        glm::normalize(glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a))));
+    hit.geometricNormal = glm::dot(face, direction) > 0.0f ? -face : face;
+    glm::vec3 normal = interpolate(mesh.normals, t, u, v);
+    if (world.moved) normal = glm::vec3(world.pose * glm::vec4(normal, 0.0f));
+    const float length = glm::length(normal);
+    // Opposed corner normals cancel; the face then has no better normal than its own.
+    hit.normal = length > 1e-6f ? normal / length : hit.geometricNormal;
+    if (glm::dot(hit.normal, hit.geometricNormal) < 0.0f) hit.normal = -hit.normal;
+
+    hit.albedo = world.material->albedo;
+    if (world.texture != nullptr)
+        hit.albedo *= glm::vec3(world.texture->lookup(interpolate(mesh.uvs, t, u, v)));
+    hit.emission = impl_->scene->emissiveSurfaces ? world.material->emission : glm::vec3(0.0f);
+    return true;
+}
+
+bool RayScene::occluded(const glm::vec3& origin, const glm::vec3& direction, float from,
+                        float to) const {
+    RTCRay ray;
+    setRay(ray, origin, direction, from, to);
+#if STUDIO_EMBREE4
+    rtcOccluded1(impl_->embree, &ray, nullptr);
+#else
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(impl_->embree, &context, &ray);
+#endif
+    return ray.tfar < 0.0f;
+}
+
+glm::vec3 RayScene::offset(const glm::vec3& position, const glm::vec3& geometricNormal) const {
+    const glm::vec3 size = glm::abs(position);
+    const float scale = std::max({size.x, size.y, size.z, kDiagonalShare * impl_->diagonal});
+    return position + geometricNormal * (kRelativeOffset * scale);
+}
+
+glm::vec3 RayScene::directIrradiance(const glm::vec3& position, const glm::vec3& geometricNormal,
+                                     const glm::vec3& normal) const {
+    glm::vec3 sum(0.0f);
+    const glm::vec3 origin = offset(position, geometricNormal);
+    for (const Light& light : impl_->lights) {
+        glm::vec3 toLight = -light.direction;
+        float reach = std::numeric_limits<float>::infinity();
+        glm::vec3 facing = light.emitted;  // irradiance on a surface facing the light
+        if (light.kind != LightKind::Sun) {
+            const glm::vec3 way = light.position - position;
+            const float squared = glm::dot(way, way);
+            if (squared <= 0.0f) continue;
+            toLight = way / std::sqrt(squared);
+            facing *= coneFalloff(light, -toLight) / squared;
+            reach = glm::length(light.position - origin) * (1.0f - kLightGap);
+        }
+        const float cosine = glm::dot(normal, toLight);
+        if (cosine <= 0.0f || glm::dot(geometricNormal, toLight) <= 0.0f) continue;
+        if (facing == glm::vec3(0.0f) || occluded(origin, toLight, 0.0f, reach)) continue;
+        sum += facing * cosine;
+    }
+    return sum;
+}
+
+glm::vec3 RayScene::surfacePointAt(const Hit& hit, float otherTime) const {
+    const Mesh& mesh = impl_->scene->meshes.at(std::size_t(hit.mesh));
+    const glm::uvec3& t = mesh.triangles.at(std::size_t(hit.triangle));
+    const Object& object = impl_->scene->objects[std::size_t(mesh.object)];
+    if (object.keys.empty()) return hit.position;
+    const glm::vec3 p = interpolate(mesh.positions, t, hit.u, hit.v);
+    return glm::vec3(object.poseAt(otherTime) * glm::vec4(p, 1.0f));
+}
+
+}  // namespace studio
