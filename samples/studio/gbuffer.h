@@ -49,9 +49,10 @@ struct Rsm {
     PlanarBuffer position, normal, flux;     // flux: albedo * incident flux through the texel, W
 };
 
-// All RSMs of one light: one for a sun (or `cascades` nested ones, finest first) or a spot, six for a
-// point light. A sun's is fitted to the surfaces that can light what `camera` sees (nothing that
-// matters is left out: at least 99.9 % of the estimated light), or to all lit surfaces without one.
+// All RSMs of one light: one for a sun (or `cascades` nested ones, finest first; a coarser one's texels
+// inside a finer footprint carry no flux) or a spot (five faces when its outer cone is over 75 degrees),
+// six for a point light. A sun's is fitted to the surfaces that can light what `view` sees (nothing
+// that matters is left out: at least 99.9 % of the estimated light), or to all surfaces without one.
 struct RsmOptions {
     int size = 512;                   // texels along each side
     int cascades = 1;                 // suns only

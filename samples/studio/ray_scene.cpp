@@ -168,6 +168,18 @@ float RayScene::diagonal() const {
     return impl_->diagonal;
 }
 
+void RayScene::boundsAlong(const glm::mat3& axes, glm::vec3& lower, glm::vec3& upper) const {
+    lower = glm::vec3(std::numeric_limits<float>::max());
+    upper = -lower;
+    for (const WorldMesh& world : impl_->meshes)
+        for (const glm::uvec3& triangle : world.mesh->triangles)
+            for (int corner = 0; corner < 3; ++corner) {
+                const glm::vec3 p = axes * world.point(triangle[corner]);
+                lower = glm::min(lower, p);
+                upper = glm::max(upper, p);
+            }
+}
+
 bool RayScene::trace(const glm::vec3& origin, const glm::vec3& direction, float from, float to,
                      Hit& hit) const {
     RTCRayHit ray;

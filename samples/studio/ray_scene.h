@@ -31,6 +31,8 @@ public:
     const Scene& scene() const;
     float time() const;
     float diagonal() const;  // of the bounding box
+    // Bounds of all triangles at this time in the coordinates `axes * position`.
+    void boundsAlong(const glm::mat3& axes, glm::vec3& lower, glm::vec3& upper) const;
 
     // Nearest surface along a unit direction, from `from` (m) on; false when the ray leaves the scene.
     bool trace(const glm::vec3& origin, const glm::vec3& direction, float from, float to, Hit& hit) const;

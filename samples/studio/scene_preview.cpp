@@ -1,5 +1,6 @@
 // scene_preview SCENE [CAMERA] [WIDTHxHEIGHT] [PREFIX]: writes PREFIX.albedo.png and PREFIX.direct.png,
 // prints what the scene holds and what casting its G-buffer took. A developer's tool.
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <exception>
@@ -74,6 +75,28 @@ int run(int argc, char** argv) {
         if (m.emission != glm::vec3(0.0f))
             fmt::print("  emitter {}: {} {} {}\n", m.name, m.emission.x, m.emission.y, m.emission.z);
 
+    const std::string name = argc > 4 ? argv[4] : scene->name;
+    for (std::size_t i = 0; i < scene->lights.size(); ++i) {
+        studio::RsmOptions options;
+        options.view = &g;
+        start = Clock::now();
+        const std::vector<studio::Rsm> rsms =
+            studio::renderRsms(rays, scene->lightAt(int(i), 0.0f), options);
+        double total = 0.0;
+        for (const studio::Rsm& rsm : rsms)
+            for (int y = 0; y < rsm.height; ++y)
+                for (int x = 0; x < rsm.width; ++x) total += double(rsm.flux.row(1, y)[x]);
+        const glm::mat4& p = rsms[0].projection;
+        fmt::print(
+            "  RSM {}^2 of {}: {:.2f} s, {} map(s), reflects {:.4g} W (green), P00 {:.4g} P11 {:.4g}\n",
+            options.size, scene->lights[i].name, seconds(start), rsms.size(), total, p[0][0], p[1][1]);
+        float brightest = 0.0f;
+        for (int y = 0; y < rsms[0].height; ++y)
+            for (int x = 0; x < rsms[0].width; ++x)
+                brightest = std::max(brightest, rsms[0].flux.row(1, y)[x]);
+        writeDisplay(fmt::format("{}.rsm{}.png", name, i), rsms[0].flux,
+                     1.0f / std::max(brightest, 1e-30f));
+    }
     const std::string prefix = argc > 4 ? argv[4] : scene->name;
     writeDisplay(prefix + ".albedo.png", g.albedo, 1.0f);
     writeDisplay(prefix + ".direct.png", g.direct, 0.5f);
