@@ -31,13 +31,14 @@ std::string channelList(const Image& image) {
 // A picture that can be written: a size, at least one channel, each of width * height floats.
 void checkWritable(const std::string& path, const Image& image) {
     if (image.width < 1 || image.height < 1)
-        throw std::runtime_error(
-            fmt::format("{}: expected an image of at least 1x1 pixels, got {}x{}", path, image.width, image.height));
+        throw std::runtime_error(fmt::format("{}: expected an image of at least 1x1 pixels, got {}x{}",
+                                             path, image.width, image.height));
     if (image.channels.empty()) throw std::runtime_error(path + ": the image has no channels to write");
     for (const auto& [name, values] : image.channels)
         if (values.size() != image.pixelCount())
-            throw std::runtime_error(fmt::format("{}: channel {} has {} values, expected {}x{} = {}", path, name,
-                                                 values.size(), image.width, image.height, image.pixelCount()));
+            throw std::runtime_error(fmt::format("{}: channel {} has {} values, expected {}x{} = {}",
+                                                 path, name, values.size(), image.width, image.height,
+                                                 image.pixelCount()));
 }
 
 // Half floats end at 65504; a larger value would turn into infinity without a word.
@@ -45,9 +46,9 @@ void checkFitsHalf(const std::string& path, const Image& image) {
     for (const auto& [name, values] : image.channels)
         for (float value : values)
             if (std::isfinite(value) && std::abs(value) > kLargestHalf)
-                throw std::runtime_error(
-                    fmt::format("{}: {} in channel {} is beyond the largest half float, {}; write full floats",
-                                path, value, name, kLargestHalf));
+                throw std::runtime_error(fmt::format(
+                    "{}: {} in channel {} is beyond the largest half float, {}; write full floats", path,
+                    value, name, kLargestHalf));
 }
 
 template <class T>
@@ -55,19 +56,23 @@ void writeInterleaved(const std::string& path, const OIIO::ImageSpec& spec, OIIO
                       const std::vector<T>& pixels) {
     const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(path);
     if (!output) throw std::runtime_error(path + ": cannot write: " + OIIO::geterror());
-    if (!output->open(path, spec)) throw std::runtime_error(path + ": cannot open for writing: " + output->geterror());
+    if (!output->open(path, spec))
+        throw std::runtime_error(path + ": cannot open for writing: " + output->geterror());
     if (!output->write_image(type, pixels.data()) || !output->close())
         throw std::runtime_error(path + ": cannot write: " + output->geterror());
 }
 
 // The file format's own attributes are no metadata of ours; they would pile up over read and write.
 bool isFormatAttribute(const std::string& name) {
-    static const std::array<const char*, 5> names{"compression", "capDate", "DateTime", "Software", "screenWindowCenter"};
-    return name.find(':') != std::string::npos || std::find(names.begin(), names.end(), name) != names.end();
+    static const std::array<const char*, 5> names{"compression", "capDate", "DateTime", "Software",
+                                                  "screenWindowCenter"};
+    return name.find(':') != std::string::npos ||
+           std::find(names.begin(), names.end(), name) != names.end();
 }
 
 // Decodes a file of integer pixels in place: grey becomes R, G, B; alpha stays linear.
 void decodeDisplayFile(Image& image) {
+    image.metadata[kDisplayReferredKey] = "sRGB";
     if (image.has("Y") && !image.has("R")) {
         for (const char* name : kRgb) image.channels[name] = image.channels["Y"];
         image.channels.erase("Y");
@@ -88,7 +93,8 @@ std::vector<float>& Image::plane(const std::string& channel) {
 const std::vector<float>& Image::plane(const std::string& channel) const {
     const auto entry = channels.find(channel);
     if (entry == channels.end())
-        throw std::runtime_error(fmt::format("missing channel {}; present: {}", channel, channelList(*this)));
+        throw std::runtime_error(
+            fmt::format("missing channel {}; present: {}", channel, channelList(*this)));
     return entry->second;
 }
 
@@ -121,7 +127,8 @@ void writeExr(const std::string& path, const Image& image, bool half) {
     checkWritable(path, image);
     if (half) checkFitsHalf(path, image);
     const std::size_t channelCount = image.channels.size();
-    OIIO::ImageSpec spec(image.width, image.height, int(channelCount), half ? OIIO::TypeHalf : OIIO::TypeFloat);
+    OIIO::ImageSpec spec(image.width, image.height, int(channelCount),
+                         half ? OIIO::TypeHalf : OIIO::TypeFloat);
     spec.channelnames.clear();
     std::vector<float> pixels(image.pixelCount() * channelCount);
     std::size_t c = 0;
@@ -133,7 +140,8 @@ void writeExr(const std::string& path, const Image& image, bool half) {
     spec.attribute("compression", "zip");
     for (const auto& [key, value] : image.metadata) {
         if (key.empty() || isFormatAttribute(key))
-            throw std::runtime_error(fmt::format("{}: metadata key \"{}\" belongs to the file format", path, key));
+            throw std::runtime_error(
+                fmt::format("{}: metadata key \"{}\" belongs to the file format", path, key));
         spec.attribute(key, value);
     }
     writeInterleaved(path, spec, OIIO::TypeFloat, pixels);
@@ -146,9 +154,9 @@ void writePng(const std::string& path, const Image& image) {
         const std::vector<float>& plane = image.plane(kRgb[c]);
         for (std::size_t i = 0; i < plane.size(); ++i) {
             if (!(plane[i] >= 0.0f && plane[i] <= 1.0f))  // written so that NaN fails, too
-                throw std::runtime_error(fmt::format("{}: expected display values in [0,1], got {} in {} at pixel ({}, {})",
-                                                     path, plane[i], kRgb[c], i % std::size_t(image.width),
-                                                     i / std::size_t(image.width)));
+                throw std::runtime_error(fmt::format(
+                    "{}: expected display values in [0,1], got {} in {} at pixel ({}, {})", path,
+                    plane[i], kRgb[c], i % std::size_t(image.width), i / std::size_t(image.width)));
             pixels[i * 3 + c] = std::uint8_t(std::lround(255.0f * srgbEncode(plane[i])));
         }
     }
@@ -180,13 +188,15 @@ Image composite(const Image& image) {
 
 Image toneMap(const Image& radiance, float exposure) {
     if (!(exposure > 0.0f) || !std::isfinite(exposure))
-        throw std::runtime_error(fmt::format("toneMap: expected a positive finite exposure, got {}", exposure));
+        throw std::runtime_error(
+            fmt::format("toneMap: expected a positive finite exposure, got {}", exposure));
     Image result(radiance.width, radiance.height);
     for (const char* name : kRgb) {
         const std::vector<float>& from = radiance.plane(name);
         std::vector<float>& to = result.plane(name);
         for (std::size_t i = 0; i < to.size(); ++i) {
-            // A display can't emit less than nothing: filters that undershoot show as black. NaN stays NaN.
+            // A display can't emit less than nothing: filters that undershoot show as black. NaN stays
+            // NaN.
             const float exposed = from[i] < 0.0f ? 0.0f : exposure * from[i];
             to[i] = std::isinf(exposed) ? 1.0f : exposed / (1.0f + exposed);
         }
@@ -205,7 +215,8 @@ float autoExposure(const Image& radiance) {
         const double luminance = 0.2126 * double(r[i]) + 0.7152 * double(g[i]) + 0.0722 * double(b[i]);
         if (!std::isfinite(luminance))
             throw std::runtime_error(fmt::format("autoExposure: pixel ({}, {}) is not finite",
-                                                 i % std::size_t(radiance.width), i / std::size_t(radiance.width)));
+                                                 i % std::size_t(radiance.width),
+                                                 i / std::size_t(radiance.width)));
         if (luminance <= 0.0) continue;
         lit.push_back(luminance);
         sum += luminance;

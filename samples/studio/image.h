@@ -25,8 +25,12 @@ struct Image {
     const std::vector<float>& plane(const std::string& channel) const;
 };
 
+// Metadata key that readImage sets on files of integer pixels.
+constexpr const char* kDisplayReferredKey = "displayReferred";
+
 // Errors: std::runtime_error naming the path and the library's reason. Files of integer pixels (PNG) are
-// taken as sRGB-encoded and come out linear in R, G, B; string attributes become metadata.
+// taken as sRGB-encoded and come out linear in R, G, B, marked with kDisplayReferredKey; string
+// attributes become metadata.
 Image readImage(const std::string& path);
 // `half`: 16-bit float channels (references shipped in the tree); throws on a value beyond 65504.
 void writeExr(const std::string& path, const Image& image, bool half = false);

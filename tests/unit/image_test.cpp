@@ -22,7 +22,8 @@ class ScratchFile {
 public:
     explicit ScratchFile(const std::string& name)
         : path_((std::filesystem::temp_directory_path() /
-                 ("lightwell_" + std::to_string(reinterpret_cast<std::uintptr_t>(this)) + "_" + name)).string()) {}
+                 ("lightwell_" + std::to_string(reinterpret_cast<std::uintptr_t>(this)) + "_" + name))
+                    .string()) {}
     ~ScratchFile() { std::filesystem::remove(path_); }
     ScratchFile(const ScratchFile&) = delete;
     ScratchFile& operator=(const ScratchFile&) = delete;
@@ -36,8 +37,8 @@ private:
 Image layeredImage() {
     Image image(37, 11);
     int k = 0;
-    for (const char* name : {"R", "G", "B", "direct.R", "direct.G", "direct.B", "albedo.G", "normal.X", "validity",
-                             "a.bounce1.R", "b.bounce1+bounce2.B"}) {
+    for (const char* name : {"R", "G", "B", "direct.R", "direct.G", "direct.B", "albedo.G", "normal.X",
+                             "validity", "a.bounce1.R", "b.bounce1+bounce2.B"}) {
         std::vector<float>& plane = image.plane(name);
         for (std::size_t i = 0; i < plane.size(); ++i)
             plane[i] = std::ldexp(std::sin(float(++k)), int(i % 24) - 10);
@@ -60,7 +61,8 @@ TEST_CASE("full-float EXR keeps every layer bit for bit, and the metadata") {
     Image image = layeredImage();
     image.plane("R")[3] = kInfinity;
     image.plane("R")[4] = 3e38f;
-    image.metadata = {{"spp", "256"}, {"layer", "bounce1"}, {"noise.bounce1", "1.25e-05"}, {"camera", "main; 2"}};
+    image.metadata = {
+        {"spp", "256"}, {"layer", "bounce1"}, {"noise.bounce1", "1.25e-05"}, {"camera", "main; 2"}};
     writeExr(file.path(), image);
     const Image back = studio::readImage(file.path());
     REQUIRE(back.width == 37);
@@ -74,7 +76,8 @@ TEST_CASE("full-float EXR keeps every layer bit for bit, and the metadata") {
 }
 
 TEST_CASE("half-float EXR keeps values to half precision") {
-    // 11 significant bits: half a unit in the last place of normal numbers; below 2^-14 the spacing is 2^-24.
+    // 11 significant bits: half a unit in the last place of normal numbers; below 2^-14 the spacing is
+    // 2^-24.
     constexpr float kRelative = 1.0f / 2048.0f, kAbsolute = 0x1p-25f;
     const ScratchFile file("half.exr");
     const Image image = layeredImage();
@@ -134,7 +137,8 @@ TEST_CASE("sRGB transfer function: known values and inverse") {
     CHECK(studio::srgbEncode(1.0f) == Approx(1.0f));
     CHECK(studio::srgbEncode(0.214041f) == Approx(0.5f).epsilon(1e-5));  // IEC 61966-2-1, by calculator
     for (int i = 0; i <= 100; ++i)
-        CHECK(studio::srgbDecode(studio::srgbEncode(float(i) / 100.0f)) == Approx(float(i) / 100.0f).margin(1e-6));
+        CHECK(studio::srgbDecode(studio::srgbEncode(float(i) / 100.0f)) ==
+              Approx(float(i) / 100.0f).margin(1e-6));
 }
 
 TEST_CASE("file errors name the path and the reason") {
@@ -190,7 +194,8 @@ TEST_CASE("tone mapping: Reinhard's curve and its ends") {
 
 TEST_CASE("automatic exposure brings the log-average luminance to 0.18") {
     CHECK(autoExposure(constantImage(4, 4, 0.36f, 0.36f, 0.36f)) == Approx(0.5f));
-    Image two = constantImage(3, 1, 0.0f, 0.0f, 0.0f);  // luminances 0.1 and 10: geometric mean 1; black ignored
+    Image two =
+        constantImage(3, 1, 0.0f, 0.0f, 0.0f);  // luminances 0.1 and 10: geometric mean 1; black ignored
     for (const char* name : {"R", "G", "B"}) two.plane(name) = {0.1f, 0.0f, 10.0f};
     CHECK(autoExposure(two) == Approx(0.18f));
     CHECK(autoExposure(constantImage(2, 2, 0.0f, 0.0f, 0.0f)) == 1.0f);
