@@ -1,13 +1,13 @@
 // The only header that knows which language compiles it: OpenCL C 1.2 or C++17. Headers shared by
 // kernels and host include this one, use scalars and 4-vectors only, and check every struct's size on
-// both sides.
+// both sides. Includes in angle brackets are the host's; only quoted ones are flattened into kernels.
 #ifndef LW_PORTABLE_H
 #define LW_PORTABLE_H
 
 #ifdef __cplusplus
 #include <cmath>
+#include <compute/cl.h>
 #include <cstdint>
-#include "compute/cl.h"
 typedef cl_int lw_int;
 typedef cl_uint lw_uint;
 typedef cl_float lw_float;
@@ -21,9 +21,7 @@ typedef uint lw_uint;
 typedef float lw_float;
 typedef int4 lw_int4;
 typedef float4 lw_float4;
-#ifndef LW_FN
 #define LW_FN static inline __attribute__((always_inline))
-#endif
 #define LW_SIZE_CHECK(T, bytes) typedef char lw_size_check_##T[sizeof(T) == (bytes) ? 1 : -1]
 #endif
 

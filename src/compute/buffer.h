@@ -50,7 +50,9 @@ struct Planes {
 };
 
 // Row length in floats of our own planar images.
-inline std::uint32_t paddedWidth(std::uint32_t width) { return (width + 15u) & ~15u; }
+inline std::uint32_t paddedWidth(std::uint32_t width) {
+    return (width + 15u) & ~15u;
+}
 
 // A planar image of our own.
 class PlanarImage {

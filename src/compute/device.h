@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "compute/cl.h"
 #include "compute/program.h"
@@ -32,6 +33,9 @@ public:
     std::uint32_t computeUnits() const { return computeUnits_; }
     ProgramCache& programs() { return *programs_; }
 
+    // Platform, device and driver with their versions: what a program binary depends on.
+    const std::string& identity() const { return identity_; }
+
     void log(LWLogLevel level, const std::string& message) const;
     bool insideLog() const;  // this thread is inside the device's log callback
     void describe(LWDeviceInfo& info) const;
@@ -40,12 +44,16 @@ public:
     void countAllocation(std::int64_t bytes) { allocatedBytes_ += std::uint64_t(bytes); }
     std::uint64_t allocatedBytes() const { return allocatedBytes_; }
     void countSpecialisation() { ++kernelsSpecialised_; }
+    void watch(cl_event event);                    // finish() reports its failure
+    void warnOfCache(const std::string& problem);  // once per device
 
 private:
     void open(const LWDeviceDesc& desc);
     void adopt(const LWDeviceDesc& desc);
     void readLimits();
     std::uint32_t chooseWidth(const LWDeviceDesc& desc);
+    void release();
+    void takeFailures(bool all);
 
     cl_platform_id platform_ = nullptr;
     cl_device_id id_ = nullptr;
@@ -57,10 +65,20 @@ private:
     std::uint64_t maxAllocation_ = 0, globalMemory_ = 0, allocatedBytes_ = 0, kernelsSpecialised_ = 0;
     LWLogCallback log_ = nullptr;
     void* logUser_ = nullptr;
+    bool warnedOfCache_ = false;
+    std::string identity_;
+    std::vector<cl_event> watched_;  // not yet known to have completed
+    std::string failure_;            // the first failed command since the last finish()
     std::unique_ptr<ProgramCache> programs_;
 };
 
 std::uint32_t countDevices();
-void describeDevice(std::uint32_t index, LWDeviceInfo& info);
+void describeDevice(std::uint32_t index, LWDeviceInfo& info);  // throws INVALID_ARGUMENT past the last
+
+// The widths that kernels can be built for: 1, 4, 8, 16.
+bool isWidth(std::uint32_t width);
+
+// Times one bounded gather at widths 1, 8 and 16 on a queue of its own and returns the fastest.
+std::uint32_t probeWidth(Device& device);
 
 }  // namespace lightwell

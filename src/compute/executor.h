@@ -31,7 +31,10 @@ public:
     double totalMilliseconds() const;
 
 private:
-    struct Entry { const char* pass; cl_event event; };
+    struct Entry {
+        const char* pass;
+        cl_event event;
+    };
     std::vector<Entry> entries_;
 };
 
@@ -50,14 +53,17 @@ public:
     void run(const char* pass, Kernel& kernel, Range global, Range local, const Args&... args) {
         cl_uint index = 0;
         (setArg(kernel, index, args), ...);
-        enqueue(pass, kernel, global, local);
+        enqueue(pass, kernel, global, local, index);
     }
 
     // Non-blocking transfers, timed as passes too. Host memory must stay valid until they are done.
-    void write(const char* pass, const Buffer& to, std::size_t byteOffset, std::size_t bytes, const void* from);
+    void write(const char* pass, const Buffer& to, std::size_t byteOffset, std::size_t bytes,
+               const void* from);
     void read(const char* pass, cl_mem from, std::size_t byteOffset, std::size_t bytes, void* to);
-    void fill(const char* pass, const Buffer& buffer, std::uint32_t pattern, std::size_t byteOffset, std::size_t bytes);
-    void copy(const char* pass, cl_mem from, cl_mem to, std::size_t fromOffset, std::size_t toOffset, std::size_t bytes);
+    void fill(const char* pass, const Buffer& buffer, std::uint32_t pattern, std::size_t byteOffset,
+              std::size_t bytes);
+    void copy(const char* pass, cl_mem from, cl_mem to, std::size_t fromOffset, std::size_t toOffset,
+              std::size_t bytes);
     // Makes what kernels wrote to a Buffer::overHost visible to the host (map and unmap), non-blocking.
     void publish(const char* pass, const Buffer& buffer);
 
@@ -68,15 +74,20 @@ public:
 
 private:
     void setRaw(Kernel& kernel, cl_uint& index, std::size_t bytes, const void* value);
-    void setArg(Kernel& kernel, cl_uint& index, cl_mem memory) { setRaw(kernel, index, sizeof memory, &memory); }
-    void setArg(Kernel& kernel, cl_uint& index, const Buffer& buffer) { setArg(kernel, index, buffer.get()); }
+    void setArg(Kernel& kernel, cl_uint& index, cl_mem memory) {
+        setRaw(kernel, index, sizeof memory, &memory);
+    }
+    void setArg(Kernel& kernel, cl_uint& index, const Buffer& buffer) {
+        setArg(kernel, index, buffer.get());
+    }
     void setArg(Kernel& kernel, cl_uint& index, const Planes& planes);
-    template <class T, class = std::enable_if_t<std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>>>
+    template <class T,
+              class = std::enable_if_t<std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>>>
     void setArg(Kernel& kernel, cl_uint& index, const T& value) {
         setRaw(kernel, index, sizeof value, &value);
     }
-    void enqueue(const char* pass, Kernel& kernel, Range global, Range local);
-    void done(const char* pass, cl_event event);  // profile; a barrier on an out-of-order queue
+    void enqueue(const char* pass, Kernel& kernel, Range global, Range local, cl_uint argumentCount);
+    void done(const char* pass, cl_event event);  // takes the event; a barrier on an out-of-order queue
 
     Device& device_;
     Profile& profile_;

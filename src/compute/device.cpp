@@ -1,0 +1,234 @@
+// Opens a device or adopts the host's, and keeps its limits, width, log and pending errors.
+#include "compute/device.h"
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <utility>
+
+#include "compute/device_select.h"
+#include "compute/error.h"
+
+namespace lightwell {
+namespace {
+
+// Watched events are looked through for completed ones when there are so many.
+constexpr std::size_t kWatchLimit = 1024;
+
+thread_local const Device* insideLogOf = nullptr;
+
+template <class T>
+T queueValue(cl_command_queue queue, cl_command_queue_info what) {
+    T value{};
+    const cl_int status = clGetCommandQueueInfo(queue, what, sizeof value, &value, nullptr);
+    if (status == CL_INVALID_COMMAND_QUEUE)
+        fail(LW_ERROR_INVALID_ARGUMENT, "clQueue: expected a valid cl_command_queue");
+    checkCl(status, "clGetCommandQueueInfo");
+    return value;
+}
+
+// A sub-device with `units` of the device's compute units.
+cl_device_id subDeviceOf(cl_device_id device, std::uint32_t units) {
+    const cl_device_partition_property byCounts[] = {CL_DEVICE_PARTITION_BY_COUNTS,
+                                                     cl_device_partition_property(units),
+                                                     CL_DEVICE_PARTITION_BY_COUNTS_LIST_END, 0};
+    const cl_device_partition_property equally[] = {CL_DEVICE_PARTITION_EQUALLY,
+                                                    cl_device_partition_property(units), 0};
+    cl_int status = CL_SUCCESS;
+    for (const cl_device_partition_property* properties : {byCounts, equally}) {
+        cl_uint count = 0;
+        status = clCreateSubDevices(device, properties, 0, nullptr, &count);
+        if (status != CL_SUCCESS || count == 0) continue;
+        std::vector<cl_device_id> parts(count);
+        status = clCreateSubDevices(device, properties, count, parts.data(), nullptr);
+        if (status != CL_SUCCESS) continue;
+        for (cl_uint i = 1; i < count; ++i) clReleaseDevice(parts[i]);
+        return parts[0];
+    }
+    fail(LW_ERROR_UNSUPPORTED, "maxComputeUnits: this device cannot be split into ", units, " of its ",
+         deviceValue<cl_uint>(device, CL_DEVICE_MAX_COMPUTE_UNITS),
+         " compute units (clCreateSubDevices: ", clErrorName(status), ")");
+}
+
+}  // namespace
+
+bool isWidth(std::uint32_t width) {
+    return width == 1 || width == 4 || width == 8 || width == 16;
+}
+
+Device::Device(const LWDeviceDesc& desc) : log_(desc.log), logUser_(desc.logUser) {
+    if (desc.width && !isWidth(desc.width))
+        fail(LW_ERROR_INVALID_ARGUMENT, "width: expected 1, 4, 8, 16 or 0 for the default, got ",
+             desc.width);
+    try {
+        if (desc.clContext || desc.clQueue)
+            adopt(desc);
+        else
+            open(desc);
+        readLimits();
+        programs_ = std::make_unique<ProgramCache>(
+            *this, desc.cacheDirectory ? desc.cacheDirectory : defaultCacheDirectory());
+        width_ = chooseWidth(desc);
+    } catch (...) {
+        release();
+        throw;
+    }
+}
+
+Device::~Device() {
+    release();
+}
+
+void Device::release() {
+    for (cl_event event : watched_) clReleaseEvent(event);
+    watched_.clear();
+    programs_.reset();
+    if (queue_) clReleaseCommandQueue(queue_);
+    if (context_) clReleaseContext(context_);
+    if (subDevice_) clReleaseDevice(subDevice_);
+    queue_ = nullptr;
+    context_ = nullptr;
+    subDevice_ = nullptr;
+}
+
+void Device::open(const LWDeviceDesc& desc) {
+    const FoundDevice found = selectDevice(desc.selector);
+    id_ = found.id;
+    platform_ = found.platform;
+    if (desc.maxComputeUnits &&
+        desc.maxComputeUnits < deviceValue<cl_uint>(id_, CL_DEVICE_MAX_COMPUTE_UNITS))
+        id_ = subDevice_ = subDeviceOf(id_, desc.maxComputeUnits);
+    cl_int status = CL_SUCCESS;
+    const cl_context_properties properties[] = {CL_CONTEXT_PLATFORM, cl_context_properties(platform_),
+                                                0};
+    context_ = clCreateContext(properties, 1, &id_, nullptr, nullptr, &status);
+    checkCl(status, "clCreateContext");
+    const bool canProfile = (deviceValue<cl_command_queue_properties>(id_, CL_DEVICE_QUEUE_PROPERTIES) &
+                             CL_QUEUE_PROFILING_ENABLE) != 0;
+    profiling_ = canProfile && !desc.noProfiling;
+    queue_ = clCreateCommandQueue(context_, id_, profiling_ ? CL_QUEUE_PROFILING_ENABLE : 0, &status);
+    checkCl(status, "clCreateCommandQueue");
+}
+
+void Device::adopt(const LWDeviceDesc& desc) {
+    if (!desc.clContext || !desc.clQueue)
+        fail(LW_ERROR_INVALID_ARGUMENT, desc.clContext ? "clQueue" : "clContext",
+             ": expected clContext and clQueue together, got null");
+    if (desc.maxComputeUnits)
+        fail(LW_ERROR_INVALID_ARGUMENT,
+             "maxComputeUnits: expected 0 with a queue of the host's (create that queue on a "
+             "sub-device), got ",
+             desc.maxComputeUnits);
+    cl_command_queue queue = static_cast<cl_command_queue>(desc.clQueue);
+    cl_context context = static_cast<cl_context>(desc.clContext);
+    if (queueValue<cl_context>(queue, CL_QUEUE_CONTEXT) != context)
+        fail(LW_ERROR_INVALID_ARGUMENT,
+             "clQueue: expected a queue of clContext, got one of another context");
+    id_ = queueValue<cl_device_id>(queue, CL_QUEUE_DEVICE);
+    platform_ = deviceValue<cl_platform_id>(id_, CL_DEVICE_PLATFORM);
+    const auto properties = queueValue<cl_command_queue_properties>(queue, CL_QUEUE_PROPERTIES);
+    profiling_ = (properties & CL_QUEUE_PROFILING_ENABLE) && !desc.noProfiling;
+    outOfOrder_ = (properties & CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE) != 0;
+    checkCl(clRetainContext(context), "clRetainContext");
+    context_ = context;
+    checkCl(clRetainCommandQueue(queue), "clRetainCommandQueue");
+    queue_ = queue;
+}
+
+void Device::readLimits() {
+    computeUnits_ = deviceValue<cl_uint>(id_, CL_DEVICE_MAX_COMPUTE_UNITS);
+    unifiedMemory_ = deviceValue<cl_bool>(id_, CL_DEVICE_HOST_UNIFIED_MEMORY) != 0;
+    maxAllocation_ = deviceValue<cl_ulong>(id_, CL_DEVICE_MAX_MEM_ALLOC_SIZE);
+    globalMemory_ = deviceValue<cl_ulong>(id_, CL_DEVICE_GLOBAL_MEM_SIZE);
+    for (const std::string& part :
+         {platformString(platform_, CL_PLATFORM_NAME), platformString(platform_, CL_PLATFORM_VERSION),
+          deviceString(id_, CL_DEVICE_NAME), deviceString(id_, CL_DEVICE_VERSION),
+          deviceString(id_, CL_DRIVER_VERSION)})
+        identity_ += part + '\n';
+}
+
+std::uint32_t Device::chooseWidth(const LWDeviceDesc& desc) {
+    if (desc.width) return desc.width;
+    if (const char* text = std::getenv("LIGHTWELL_WIDTH"); text && *text) {
+        for (const char* choice : {"1", "4", "8", "16"})
+            if (std::string(text) == choice) return std::uint32_t(std::atoi(choice));
+        fail(LW_ERROR_INVALID_ARGUMENT, "LIGHTWELL_WIDTH: expected 1, 4, 8 or 16, got \"", text, "\"");
+    }
+    // The probe's verdict holds for this device, this driver and this probe.
+    const BinaryStore& store = programs_->store();
+    const StoreKey key =
+        hashKey({"width", programSource("probe/width"), identity_, std::to_string(computeUnits_)});
+    BinaryStore::Bytes bytes;
+    if (store.read(key, bytes) == BinaryStore::Found::kYes && bytes.size() == 1 && isWidth(bytes[0]))
+        return bytes[0];
+    const std::uint32_t width = probeWidth(*this);
+    if (const auto problem = store.write(key, {static_cast<unsigned char>(width)}))
+        warnOfCache(*problem);
+    return width;
+}
+
+void Device::log(LWLogLevel level, const std::string& message) const {
+    if (!log_) {
+        if (level != LW_LOG_INFO) std::fprintf(stderr, "lightwell: %s\n", message.c_str());
+        return;
+    }
+    const Device* outer = std::exchange(insideLogOf, this);
+    log_(logUser_, level, message.c_str());
+    insideLogOf = outer;
+}
+
+bool Device::insideLog() const {
+    return insideLogOf == this;
+}
+
+void Device::warnOfCache(const std::string& problem) {
+    if (std::exchange(warnedOfCache_, true)) return;
+    log(LW_LOG_WARNING, "cache: " + problem +
+                            "; kernels will be compiled again next time (set LIGHTWELL_CACHE_DIR to a "
+                            "writable directory)");
+}
+
+void Device::describe(LWDeviceInfo& info) const {
+    describeHardware(id_, info);
+    info.width = width_;
+    info.hasProfiling = profiling_;
+    info.allocatedBytes = allocatedBytes_;
+    info.programsBuilt = programs_->built();
+    info.programsLoaded = programs_->loaded();
+    info.kernelsSpecialised = kernelsSpecialised_;
+}
+
+void Device::watch(cl_event event) {
+    if (watched_.size() >= kWatchLimit) takeFailures(false);
+    if (clRetainEvent(event) == CL_SUCCESS) watched_.push_back(event);
+}
+
+// Drops events that have ended, noting the first failure; `all`: drops the others too.
+void Device::takeFailures(bool all) {
+    std::vector<cl_event> pending;
+    for (cl_event event : watched_) {
+        cl_int status = CL_COMPLETE;
+        const cl_int query =
+            clGetEventInfo(event, CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof status, &status, nullptr);
+        if (query == CL_SUCCESS && status > CL_COMPLETE && !all) {
+            pending.push_back(event);
+            continue;
+        }
+        if (failure_.empty() && (query != CL_SUCCESS || status < 0))
+            failure_ = clErrorName(query != CL_SUCCESS ? query : status);
+        clReleaseEvent(event);
+    }
+    watched_ = std::move(pending);
+}
+
+void Device::finish() {
+    const cl_int status = clFinish(queue_);
+    takeFailures(true);
+    if (status != CL_SUCCESS && failure_.empty()) failure_ = clErrorName(status);
+    if (!failure_.empty())
+        fail(LW_ERROR_DEVICE,
+             "a command failed on the device: ", std::exchange(failure_, std::string{}));
+    programs_->saveBinaries();
+}
+
+}  // namespace lightwell

@@ -1,0 +1,79 @@
+// OpenCL status codes by name, and as exceptions.
+#include "compute/error.h"
+
+#include "compute/cl.h"
+
+namespace lightwell {
+
+const char* clErrorName(int code) {
+#define LW_CASE(name) \
+    case name:        \
+        return #name
+    switch (code) {
+        LW_CASE(CL_SUCCESS);
+        LW_CASE(CL_DEVICE_NOT_FOUND);
+        LW_CASE(CL_DEVICE_NOT_AVAILABLE);
+        LW_CASE(CL_COMPILER_NOT_AVAILABLE);
+        LW_CASE(CL_MEM_OBJECT_ALLOCATION_FAILURE);
+        LW_CASE(CL_OUT_OF_RESOURCES);
+        LW_CASE(CL_OUT_OF_HOST_MEMORY);
+        LW_CASE(CL_PROFILING_INFO_NOT_AVAILABLE);
+        LW_CASE(CL_MEM_COPY_OVERLAP);
+        LW_CASE(CL_BUILD_PROGRAM_FAILURE);
+        LW_CASE(CL_MAP_FAILURE);
+        LW_CASE(CL_MISALIGNED_SUB_BUFFER_OFFSET);
+        LW_CASE(CL_EXEC_STATUS_ERROR_FOR_EVENTS_IN_WAIT_LIST);
+        LW_CASE(CL_COMPILE_PROGRAM_FAILURE);
+        LW_CASE(CL_LINKER_NOT_AVAILABLE);
+        LW_CASE(CL_LINK_PROGRAM_FAILURE);
+        LW_CASE(CL_DEVICE_PARTITION_FAILED);
+        LW_CASE(CL_INVALID_VALUE);
+        LW_CASE(CL_INVALID_DEVICE_TYPE);
+        LW_CASE(CL_INVALID_PLATFORM);
+        LW_CASE(CL_INVALID_DEVICE);
+        LW_CASE(CL_INVALID_CONTEXT);
+        LW_CASE(CL_INVALID_QUEUE_PROPERTIES);
+        LW_CASE(CL_INVALID_COMMAND_QUEUE);
+        LW_CASE(CL_INVALID_HOST_PTR);
+        LW_CASE(CL_INVALID_MEM_OBJECT);
+        LW_CASE(CL_INVALID_BINARY);
+        LW_CASE(CL_INVALID_BUILD_OPTIONS);
+        LW_CASE(CL_INVALID_PROGRAM);
+        LW_CASE(CL_INVALID_PROGRAM_EXECUTABLE);
+        LW_CASE(CL_INVALID_KERNEL_NAME);
+        LW_CASE(CL_INVALID_KERNEL_DEFINITION);
+        LW_CASE(CL_INVALID_KERNEL);
+        LW_CASE(CL_INVALID_ARG_INDEX);
+        LW_CASE(CL_INVALID_ARG_VALUE);
+        LW_CASE(CL_INVALID_ARG_SIZE);
+        LW_CASE(CL_INVALID_KERNEL_ARGS);
+        LW_CASE(CL_INVALID_WORK_DIMENSION);
+        LW_CASE(CL_INVALID_WORK_GROUP_SIZE);
+        LW_CASE(CL_INVALID_WORK_ITEM_SIZE);
+        LW_CASE(CL_INVALID_GLOBAL_OFFSET);
+        LW_CASE(CL_INVALID_EVENT_WAIT_LIST);
+        LW_CASE(CL_INVALID_EVENT);
+        LW_CASE(CL_INVALID_OPERATION);
+        LW_CASE(CL_INVALID_BUFFER_SIZE);
+        LW_CASE(CL_INVALID_GLOBAL_WORK_SIZE);
+        LW_CASE(CL_INVALID_PROPERTY);
+        LW_CASE(CL_INVALID_COMPILER_OPTIONS);
+        LW_CASE(CL_INVALID_LINKER_OPTIONS);
+        LW_CASE(CL_INVALID_DEVICE_PARTITION_COUNT);
+        case -1001:
+            return "CL_PLATFORM_NOT_FOUND_KHR";
+        default:
+            return "unknown OpenCL error";
+    }
+#undef LW_CASE
+}
+
+void checkCl(int code, const char* call) {
+    if (code == CL_SUCCESS) return;
+    const bool memory = code == CL_MEM_OBJECT_ALLOCATION_FAILURE || code == CL_OUT_OF_HOST_MEMORY ||
+                        code == CL_OUT_OF_RESOURCES;
+    fail(memory ? LW_ERROR_OUT_OF_MEMORY : LW_ERROR_DEVICE, call, ": ", clErrorName(code), " (", code,
+         ")");
+}
+
+}  // namespace lightwell

@@ -1,0 +1,167 @@
+// Enqueues commands in order and hands their events to the profile and to the device's error check.
+#include "compute/executor.h"
+
+#include <limits>
+
+#include "compute/device.h"
+#include "compute/error.h"
+
+namespace lightwell {
+namespace {
+
+int asInt(std::int64_t value, const char* what) {
+    if (value > std::numeric_limits<int>::max() || value < std::numeric_limits<int>::min())
+        fail(LW_ERROR_UNSUPPORTED, "an image's ", what, " of ", value,
+             " floats exceeds the 32-bit indices of the kernels");
+    return int(value);
+}
+
+void checkRange(const char* pass, const Buffer& buffer, std::size_t byteOffset, std::size_t bytes) {
+    if (byteOffset > buffer.bytes() || bytes > buffer.bytes() - byteOffset)
+        fail(LW_ERROR_INTERNAL, pass, ": bytes ", byteOffset, " to ", byteOffset + bytes,
+             " of a buffer of ", buffer.bytes());
+}
+
+}  // namespace
+
+void Executor::setRaw(Kernel& kernel, cl_uint& index, std::size_t bytes, const void* value) {
+    const cl_int status = clSetKernelArg(kernel.get(), index, bytes, value);
+    if (status != CL_SUCCESS)
+        fail(LW_ERROR_INTERNAL, "kernel ", kernel.name(), ": argument ", index, " of ", bytes,
+             " bytes is refused: ", clErrorName(status));
+    ++index;
+}
+
+void Executor::setArg(Kernel& kernel, cl_uint& index, const Planes& planes) {
+    const cl_int4 layout = {{asInt(planes.offset, "offset"), asInt(planes.rowStride, "row stride"),
+                             asInt(planes.planeStride, "plane stride"), 0}};
+    setArg(kernel, index, planes.memory);
+    setRaw(kernel, index, sizeof layout, &layout);
+}
+
+void Executor::enqueue(const char* pass, Kernel& kernel, Range global, Range local,
+                       cl_uint argumentCount) {
+    if (argumentCount != kernel.argumentCount())
+        fail(LW_ERROR_INTERNAL, pass, ": kernel ", kernel.name(), " takes ", kernel.argumentCount(),
+             " arguments, got ", argumentCount);
+    for (int axis = 0; axis < 2; ++axis) {
+        if (global[axis] == 0 || local[axis] == 0)
+            fail(LW_ERROR_INTERNAL, pass, ": kernel ", kernel.name(), " over ", global[0], " x ",
+                 global[1], " work-items in groups of ", local[0], " x ", local[1]);
+        global[axis] = (global[axis] + local[axis] - 1) / local[axis] * local[axis];
+    }
+    if (kernel.noteLaunch(global, local)) {
+        std::size_t limit = 0;
+        checkCl(clGetKernelWorkGroupInfo(kernel.get(), device_.id(), CL_KERNEL_WORK_GROUP_SIZE,
+                                         sizeof limit, &limit, nullptr),
+                "clGetKernelWorkGroupInfo");
+        if (local[0] * local[1] > limit)
+            fail(LW_ERROR_UNSUPPORTED, pass, ": kernel ", kernel.name(), " needs groups of ", local[0],
+                 " x ", local[1], " work-items, this device allows ", limit);
+        device_.countSpecialisation();
+    }
+    cl_event event = nullptr;
+    checkCl(clEnqueueNDRangeKernel(device_.queue(), kernel.get(), 2, nullptr, global.data(),
+                                   local.data(), 0, nullptr, &event),
+            kernel.name().c_str());
+    done(pass, event);
+}
+
+void Executor::done(const char* pass, cl_event event) {
+    device_.watch(event);
+    if (device_.outOfOrder())
+        checkCl(clEnqueueBarrierWithWaitList(device_.queue(), 0, nullptr, nullptr),
+                "clEnqueueBarrierWithWaitList");
+    if (!device_.profiling()) {
+        clReleaseEvent(event);
+        event = nullptr;
+    }
+    profile_.add(pass, event);
+}
+
+void Executor::write(const char* pass, const Buffer& to, std::size_t byteOffset, std::size_t bytes,
+                     const void* from) {
+    checkRange(pass, to, byteOffset, bytes);
+    cl_event event = nullptr;
+    checkCl(clEnqueueWriteBuffer(device_.queue(), to.get(), CL_FALSE, byteOffset, bytes, from, 0,
+                                 nullptr, &event),
+            "clEnqueueWriteBuffer");
+    copiedBytes_ += bytes;
+    done(pass, event);
+}
+
+void Executor::read(const char* pass, cl_mem from, std::size_t byteOffset, std::size_t bytes, void* to) {
+    cl_event event = nullptr;
+    checkCl(
+        clEnqueueReadBuffer(device_.queue(), from, CL_FALSE, byteOffset, bytes, to, 0, nullptr, &event),
+        "clEnqueueReadBuffer");
+    copiedBytes_ += bytes;
+    done(pass, event);
+}
+
+void Executor::fill(const char* pass, const Buffer& buffer, std::uint32_t pattern,
+                    std::size_t byteOffset, std::size_t bytes) {
+    checkRange(pass, buffer, byteOffset, bytes);
+    cl_event event = nullptr;
+    checkCl(clEnqueueFillBuffer(device_.queue(), buffer.get(), &pattern, sizeof pattern, byteOffset,
+                                bytes, 0, nullptr, &event),
+            "clEnqueueFillBuffer");
+    done(pass, event);
+}
+
+void Executor::copy(const char* pass, cl_mem from, cl_mem to, std::size_t fromOffset,
+                    std::size_t toOffset, std::size_t bytes) {
+    cl_event event = nullptr;
+    checkCl(
+        clEnqueueCopyBuffer(device_.queue(), from, to, fromOffset, toOffset, bytes, 0, nullptr, &event),
+        "clEnqueueCopyBuffer");
+    done(pass, event);
+}
+
+void Executor::publish(const char* pass, const Buffer& buffer) {
+    cl_int status = CL_SUCCESS;
+    cl_event event = nullptr;
+    void* host = clEnqueueMapBuffer(device_.queue(), buffer.get(), CL_FALSE, CL_MAP_READ, 0,
+                                    buffer.bytes(), 0, nullptr, &event, &status);
+    checkCl(status, "clEnqueueMapBuffer");
+    done(pass, event);
+    event = nullptr;
+    checkCl(clEnqueueUnmapMemObject(device_.queue(), buffer.get(), host, 0, nullptr, &event),
+            "clEnqueueUnmapMemObject");
+    done(pass, event);
+}
+
+void Executor::waitFor(const LWSync* sync) {
+    if (!sync || sync->waitEventCount == 0) return;
+    std::vector<cl_event> events;
+    for (std::uint32_t i = 0; i < sync->waitEventCount; ++i) {
+        if (!sync->waitEvents || !sync->waitEvents[i])
+            fail(LW_ERROR_INVALID_ARGUMENT, "sync.waitEvents[", i, "]: expected a cl_event, got null");
+        events.push_back(static_cast<cl_event>(sync->waitEvents[i]));
+    }
+    cl_event event = nullptr;
+    const cl_int status =
+        clEnqueueBarrierWithWaitList(device_.queue(), sync->waitEventCount, events.data(), &event);
+    if (status == CL_INVALID_EVENT_WAIT_LIST || status == CL_INVALID_CONTEXT ||
+        status == CL_INVALID_EVENT)
+        fail(LW_ERROR_INVALID_ARGUMENT,
+             "sync.waitEvents: expected events of the device's context: ", clErrorName(status));
+    checkCl(status, "clEnqueueBarrierWithWaitList");
+    device_.watch(event);
+    clReleaseEvent(event);
+}
+
+void Executor::signal(const LWSync* sync) {
+    if (!sync || !sync->signalEvent) return;
+    cl_event event = nullptr;
+    checkCl(clEnqueueMarkerWithWaitList(device_.queue(), 0, nullptr, &event),
+            "clEnqueueMarkerWithWaitList");
+    *sync->signalEvent = event;
+    flush();  // the host may wait on it from another queue
+}
+
+void Executor::flush() {
+    checkCl(clFlush(device_.queue()), "clFlush");
+}
+
+}  // namespace lightwell

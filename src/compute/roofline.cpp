@@ -1,0 +1,100 @@
+// Measures multiply-add rate, streaming bandwidth and launch cost.
+#include "compute/roofline.h"
+
+#include <algorithm>
+
+#include "compute/probe_queue.h"
+
+namespace lightwell {
+namespace {
+
+constexpr std::size_t kGroup = 64;
+constexpr double kMultiplyAddSeconds = 0.5, kTriadSeconds = 0.6;  // spent on repetitions of each
+constexpr int kMostRuns = 30;
+constexpr int kLaunches = 500;
+constexpr double kChains = 12;  // LW_CHAINS of roofline.cl
+// A streamed array; three of them exceed the last-level caches of today's machines, shared ones apart.
+constexpr std::size_t kTriadBytes = std::size_t(96) << 20;
+
+// The shortest of repeated runs of `run`, which returns its seconds, within a time.
+template <class Run>
+double shortest(double budget, Run run) {
+    run();  // compiles at the first launch, touches the memory
+    const Stopwatch watch;
+    double best = run();
+    for (int i = 1; i < kMostRuns && watch.seconds() < budget; ++i) best = std::min(best, run());
+    return best;
+}
+
+double multiplyAddRate(Device& device, ProbeQueue& queue, const Buffer& out, std::size_t items) {
+    Kernel& kernel = device.programs().kernel("probe/roofline", "probe_multiply_add");
+    int steps = 256;
+    const auto run = [&] {
+        const Stopwatch watch;
+        queue.enqueue(kernel, items, kGroup, 1, cl_float(0.5f), cl_float(1.0f), cl_int(steps),
+                      out.get());
+        queue.finish();
+        return watch.seconds();
+    };
+    run();
+    while (run() < 5e-3 && steps < (1 << 20)) steps *= 2;
+    const double time = shortest(kMultiplyAddSeconds, run);
+    return 2.0 * kChains * device.width() * double(items) * steps / time;
+}
+
+double triadRate(Device& device, ProbeQueue& queue) {
+    const std::size_t most = std::size_t(std::min(device.maxAllocation(), device.globalMemory() / 8));
+    const std::size_t floats =
+        std::min(kTriadBytes, most) / sizeof(float) / (16 * kGroup) * (16 * kGroup);
+    const Buffer x(device, floats * sizeof(float), "roofline probe");
+    const Buffer y(device, floats * sizeof(float), "roofline probe");
+    const Buffer out(device, floats * sizeof(float), "roofline probe");
+    const cl_float16 one = {{1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1}};
+    for (const Buffer* buffer : {&x, &y})
+        checkCl(clEnqueueFillBuffer(queue.get(), buffer->get(), &one, sizeof one, 0, buffer->bytes(), 0,
+                                    nullptr, nullptr),
+                "clEnqueueFillBuffer");
+    Kernel& kernel = device.programs().kernel("probe/roofline", "probe_triad");
+    const double time = shortest(kTriadSeconds, [&] {
+        const Stopwatch watch;
+        queue.enqueue(kernel, floats / device.width(), kGroup, 1, x.get(), y.get(), cl_float(0.5f),
+                      out.get());
+        queue.finish();
+        return watch.seconds();
+    });
+    return 3.0 * double(floats * sizeof(float)) / time;
+}
+
+double launchSeconds(Device& device, ProbeQueue& queue, const Buffer& out) {
+    Kernel& kernel = device.programs().kernel("probe/roofline", "probe_launch");
+    const auto run = [&] {
+        const Stopwatch watch;
+        queue.enqueue(kernel, 1, 1, kLaunches, out.get());
+        queue.finish();
+        return watch.seconds();
+    };
+    return shortest(0.05, run) / kLaunches;
+}
+
+}  // namespace
+
+LWRoofline probeRoofline(Device& device) {
+    ProbeQueue queue(device);
+    // Four groups per compute unit on CPUs; GPUs want their many resident threads.
+    const std::size_t items =
+        kGroup * std::max<std::size_t>(device.width() == 1 ? 4096 : 64, 4 * device.computeUnits());
+    const Buffer out(device, items * device.width() * sizeof(float), "roofline probe");
+    const cl_float zero = 0.0f;
+    checkCl(clEnqueueFillBuffer(queue.get(), out.get(), &zero, sizeof zero, 0, out.bytes(), 0, nullptr,
+                                nullptr),
+            "clEnqueueFillBuffer");
+    LWRoofline roofline{};
+    roofline.structSize = sizeof roofline;
+    roofline.width = device.width();
+    roofline.multiplyAddGflops = multiplyAddRate(device, queue, out, items) * 1e-9;
+    roofline.bandwidthGBps = triadRate(device, queue) * 1e-9;
+    roofline.launchMicroseconds = launchSeconds(device, queue, out) * 1e6;
+    return roofline;
+}
+
+}  // namespace lightwell
