@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <set>
 #include <stdexcept>
 
 namespace studio {
@@ -62,12 +63,30 @@ void writeInterleaved(const std::string& path, const OIIO::ImageSpec& spec, OIIO
         throw std::runtime_error(path + ": cannot write: " + output->geterror());
 }
 
-// The file format's own attributes are no metadata of ours; they would pile up over read and write.
+// Names that EXR or OpenImageIO give a meaning or another type, so that a string of ours wouldn't come
+// back. On reading they are left out: they'd pile up over read and write.
 bool isFormatAttribute(const std::string& name) {
-    static const std::array<const char*, 5> names{"compression", "capDate", "DateTime", "Software",
-                                                  "screenWindowCenter"};
-    return name.find(':') != std::string::npos ||
-           std::find(names.begin(), names.end(), name) != names.end();
+    static const std::set<std::string> kNames = {"capDate",
+                                                 "channels",
+                                                 "chunkCount",
+                                                 "comments",
+                                                 "compression",
+                                                 "dataWindow",
+                                                 "DateTime",
+                                                 "description",
+                                                 "displayWindow",
+                                                 "lineOrder",
+                                                 "owner",
+                                                 "pixelAspectRatio",
+                                                 "screenWindowCenter",
+                                                 "screenWindowWidth",
+                                                 "Software",
+                                                 "tiles",
+                                                 "type",
+                                                 "worldToCamera",
+                                                 "worldToNDC",
+                                                 "xDensity"};
+    return name.find(':') != std::string::npos || kNames.count(name) != 0;
 }
 
 // Decodes a file of integer pixels in place: grey becomes R, G, B; alpha stays linear.
@@ -138,6 +157,7 @@ void writeExr(const std::string& path, const Image& image, bool half) {
         ++c;
     }
     spec.attribute("compression", "zip");
+    spec.attribute("DateTime", "");  // else the time of writing: the same image must give the same bytes
     for (const auto& [key, value] : image.metadata) {
         if (key.empty() || isFormatAttribute(key))
             throw std::runtime_error(

@@ -33,6 +33,8 @@ constexpr const char* kDisplayReferredKey = "displayReferred";
 // attributes become metadata.
 Image readImage(const std::string& path);
 // `half`: 16-bit float channels (references shipped in the tree); throws on a value beyond 65504.
+// The same image gives the same bytes. Metadata with an empty value are not stored; keys that EXR uses
+// itself (and any with a colon) throw.
 void writeExr(const std::string& path, const Image& image, bool half = false);
 // 8-bit sRGB PNG of a display-referred linear image's R, G, B; throws on a value outside [0,1].
 void writePng(const std::string& path, const Image& image);
