@@ -1,0 +1,122 @@
+// See json_reader.h.
+#include "json_reader.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace studio {
+namespace {
+
+std::string shown(const nlohmann::json& json) {
+    constexpr std::size_t kLongest = 60;
+    std::string text = json.dump();
+    return text.size() > kLongest ? text.substr(0, kLongest) + "..." : text;
+}
+
+std::string joined(const std::string& key, const std::string& name) {
+    return key.empty() ? name : key + "." + name;
+}
+
+}  // namespace
+
+void JsonValue::fail(const std::string& expected) const {
+    throw std::runtime_error(fmt::format("{}: {}: expected {}, got {}", *file_,
+                                         key_.empty() ? "the file" : key_, expected, shown(*json_)));
+}
+
+float JsonValue::number() const {
+    if (!json_->is_number()) fail("a number");
+    const float value = json_->get<float>();
+    if (!std::isfinite(value)) fail("a number that a 32-bit float can hold");
+    return value;
+}
+
+float JsonValue::number(float above, float upTo) const {
+    const float value = number();
+    if (!(value > above && value <= upTo))
+        fail(fmt::format("a number above {} and at most {}", above, upTo));
+    return value;
+}
+
+bool JsonValue::boolean() const {
+    if (!json_->is_boolean()) fail("true or false");
+    return json_->get<bool>();
+}
+
+int JsonValue::integer(int lowest, int highest) const {
+    if (!json_->is_number_integer() || json_->get<double>() < lowest || json_->get<double>() > highest)
+        fail(fmt::format("a whole number {} .. {}", lowest, highest));
+    return json_->get<int>();
+}
+
+std::string JsonValue::text() const {
+    if (!json_->is_string() || json_->get_ref<const std::string&>().empty()) fail("a text");
+    return json_->get<std::string>();
+}
+
+glm::vec3 JsonValue::vector() const {
+    if (!json_->is_array() || json_->size() != 3) fail("three numbers");
+    const std::vector<JsonValue> items = list();
+    return {items[0].number(), items[1].number(), items[2].number()};
+}
+
+glm::vec3 JsonValue::direction() const {
+    const glm::vec3 v = vector();
+    const float length = glm::length(v);
+    if (!(length > 0.0f)) fail("a direction (not zero)");
+    return v / length;
+}
+
+glm::vec3 JsonValue::colour() const {
+    const glm::vec3 c = json_->is_number() ? glm::vec3(number()) : vector();
+    if (c.x < 0.0f || c.y < 0.0f || c.z < 0.0f) fail("a colour (no negative number)");
+    return c;
+}
+
+std::vector<JsonValue> JsonValue::list() const {
+    if (!json_->is_array()) fail("a list");
+    std::vector<JsonValue> items;
+    for (std::size_t i = 0; i < json_->size(); ++i)
+        items.emplace_back((*json_)[i], *file_, fmt::format("{}[{}]", key_, i));
+    return items;
+}
+
+JsonObject JsonValue::object() const {
+    if (!json_->is_object()) fail("an object");
+    return JsonObject(*this, *json_);
+}
+
+std::vector<std::pair<std::string, JsonValue>> JsonValue::members() const {
+    if (!json_->is_object()) fail("an object");
+    std::vector<std::pair<std::string, JsonValue>> items;
+    for (const auto& item : json_->items())
+        items.emplace_back(item.key(), JsonValue(item.value(), *file_, joined(key_, item.key())));
+    return items;
+}
+
+std::optional<JsonValue> JsonObject::find(const std::string& name) {
+    known_.insert(name);
+    const auto it = json_->find(name);
+    if (it == json_->end()) return std::nullopt;
+    return JsonValue(*it, value_.file(), joined(value_.key(), name));
+}
+
+JsonValue JsonObject::need(const std::string& name, const std::string& expected) {
+    if (std::optional<JsonValue> found = find(name)) return *found;
+    throw std::runtime_error(fmt::format("{}: {}: expected {}, got nothing", value_.file(),
+                                         joined(value_.key(), name), expected));
+}
+
+void JsonObject::finish() const {
+    for (const auto& item : json_->items()) {
+        if (known_.count(item.key()) != 0) continue;
+        std::string names;
+        for (const std::string& name : known_) names += (names.empty() ? "" : ", ") + name;
+        throw std::runtime_error(fmt::format("{}: {}: unknown key; expected one of: {}", value_.file(),
+                                             joined(value_.key(), item.key()), names));
+    }
+}
+
+}  // namespace studio
