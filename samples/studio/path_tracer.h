@@ -16,28 +16,48 @@ struct VplRecord {
     glm::vec3 position, normal, flux;
     float area = 0.0f;
 };
+// Text: a line "lightwell-vpls 1 COUNT", then for each VPL a line of ten numbers: position (m), unit
+// normal, flux (W, RGB), area (m^2), with digits enough to give back every float exactly. Errors:
+// std::runtime_error naming the path, the line, what was expected and what came.
 std::vector<VplRecord> readVpls(const std::string& path);
 void writeVpls(const std::string& path, const std::vector<VplRecord>& vpls);
 
 struct PathTracerOptions {
     int samplesPerPixel = 64;        // of both halves together; even
-    double untilRelMse = 0.0;        // > 0: go on past samplesPerPixel's first pass until the halves agree
+    double untilRelMse = 0.0;        // > 0: go on past samplesPerPixel until the halves agree
+    // The relMSE of the sum of these layers is what untilRelMse and progress speak of; empty: "all", or
+    // "bounce1" where that is the only layer.
+    std::vector<std::string> judgedLayers;
     int maxSamplesPerPixel = 1 << 16;
     std::uint64_t seed = 1;
     int maxBounces = 64;             // of the "all" layer, with unbiased Russian roulette
     // Every surface along the ray sends light, none blocks: the limit of a gather without visibility.
+    // Light falls on those surfaces with its shadows. Only "bounce1" is made.
     bool unshadowed = false;
-    const std::vector<VplRecord>* vpls = nullptr;  // exact visibility of each (pixel, VPL), bounded term
-    std::string checkpoint;          // file to resume from and to save to; "" = none
+    // Irradiance from these VPLs (bounded term) with exact visibility of each (pixel, VPL); with
+    // `unshadowed`, the same without shadow rays. Only "bounce1" is made, without halves: no noise.
+    const std::vector<VplRecord>* vpls = nullptr;
+    std::string checkpoint;          // file to resume from and to save to; "" = none; kept at the end
+    double checkpointSeconds = 30.0; // least time between two savings
+    int threads = 0;                 // 0: one per hardware thread
+    // Called by the calling thread; relMse < 0: not estimated yet. An exception thrown here ends the
+    // run and comes out of tracePaths; samples of finished passes are in the checkpoint.
     std::function<void(double fraction, double relMse)> progress;
 };
 
 // Layers (irradiance, W/m^2, at the pixel's surface): "direct" from lights straight to the pixel,
 // "bounce1" (one indirect bounce), "bounce2" (the second alone), "all" (every bounce from the first
-// on), each with .R .G .B; the same of either half as "a.bounce1.R", "b.bounce1.R" ...; plus "direct"
-// radiance etc. is the caller's business. Metadata: spp, seed, noise.<layer> = estimated relMSE of the
-// mean of the halves. Same seed, same bits, whatever the number of threads; an interrupted and
-// resumed run equals an uninterrupted one.
+// on), each with .R .G .B; the same of either half as "a.bounce1.R", "b.bounce1.R" ...; "validity" is 1
+// where there is a surface and 0, like every layer there, where there is none. The surfaces' radiance etc.
+// is the caller's business. Sky and emissive surfaces are light sources (bounce 0) like punctual lights.
+// Metadata: spp, seed, noise.<layer> = estimated relMSE of the mean of the halves; vpls = their number.
+// Same seed, same bits, whatever the number of threads; an interrupted and resumed run equals an
+// uninterrupted one. A checkpoint with more samples than asked for gives them all.
+// Errors: std::invalid_argument naming the option, std::runtime_error for files.
 Image tracePaths(const RayScene& scene, const GBuffer& gbuffer, const PathTracerOptions& options);
+
+// Estimated relMSE of the sum of `layers` of an image with halves A and B, whose mean R is the result:
+// mean of (A-B)^2/4 / (R^2 + 0.01 mean(R)^2) over channels and valid pixels. 0 without light.
+double estimateNoise(const Image& image, const std::vector<std::string>& layers);
 
 }  // namespace studio

@@ -1,0 +1,41 @@
+// Emissive triangles as light sources: next-event estimation, proportional to power.
+#pragma once
+
+#include <vector>
+
+#include "ray_scene.h"
+#include "sampler.h"
+
+namespace studio {
+
+// A place that receives light: geometricNormal and normal unit, on the lit side.
+struct Surface {
+    glm::vec3 position{0.0f}, geometricNormal{0.0f}, normal{0.0f};
+};
+
+class AreaLights {
+public:
+    explicit AreaLights(const RayScene& scene);
+    bool empty() const { return triangles_.empty(); }
+
+    // Estimate of the irradiance at `at` from all emissive triangles, less the share that
+    // cosine-sampled rays bring (balance heuristic): add emissionOfRay for such a ray.
+    glm::vec3 sampleIrradiance(const RayScene& scene, const Surface& at, Sampler& sampler) const;
+
+    // The other share: what a ray of density cos / pi that found `hit` brings in emission.
+    glm::vec3 emissionOfRay(const Surface& at, const glm::vec3& direction, const Hit& hit) const;
+
+private:
+    struct Triangle {
+        int mesh, triangle;
+        glm::vec3 corner, edge1, edge2;
+        float upTo;  // power of this and all triangles before it, of the whole
+    };
+    // Irradiance integrand over the sum of both strategies' densities per solid angle.
+    glm::vec3 weighted(const Surface& at, const glm::vec3& direction, const Hit& hit) const;
+
+    std::vector<Triangle> triangles_;
+    float perRadiance_ = 0.0f;  // density per area of a triangle of mean radiance 1
+};
+
+}  // namespace studio

@@ -1,0 +1,16 @@
+// Irradiance from virtual point lights with exact visibility.
+#pragma once
+
+#include "area_lights.h"
+#include "path_tracer.h"
+
+namespace studio {
+
+// Irradiance of `vpl` at `at` by the bounded geometry term, whatever stands between:
+//     E = Phi/pi c_p c / (d^2 + c_p A/pi),
+// c_p, c the cosines at the VPL and at the surface (shading normal). In double: the truth of kernels.
+glm::dvec3 vplIrradiance(const VplRecord& vpl, const Surface& at);
+
+bool vplVisible(const RayScene& scene, const VplRecord& vpl, const Surface& at);
+
+}  // namespace studio
