@@ -12,7 +12,9 @@
 namespace studio {
 namespace {
 
-float meanOf(const glm::vec3& c) { return (c.x + c.y + c.z) / 3.0f; }
+float meanOf(const glm::vec3& c) {
+    return (c.x + c.y + c.z) / 3.0f;
+}
 
 }  // namespace
 

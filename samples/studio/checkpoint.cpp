@@ -24,13 +24,20 @@ constexpr char kMagic[8] = {'L', 'W', 'P', 'A', 'T', 'H', '0', '1'};
 
 template <class T>
 void hashValue(std::uint64_t& hash, const T& value) {
-    static_assert(std::is_trivially_copyable<T>::value && std::has_unique_object_representations<T>::value,
-                  "padding would make hashes random");
+    static_assert(
+        std::is_trivially_copyable<T>::value && std::has_unique_object_representations<T>::value,
+        "padding would make hashes random");
     hash = hashBytes(&value, sizeof(T), hash);
 }
-void hashValue(std::uint64_t& hash, float value) { hash = hashBytes(&value, sizeof value, hash); }
-void hashValue(std::uint64_t& hash, const glm::vec3& v) { hash = hashBytes(&v, sizeof v, hash); }
-void hashValue(std::uint64_t& hash, const glm::mat4& m) { hash = hashBytes(&m, sizeof m, hash); }
+void hashValue(std::uint64_t& hash, float value) {
+    hash = hashBytes(&value, sizeof value, hash);
+}
+void hashValue(std::uint64_t& hash, const glm::vec3& v) {
+    hash = hashBytes(&v, sizeof v, hash);
+}
+void hashValue(std::uint64_t& hash, const glm::mat4& m) {
+    hash = hashBytes(&m, sizeof m, hash);
+}
 
 template <class T>
 void hashArray(std::uint64_t& hash, const std::vector<T>& values) {

@@ -15,11 +15,14 @@ struct Film {
     int width = 0, height = 0;
     std::vector<std::string> layers;
     int halves = 2;
-    std::uint32_t samples = 0;    // done, in each half
+    std::uint32_t samples = 0;     // done, in each half
     std::vector<glm::dvec3> sums;  // [pixel][half][layer]
 
     Film(int filmWidth, int filmHeight, std::vector<std::string> layerNames, int halfCount)
-        : width(filmWidth), height(filmHeight), layers(std::move(layerNames)), halves(halfCount),
+        : width(filmWidth),
+          height(filmHeight),
+          layers(std::move(layerNames)),
+          halves(halfCount),
           sums(pixelCount() * layers.size() * std::size_t(halfCount), glm::dvec3(0.0)) {}
     std::size_t pixelCount() const { return std::size_t(width) * std::size_t(height); }
     glm::dvec3* at(std::size_t pixel, int half) {

@@ -25,9 +25,13 @@ constexpr int kRouletteFrom = 3;  // bounces; layers one and two are never thinn
 constexpr float kStepThrough = 1e-5f;
 constexpr float kTiny = std::numeric_limits<float>::min();  // so that a ray leaves distance 0 as well
 
-float largest(const glm::vec3& c) { return std::max(c.x, std::max(c.y, c.z)); }
+float largest(const glm::vec3& c) {
+    return std::max(c.x, std::max(c.y, c.z));
+}
 
-Surface surfaceOf(const Hit& hit) { return {hit.position, hit.geometricNormal, hit.normal}; }
+Surface surfaceOf(const Hit& hit) {
+    return {hit.position, hit.geometricNormal, hit.normal};
+}
 
 }  // namespace
 

@@ -8,10 +8,10 @@
 namespace studio {
 
 // relMSE of the mean R of two halves A and B: mean of (A-B)^2/4 / (R^2 + 0.01 mean(R)^2) over pixels and
-// channels. (A-B)^2/4 is an unbiased estimate of R's squared error, as the halves' errors are independent
-// and alike. R itself stands for the truth in the denominator, so that at few samples pixels that found
-// no light yet look better than they are.
-// fetch(pixel, a, b): false where there is no surface.
+// channels. (A-B)^2/4 is an unbiased estimate of R's squared error, as the halves' errors are
+// independent and alike. R itself stands for the truth in the denominator, so that at few samples pixels
+// that found no light yet look better than they are. fetch(pixel, a, b): false where there is no
+// surface.
 template <class Fetch>
 double halvesRelMse(std::size_t pixels, const Fetch& fetch) {
     glm::dvec3 a, b;

@@ -88,8 +88,8 @@ std::vector<Tile> tilesOf(const Film& film) {
     std::vector<Tile> tiles;
     for (int y = 0; y < film.height; y += kTileSize)
         for (int x = 0; x < film.width; x += kTileSize)
-            tiles.push_back({x, y, std::min(x + kTileSize, film.width),
-                             std::min(y + kTileSize, film.height)});
+            tiles.push_back(
+                {x, y, std::min(x + kTileSize, film.width), std::min(y + kTileSize, film.height)});
     return tiles;
 }
 
@@ -135,7 +135,11 @@ class Run {
 public:
     Run(const RayScene& scene, const GBuffer& view, const PixelSurfaces& pixels,
         const PathTracerOptions& options, Film& film, std::uint32_t enough, std::uint32_t most)
-        : pixels_(pixels), options_(options), film_(film), enough_(enough), most_(most),
+        : pixels_(pixels),
+          options_(options),
+          film_(film),
+          enough_(enough),
+          most_(most),
           judged_(judgedLayers(film, options)) {
         if (options.checkpoint.empty()) return;
         key_ = {hashScene(scene), hashView(view), hashOptions()};
@@ -146,8 +150,8 @@ public:
     template <class Body>
     void fill(const Body& body) {
         const std::vector<Tile> tiles = tilesOf(film_);
-        const auto perPass =
-            std::uint32_t(std::max<std::size_t>(1, kSamplesPerPass / (film_.pixelCount() * film_.halves)));
+        const auto perPass = std::uint32_t(
+            std::max<std::size_t>(1, kSamplesPerPass / (film_.pixelCount() * film_.halves)));
         for (assess(); !finished(); assess()) {
             const std::uint32_t first = film_.samples;
             const std::uint32_t last = std::min(first + perPass, first < enough_ ? enough_ : most_);
@@ -168,8 +172,7 @@ private:
     using Clock = std::chrono::steady_clock;
 
     void assess() {
-        if (options_.untilRelMse > 0.0 && film_.samples > 0)
-            noise_ = filmNoise(film_, pixels_, judged_);
+        if (options_.untilRelMse > 0.0 && film_.samples > 0) noise_ = filmNoise(film_, pixels_, judged_);
     }
 
     bool finished() const {
@@ -229,9 +232,8 @@ Film integratePaths(const RayScene& scene, const GBuffer& view, const PixelSurfa
         forEachPixel(tile, film, pixels, [&](std::size_t pixel) {
             const Surface& at = pixels.surface[pixel];
             const glm::vec3 punctual =
-                options.unshadowed
-                    ? glm::vec3(0.0f)
-                    : scene.directIrradiance(at.position, at.geometricNormal, at.normal);
+                options.unshadowed ? glm::vec3(0.0f)
+                                   : scene.directIrradiance(at.position, at.geometricNormal, at.normal);
             for (int half = 0; half < 2; ++half)
                 for (std::uint32_t s = first; s < last; ++s) {
                     Sampler sampler(options.seed, 2 * pixel + std::size_t(half), s);
@@ -317,8 +319,7 @@ double estimateNoise(const Image& image, const std::vector<std::string>& layers)
     for (int half = 0; half < 2; ++half)
         for (const std::string& layer : layers)
             for (const char channel : kChannels)
-                planes[half].push_back(
-                    &image.plane((half == 0 ? "a." : "b.") + layer + "." + channel));
+                planes[half].push_back(&image.plane((half == 0 ? "a." : "b.") + layer + "." + channel));
     const auto sumOf = [&](std::size_t pixel, int half) {
         glm::dvec3 sum(0.0);
         for (std::size_t i = 0; i < planes[half].size(); ++i)

@@ -23,23 +23,23 @@ std::vector<VplRecord> readVpls(const std::string& path);
 void writeVpls(const std::string& path, const std::vector<VplRecord>& vpls);
 
 struct PathTracerOptions {
-    int samplesPerPixel = 64;        // of both halves together; even
-    double untilRelMse = 0.0;        // > 0: go on past samplesPerPixel until the halves agree
+    int samplesPerPixel = 64;  // of both halves together; even
+    double untilRelMse = 0.0;  // > 0: go on past samplesPerPixel until the halves agree
     // The relMSE of the sum of these layers is what untilRelMse and progress speak of; empty: "all", or
     // "bounce1" where that is the only layer.
     std::vector<std::string> judgedLayers;
     int maxSamplesPerPixel = 1 << 16;
     std::uint64_t seed = 1;
-    int maxBounces = 64;             // of the "all" layer, with unbiased Russian roulette
+    int maxBounces = 64;  // of the "all" layer, with unbiased Russian roulette
     // Every surface along the ray sends light, none blocks: the limit of a gather without visibility.
     // Light falls on those surfaces with its shadows. Only "bounce1" is made.
     bool unshadowed = false;
     // Irradiance from these VPLs (bounded term) with exact visibility of each (pixel, VPL); with
     // `unshadowed`, the same without shadow rays. Only "bounce1" is made, without halves: no noise.
     const std::vector<VplRecord>* vpls = nullptr;
-    std::string checkpoint;          // file to resume from and to save to; "" = none; kept at the end
-    double checkpointSeconds = 30.0; // least time between two savings
-    int threads = 0;                 // 0: one per hardware thread
+    std::string checkpoint;           // file to resume from and to save to; "" = none; kept at the end
+    double checkpointSeconds = 30.0;  // least time between two savings
+    int threads = 0;                  // 0: one per hardware thread
     // Called by the calling thread; relMse < 0: not estimated yet. An exception thrown here ends the
     // run and comes out of tracePaths; samples of finished passes are in the checkpoint.
     std::function<void(double fraction, double relMse)> progress;
@@ -48,10 +48,10 @@ struct PathTracerOptions {
 // Layers (irradiance, W/m^2, at the pixel's surface): "direct" from lights straight to the pixel,
 // "bounce1" (one indirect bounce), "bounce2" (the second alone), "all" (every bounce from the first
 // on), each with .R .G .B; the same of either half as "a.bounce1.R", "b.bounce1.R" ...; "validity" is 1
-// where there is a surface and 0, like every layer there, where there is none. The surfaces' radiance etc.
-// is the caller's business. Sky and emissive surfaces are light sources (bounce 0) like punctual lights.
-// Metadata: spp, seed, noise.<layer> = estimated relMSE of the mean of the halves; vpls = their number.
-// Same seed, same bits, whatever the number of threads; an interrupted and resumed run equals an
+// where there is a surface and 0, like every layer there, where there is none. The surfaces' radiance
+// etc. is the caller's business. Sky and emissive surfaces are light sources (bounce 0) like punctual
+// lights. Metadata: spp, seed, noise.<layer> = estimated relMSE of the mean of the halves; vpls = their
+// number. Same seed, same bits, whatever the number of threads; an interrupted and resumed run equals an
 // uninterrupted one. A checkpoint with more samples than asked for gives them all.
 // Errors: std::invalid_argument naming the option, std::runtime_error for files.
 Image tracePaths(const RayScene& scene, const GBuffer& gbuffer, const PathTracerOptions& options);

@@ -26,7 +26,8 @@ public:
     ProgressLine(const ProgressLine&) = delete;
     ProgressLine& operator=(const ProgressLine&) = delete;
 
-    // `fraction` in [0,1] may start above 0 (a resumed run) and may fall (a better estimate of the whole).
+    // `fraction` in [0,1] may start above 0 (a resumed run) and may fall (a better estimate of the
+    // whole).
     void update(double fraction, const std::string& note = "");
     void finish(const std::string& note = "");  // the last line, with the time it took
 

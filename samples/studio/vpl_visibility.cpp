@@ -29,8 +29,7 @@ glm::dvec3 vplIrradiance(const VplRecord& vpl, const Surface& at) {
     const double vplCosine = -glm::dot(glm::dvec3(vpl.normal), towards) / distance;
     if (cosine <= 0.0 || vplCosine <= 0.0) return glm::dvec3(0.0);
     constexpr double pi = 3.14159265358979323846;
-    return glm::dvec3(vpl.flux) *
-           (vplCosine * cosine / (pi * distance2 + vplCosine * double(vpl.area)));
+    return glm::dvec3(vpl.flux) * (vplCosine * cosine / (pi * distance2 + vplCosine * double(vpl.area)));
 }
 
 bool vplVisible(const RayScene& scene, const VplRecord& vpl, const Surface& at) {
@@ -48,8 +47,8 @@ void writeVpls(const std::string& path, const std::vector<VplRecord>& vpls) {
     file << kTitle << " 1 " << vpls.size() << '\n';
     for (const VplRecord& v : vpls)
         file << fmt::format("{:.9g} {:.9g} {:.9g}  {:.9g} {:.9g} {:.9g}  {:.9g} {:.9g} {:.9g}  {:.9g}\n",
-                            v.position.x, v.position.y, v.position.z, v.normal.x, v.normal.y,
-                            v.normal.z, v.flux.x, v.flux.y, v.flux.z, v.area);
+                            v.position.x, v.position.y, v.position.z, v.normal.x, v.normal.y, v.normal.z,
+                            v.flux.x, v.flux.y, v.flux.z, v.area);
     file.close();
     if (!file) throw std::runtime_error(fmt::format("VPL file \"{}\": cannot be written", path));
 }
@@ -58,8 +57,8 @@ std::vector<VplRecord> readVpls(const std::string& path) {
     std::ifstream file(path);
     if (!file) throw std::runtime_error(fmt::format("VPL file \"{}\": cannot be opened", path));
     const auto refuse = [&](std::size_t line, const std::string& expected, const std::string& came) {
-        throw std::runtime_error(
-            fmt::format("VPL file \"{}\", line {}: expected {}, got \"{}\"", path, line, expected, came));
+        throw std::runtime_error(fmt::format("VPL file \"{}\", line {}: expected {}, got \"{}\"", path,
+                                             line, expected, came));
     };
 
     std::string line, title, rest;

@@ -23,8 +23,8 @@ public:
     }
 
     // Corners in order around the quad; `normal` shades it (default: its own).
-    void quad(int material, const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const glm::vec3& d,
-              const glm::vec3& normal = glm::vec3(0.0f)) {
+    void quad(int material, const glm::vec3& a, const glm::vec3& b, const glm::vec3& c,
+              const glm::vec3& d, const glm::vec3& normal = glm::vec3(0.0f)) {
         const glm::vec3 own = glm::normalize(glm::cross(b - a, c - a));
         studio::Mesh mesh;
         mesh.material = material;

@@ -1,5 +1,6 @@
 // The path tracer's light, against values known without it: furnace, form factors, Lambert's polygon
-// formula, quadrature. What a run does besides (halves, threads, checkpoints) is in reference_run_test.cpp.
+// formula, quadrature. What a run does besides (halves, threads, checkpoints) is in
+// reference_run_test.cpp.
 #include <catch2/catch.hpp>
 
 #include "../support/quad_scene.h"
@@ -118,7 +119,8 @@ TEST_CASE("closed furnace: bounce k carries M_e rho^k everywhere") {
         CHECK(mean(image, "bounce1." + channel) == Approx(m * rho).epsilon(kStatistical));
         CHECK(mean(image, "bounce2." + channel) == Approx(m * rho * rho).epsilon(kStatistical));
         // Roulette follows the brightest channel; the darker ones' means stay right, and less noisy.
-        CHECK(mean(image, "all." + channel) == Approx(m * rho / (1.0 - rho)).epsilon(2.0 * kStatistical));
+        CHECK(mean(image, "all." + channel) ==
+              Approx(m * rho / (1.0 - rho)).epsilon(2.0 * kStatistical));
     }
 }
 
@@ -163,7 +165,8 @@ TEST_CASE("sphere of albedo 1/2 about a point light of intensity pi") {
 
 TEST_CASE("form factors of unit squares") {
     QuadScene s;
-    s.quad(s.material(vec3(0.0f), vec3(1.0f)), vec3(0, 0, 0), vec3(1, 0, 0), vec3(1, 1, 0), vec3(0, 1, 0));
+    s.quad(s.material(vec3(0.0f), vec3(1.0f)), vec3(0, 0, 0), vec3(1, 0, 0), vec3(1, 1, 0),
+           vec3(0, 1, 0));
     const studio::RayScene scene = s.build();
     Receivers facing(16, 16, vec3(5.0f)), edge(32, 32, vec3(5.0f));
     facing.grid(vec3(0, 0, 1), vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, -1));
@@ -277,7 +280,8 @@ TEST_CASE("unshadowed: flux by the geometric normal, lobe about the shading norm
         });
         CAPTURE(i);
         CHECK(expected > 0.0);
-        CHECK(double(image.plane("bounce1.R")[std::size_t(i)]) == Approx(expected).epsilon(kStatistical));
+        CHECK(double(image.plane("bounce1.R")[std::size_t(i)]) ==
+              Approx(expected).epsilon(kStatistical));
     }
 }
 

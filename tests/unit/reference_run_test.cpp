@@ -90,7 +90,8 @@ TEST_CASE("the error falls with the samples, and the halves tell how large it is
             // 768 values estimate the variance to 5 %; the denominators, with R for the truth, bring the
             // rest where few paths find light.
             CAPTURE(layer, spp);
-            if (spp >= 16) CHECK(std::stod(image.metadata.at("noise." + layer)) == Approx(error).epsilon(0.3));
+            if (spp >= 16)
+                CHECK(std::stod(image.metadata.at("noise." + layer)) == Approx(error).epsilon(0.3));
             CHECK(estimateNoise(image, {layer}) ==
                   Approx(std::stod(image.metadata.at("noise." + layer))).epsilon(1e-4));
         }
