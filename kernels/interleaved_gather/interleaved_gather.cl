@@ -1,0 +1,136 @@
+// Interleaved gather (Segovia et al. 2006): in every LW_INTERLEAVE^2 block of pixels each pixel takes
+// another subset of the VPLs, and an edge-aware box filter over the same block size puts the subsets
+// together again. LW_INTERLEAVE 1 gathers all VPLs at every pixel.
+//
+// No sub-images are built in memory: a work-item reads LW_INTERLEAVE vectors of one row and turns them,
+// in registers, into LW_INTERLEAVE vectors of pixels that share a subset.
+#ifndef LW_INTERLEAVE
+#define LW_INTERLEAVE 4  // 1, 2, 4, 8
+#endif
+#include "wide.h"
+#include "surface.h"
+#include "subset_order.h"
+
+#if LW_INTERLEAVE == 1
+#define LW_STAGES 0
+#elif LW_INTERLEAVE == 2
+#define LW_STAGES 1
+#elif LW_INTERLEAVE == 4
+#define LW_STAGES 2
+#else
+#define LW_STAGES 3
+#endif
+#define LW_UNROLL _Pragma("unroll")
+
+// Consecutive pixels v[0..n) become v[j] = the pixels congruent to j modulo LW_INTERLEAVE. Seen as a
+// string of bits (vector index, lane), each stage rotates a pixel's place by one bit.
+LW_FN void deal_(real* v) {
+    LW_UNROLL for (int stage = 0; stage < LW_STAGES; ++stage) {
+        real t[LW_INTERLEAVE];
+        LW_UNROLL for (int i = 0; i < LW_INTERLEAVE / 2; ++i) {
+            t[i] = even_(v[2 * i], v[2 * i + 1]);
+            t[i + LW_INTERLEAVE / 2] = odd_(v[2 * i], v[2 * i + 1]);
+        }
+        LW_UNROLL for (int i = 0; i < LW_INTERLEAVE; ++i) v[i] = t[i];
+    }
+}
+
+LW_FN void undeal_(real* v) {
+    LW_UNROLL for (int stage = 0; stage < LW_STAGES; ++stage) {
+        real t[LW_INTERLEAVE];
+        LW_UNROLL for (int i = 0; i < LW_INTERLEAVE / 2; ++i) {
+            t[2 * i] = zip_lo_(v[i], v[i + LW_INTERLEAVE / 2]);
+            t[2 * i + 1] = zip_hi_(v[i], v[i + LW_INTERLEAVE / 2]);
+        }
+        LW_UNROLL for (int i = 0; i < LW_INTERLEAVE; ++i) v[i] = t[i];
+    }
+}
+
+typedef struct { real r, g, b; } rgb;
+
+// Irradiance times pi of `count` VPLs at one vector of surfaces, with the bounded point-to-disc term
+//   Phi * c_p * c / (d^2 + c_p A / pi),
+// written with the unnormalised dot products C = c d and C_p = c_p d:
+//   Phi * C C_p / (d^4 + C_p d A / pi).
+// The smallest float keeps a pixel that *is* the VPL at 0 / tiny = 0. Two VPLs at a time: their chains
+// of dependent operations then overlap, which one chain alone is too long for.
+LW_FN rgb gather_subset(const lw_surface s, __global const float* vpl, int count) {
+    rgb e = {(real)0.0f, (real)0.0f, (real)0.0f};
+    for (int k = 0; k < count; k += 2, vpl += 24) {
+        real dx[2], dy[2], dz[2], d2[2], c[2], w[2];
+        LW_UNROLL for (int u = 0; u < 2; ++u) {
+            dx[u] = vpl[12 * u] - s.px;
+            dy[u] = vpl[12 * u + 1] - s.py;
+            dz[u] = vpl[12 * u + 2] - s.pz;
+        }
+        LW_UNROLL for (int u = 0; u < 2; ++u) d2[u] = fma_(dx[u], dx[u], fma_(dy[u], dy[u], dz[u] * dz[u]));
+        LW_UNROLL for (int u = 0; u < 2; ++u)
+            c[u] = fmax(fma_(dx[u], s.nx, fma_(dy[u], s.ny, dz[u] * s.nz)), (real)0.0f);
+        LW_UNROLL for (int u = 0; u < 2; ++u)
+            w[u] = fmax(-fma_(dx[u], vpl[12 * u + 4], fma_(dy[u], vpl[12 * u + 5], dz[u] * vpl[12 * u + 6])), (real)0.0f);
+        LW_UNROLL for (int u = 0; u < 2; ++u) {
+            const real bound = w[u] * (vpl[12 * u + 3] * M_1_PI_F);
+            w[u] = c[u] * w[u] / fma_(d2[u], d2[u], fma_(bound, sqrt(d2[u]), 1e-37f));
+        }
+        LW_UNROLL for (int u = 0; u < 2; ++u) {
+            e.r = fma_(w[u], vpl[12 * u + 8], e.r);
+            e.g = fma_(w[u], vpl[12 * u + 9], e.g);
+            e.b = fma_(w[u], vpl[12 * u + 10], e.b);
+        }
+    }
+    return e;
+}
+
+// One work-item = LW_WIDTH * LW_INTERLEAVE adjacent pixels of one row, of a width x height image.
+// vpls: float[12] each, subset by subset, order.capacity (even) of them per subset.
+// irradiance: 3 planes, W/m^2. rejected: count of pixels that are neither surface nor background.
+__kernel void interleaved_gather_gather(__global const float* position, int4 positionLayout,
+                                        __global const float* normal, int4 normalLayout, int width, int height,
+                                        __global const float* vpls, lw_subset_order order,
+                                        __global float* irradiance, int4 irradianceLayout,
+                                        __global int* rejected) {
+    const int x = (int)get_global_id(0) * LW_WIDTH * LW_INTERLEAVE, y = (int)get_global_id(1);
+    if (x >= width || y >= height) return;
+    const int rowEnd = (width + 15) & ~15;  // rows can be read up to here
+
+    real p[3][LW_INTERLEAVE], n[3][LW_INTERLEAVE];
+    LW_UNROLL for (int j = 0; j < LW_INTERLEAVE; ++j)
+        LW_UNROLL for (int a = 0; a < 3; ++a) {
+            const int at = x + j * LW_WIDTH;
+            p[a][j] = (real)0.0f;
+            n[a][j] = (real)0.0f;
+            if (at < rowEnd) {
+                p[a][j] = load(position, positionLayout.x + a * positionLayout.z + y * positionLayout.y + at);
+                n[a][j] = load(normal, normalLayout.x + a * normalLayout.z + y * normalLayout.y + at);
+                // Padding may hold anything, a signalling pattern or a stale surface.
+                if (at + LW_WIDTH > width)
+                    n[a][j] = select_((real)0.0f, n[a][j], lanei_iota() + (lanei)at < (lanei)width);
+            }
+        }
+    LW_UNROLL for (int a = 0; a < 3; ++a) { deal_(p[a]); deal_(n[a]); }
+
+    real e[3][LW_INTERLEAVE];
+    int rejectedHere = 0;
+    LW_UNROLL for (int j = 0; j < LW_INTERLEAVE; ++j) {
+        const lw_surface s = make_surface(p[0][j], p[1][j], p[2][j], n[0][j], n[1][j], n[2][j]);
+        rgb sum = {(real)0.0f, (real)0.0f, (real)0.0f};
+        if (any_(s.valid)) {
+            const int subset = (y % LW_INTERLEAVE) * LW_INTERLEAVE + j;
+            sum = gather_subset(s, vpls + 12 * subset * order.capacity, order.capacity);
+        }
+        const real scale = (real)(M_1_PI_F * LW_INTERLEAVE * LW_INTERLEAVE);
+        e[0][j] = select_((real)0.0f, sum.r * scale, s.valid);
+        e[1][j] = select_((real)0.0f, sum.g * scale, s.valid);
+        e[2][j] = select_((real)0.0f, sum.b * scale, s.valid);
+        if (any_(s.rejected)) rejectedHere += count_(s.rejected);
+    }
+    LW_UNROLL for (int a = 0; a < 3; ++a) {
+        undeal_(e[a]);
+        LW_UNROLL for (int j = 0; j < LW_INTERLEAVE; ++j) {
+            const int at = x + j * LW_WIDTH;
+            if (at < rowEnd)
+                store(e[a][j], irradiance, irradianceLayout.x + a * irradianceLayout.z + y * irradianceLayout.y + at);
+        }
+    }
+    if (rejectedHere) atomic_add(rejected, rejectedHere);
+}

@@ -1,0 +1,160 @@
+// Half resolution and back: a G-buffer of every second column and row, and joint bilateral up-sampling
+// (Kopf et al. 2007) of what was computed on it: 3x3 half-resolution samples around a pixel, a tent in
+// the distance of pixels, nothing across a depth or normal edge.
+#include "wide.h"
+#include "surface.h"
+#include "edge_weight.h"
+#include "neighbours.h"
+
+// The columns 2x and 2x + 1 of LW_WIDTH blocks of two: the even and odd ones of two vectors.
+typedef struct { real even, odd; } lw_pair;
+
+LW_FN lw_pair load_pair(__global const float* image, int row, int x, int rowEnd) {
+    const real a = load(image, row + x);
+    const real b = x + LW_WIDTH < rowEnd ? load(image, row + x + LW_WIDTH) : (real)0.0f;
+    const lw_pair pair = {even_(a, b), odd_(a, b)};
+    return pair;
+}
+
+LW_FN lw_surface surface_of(const lw_pair* p, const lw_pair* n, int odd) {
+    return odd ? make_surface(p[0].odd, p[1].odd, p[2].odd, n[0].odd, n[1].odd, n[2].odd)
+               : make_surface(p[0].even, p[1].even, p[2].even, n[0].even, n[1].even, n[2].even);
+}
+
+LW_FN void prefer(lw_surface* chosen, const lw_surface other, mask inside) {
+    const mask take = and_(not_(chosen->valid), and_(other.valid, inside));
+    chosen->px = select_(chosen->px, other.px, take);
+    chosen->py = select_(chosen->py, other.py, take);
+    chosen->pz = select_(chosen->pz, other.pz, take);
+    chosen->nx = select_(chosen->nx, other.nx, take);
+    chosen->ny = select_(chosen->ny, other.ny, take);
+    chosen->nz = select_(chosen->nz, other.nz, take);
+    chosen->valid = or_(chosen->valid, take);
+}
+
+// One work-item = LW_WIDTH half-resolution pixels: the first valid surface of each 2x2 block, in the
+// fixed order top left, bottom right, top right, bottom left. half*: 3 planes each.
+__kernel void joint_bilateral_downsample(__global const float* position, int4 positionLayout,
+                                         __global const float* normal, int4 normalLayout, int width, int height,
+                                         __global float* halfPosition, int4 halfPositionLayout,
+                                         __global float* halfNormal, int4 halfNormalLayout) {
+    const int hx = (int)get_global_id(0) * LW_WIDTH, hy = (int)get_global_id(1);
+    const int halfWidth = (width + 1) / 2, halfHeight = (height + 1) / 2;
+    if (hx >= halfWidth || hy >= halfHeight) return;
+    const int rowEnd = (width + 15) & ~15;
+    const lanei column = lanei_iota() * 2 + (lanei)(2 * hx);
+    const mask evenInside = column < (lanei)width, oddInside = column + 1 < (lanei)width;
+
+    lw_pair p[2][3], n[2][3];
+    for (int j = 0; j < 2; ++j)
+        for (int a = 0; a < 3; ++a) {
+            const int y = min(2 * hy + j, height - 1);
+            p[j][a] = load_pair(position, positionLayout.x + a * positionLayout.z + y * positionLayout.y, 2 * hx, rowEnd);
+            n[j][a] = load_pair(normal, normalLayout.x + a * normalLayout.z + y * normalLayout.y, 2 * hx, rowEnd);
+        }
+    lw_surface s = surface_of(p[0], n[0], 0);
+    s.valid = and_(s.valid, evenInside);
+    prefer(&s, surface_of(p[1], n[1], 1), oddInside);
+    prefer(&s, surface_of(p[0], n[0], 1), oddInside);
+    prefer(&s, surface_of(p[1], n[1], 0), evenInside);
+
+    const real zero = (real)0.0f;
+    const int po = halfPositionLayout.x + hy * halfPositionLayout.y + hx;
+    const int no = halfNormalLayout.x + hy * halfNormalLayout.y + hx;
+    store(select_(zero, s.px, s.valid), halfPosition, po);
+    store(select_(zero, s.py, s.valid), halfPosition, po + halfPositionLayout.z);
+    store(select_(zero, s.pz, s.valid), halfPosition, po + 2 * halfPositionLayout.z);
+    store(select_(zero, s.nx, s.valid), halfNormal, no);
+    store(select_(zero, s.ny, s.valid), halfNormal, no + halfNormalLayout.z);
+    store(select_(zero, s.nz, s.valid), halfNormal, no + 2 * halfNormalLayout.z);
+}
+
+typedef struct { real r, g, b, weight; } lw_sum;
+
+LW_FN void accumulate(lw_sum* sum, real w, real r, real g, real b) {
+    sum->r = fma_(w, r, sum->r);
+    sum->g = fma_(w, g, sum->g);
+    sum->b = fma_(w, b, sum->b);
+    sum->weight += w;
+}
+
+// Light from one sample to `s`: by the edge test; and, for pixels that no sample passes it for, by
+// likeness of the normals alone, so that such a pixel is lit like its neighbourhood and not black.
+LW_FN void add_sample(lw_sum* sum, lw_sum* rest, const lw_surface s, const lw_surface q, real tent, real r, real g, real b) {
+    const real t = select_((real)0.0f, tent, q.valid);
+    accumulate(sum, t * edge_weight(s, q.px, q.py, q.pz, q.nx, q.ny, q.nz), r, g, b);
+    const real likeness = fmax(fma_(q.nx, s.nx, fma_(q.ny, s.ny, q.nz * s.nz)), (real)0.0f) + 1e-3f;
+    accumulate(rest, t * likeness, r, g, b);
+}
+
+// One work-item = 2 * LW_WIDTH pixels of one row: the even ones and the odd ones of LW_WIDTH blocks.
+// half*: 3 planes each of the half-resolution image. fallbacks: count of pixels lit without edge test.
+__kernel void joint_bilateral_upsample(__global const float* position, int4 positionLayout,
+                                       __global const float* normal, int4 normalLayout, int width, int height,
+                                       __global const float* halfPosition, int4 halfPositionLayout,
+                                       __global const float* halfNormal, int4 halfNormalLayout,
+                                       __global const float* halfIrradiance, int4 halfIrradianceLayout,
+                                       __global float* irradiance, int4 irradianceLayout,
+                                       __global int* fallbacks) {
+    const int hx = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);
+    const int x = 2 * hx;
+    if (x >= width || y >= height) return;
+    const int rowEnd = (width + 15) & ~15;
+    const int halfWidth = (width + 1) / 2, halfHeight = (height + 1) / 2;
+
+    lw_pair p[3], n[3];
+    for (int a = 0; a < 3; ++a) {
+        p[a] = load_pair(position, positionLayout.x + a * positionLayout.z + y * positionLayout.y, x, rowEnd);
+        n[a] = load_pair(normal, normalLayout.x + a * normalLayout.z + y * normalLayout.y, x, rowEnd);
+    }
+    const lw_surface even = surface_of(p, n, 0), odd = surface_of(p, n, 1);
+
+    const lw_sum none = {(real)0.0f, (real)0.0f, (real)0.0f, (real)0.0f};
+    lw_sum evenSum = none, oddSum = none, evenRest = none, oddRest = none;
+    // A tent over three pixels: a sample stands two pixels from the next, so that an even pixel sees
+    // three of them at distances 2, 0, 2 and an odd one two at distances 1, 1.
+    const int oddRow = y & 1;
+    for (int j = oddRow ? 0 : -1; j <= 1; ++j) {
+        const int hy = y / 2 + j;
+        if (hy < 0 || hy >= halfHeight) continue;
+        const float rowTent = 1.0f - (float)abs(2 * j - oddRow) * (1.0f / 3.0f);
+        const int pr = halfPositionLayout.x + hy * halfPositionLayout.y;
+        const int nr = halfNormalLayout.x + hy * halfNormalLayout.y;
+        const int er = halfIrradianceLayout.x + hy * halfIrradianceLayout.y;
+        for (int i = -1; i <= 1; ++i) {
+            const int pz = halfPositionLayout.z, nz = halfNormalLayout.z, ez = halfIrradianceLayout.z;
+            lw_surface q = make_surface(
+                load_shifted(halfPosition, pr, hx, i, halfWidth), load_shifted(halfPosition, pr + pz, hx, i, halfWidth),
+                load_shifted(halfPosition, pr + 2 * pz, hx, i, halfWidth), load_shifted(halfNormal, nr, hx, i, halfWidth),
+                load_shifted(halfNormal, nr + nz, hx, i, halfWidth), load_shifted(halfNormal, nr + 2 * nz, hx, i, halfWidth));
+            const lanei column = lanei_iota() + (lanei)(hx + i);
+            q.valid = and_(q.valid, and_(column >= (lanei)0, column < (lanei)halfWidth));
+            const real r = load_shifted(halfIrradiance, er, hx, i, halfWidth);
+            const real g = load_shifted(halfIrradiance, er + ez, hx, i, halfWidth);
+            const real b = load_shifted(halfIrradiance, er + 2 * ez, hx, i, halfWidth);
+            add_sample(&evenSum, &evenRest, even, q, (real)(rowTent * (i == 0 ? 1.0f : 1.0f / 3.0f)), r, g, b);
+            if (i >= 0) add_sample(&oddSum, &oddRest, odd, q, (real)(rowTent * (2.0f / 3.0f)), r, g, b);
+        }
+    }
+
+    // A weight this far below a sample's own tent comes from rounding at the edge tests' borders.
+    const mask evenLost = and_(even.valid, not_(evenSum.weight > 1e-4f));
+    const mask oddLost = and_(odd.valid, not_(oddSum.weight > 1e-4f));
+    const real evenScale = 1.0f / select_(evenSum.weight, evenRest.weight, evenLost);
+    const real oddScale = 1.0f / select_(oddSum.weight, oddRest.weight, oddLost);
+    const real zero = (real)0.0f;
+    const real e[3] = {select_(zero, select_(evenSum.r, evenRest.r, evenLost) * evenScale, even.valid),
+                       select_(zero, select_(evenSum.g, evenRest.g, evenLost) * evenScale, even.valid),
+                       select_(zero, select_(evenSum.b, evenRest.b, evenLost) * evenScale, even.valid)};
+    const real o[3] = {select_(zero, select_(oddSum.r, oddRest.r, oddLost) * oddScale, odd.valid),
+                       select_(zero, select_(oddSum.g, oddRest.g, oddLost) * oddScale, odd.valid),
+                       select_(zero, select_(oddSum.b, oddRest.b, oddLost) * oddScale, odd.valid)};
+    const int out = irradianceLayout.x + y * irradianceLayout.y + x;
+    for (int a = 0; a < 3; ++a) {
+        store(zip_lo_(e[a], o[a]), irradiance, out + a * irradianceLayout.z);
+        if (x + LW_WIDTH < rowEnd) store(zip_hi_(e[a], o[a]), irradiance, out + a * irradianceLayout.z + LW_WIDTH);
+    }
+    const lanei at = lanei_iota() * 2 + (lanei)x;
+    const mask lostEven = and_(evenLost, at < (lanei)width), lostOdd = and_(oddLost, at + 1 < (lanei)width);
+    if (any_(or_(lostEven, lostOdd))) atomic_add(fallbacks, count_(lostEven) + count_(lostOdd));
+}

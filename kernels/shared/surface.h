@@ -1,0 +1,33 @@
+// What a G-buffer pixel is to a kernel: a point and a unit normal, or nothing.
+#ifndef LW_SURFACE_H
+#define LW_SURFACE_H
+
+#include "wide.h"
+
+typedef struct {
+    real px, py, pz;  // world position; 0 without a surface
+    real nx, ny, nz;  // unit normal; 0 without a surface
+    mask valid;       // a surface with finite position and a normal that can be normalised
+    mask rejected;    // not a surface although the host did not mark it as background (zero normal)
+} lw_surface;
+
+LW_FN mask finite_(real x) { return fabs(x) < (real)INFINITY; }  // false for NaN
+
+// Normals of compact formats are off unit length by quantisation: they are normalised, not refused.
+// Shorter than 1/2 or longer than 2 is no normal at all.
+LW_FN lw_surface make_surface(real px, real py, real pz, real nx, real ny, real nz) {
+    lw_surface s;
+    const real n2 = fma_(nx, nx, fma_(ny, ny, nz * nz));
+    s.valid = and_(and_(n2 > 0.25f, n2 < 4.0f), and_(finite_(px), and_(finite_(py), finite_(pz))));
+    s.rejected = and_(not_(s.valid), not_(n2 == 0.0f));
+    const real scale = rsqrt(n2);
+    s.px = select_((real)0.0f, px, s.valid);
+    s.py = select_((real)0.0f, py, s.valid);
+    s.pz = select_((real)0.0f, pz, s.valid);
+    s.nx = select_((real)0.0f, nx * scale, s.valid);
+    s.ny = select_((real)0.0f, ny * scale, s.valid);
+    s.nz = select_((real)0.0f, nz * scale, s.valid);
+    return s;
+}
+
+#endif

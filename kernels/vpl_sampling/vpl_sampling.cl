@@ -1,0 +1,140 @@
+// VPLs drawn from the texels of all reflective shadow maps (Dachsbacher & Stamminger 2005), by a
+// Hammersley set that is warped through the distribution of reflected flux, or of texels alone.
+// The RSMs stand as one table of rows: u picks the row through the rows' cumulative sums, v the texel
+// within the row, so that one stratified set covers any number of maps.
+//
+// Sampling texel p with probability P_p divides its flux *and* its area by N * P_p.
+// Planes of `texels`: position xyz, normal xyz, flux rgb, area; `planeStride` floats apart.
+#include "wide.h"
+#include "vpl_types.h"
+#include "subset_order.h"
+
+// What a texel is drawn by. The mean of the channels, not luminance: a texel that reflects only blue
+// must keep a probability in proportion to what it sends.
+LW_FN float texel_weight(__global const float* texels, int planeStride, int texel, int uniformWeights) {
+    return uniformWeights ? 1.0f
+                          : (texels[6 * planeStride + texel] + texels[7 * planeStride + texel] +
+                             texels[8 * planeStride + texel]) * (1.0f / 3.0f);
+}
+
+// One work-item = one row: inclusive prefix sums of its weights, in texel order, so that the result
+// does not depend on the work-groups.
+__kernel void vpl_sampling_row_sums(__global const float* texels, int4 layout, __global const int4* rows,
+                                    int rowCount, int uniformWeights, __global float* texelSums,
+                                    __global float* rowTotals) {
+    const int r = (int)get_global_id(0);
+    if (r >= rowCount) return;
+    const int4 row = rows[r];
+    __global const float* base = texels + layout.x;
+    float sum = 0.0f;
+    for (int i = 0; i < row.y; ++i) {
+        sum += texel_weight(base, layout.z, row.x + i, uniformWeights);
+        texelSums[row.x + i] = sum;
+    }
+    rowTotals[r] = sum;
+}
+
+// One work-item: inclusive prefix sums over the rows.
+__kernel void vpl_sampling_total(__global const float* rowTotals, int rowCount, __global float* rowSums) {
+    if (get_global_id(0) != 0) return;
+    float sum = 0.0f;
+    for (int r = 0; r < rowCount; ++r) {
+        sum += rowTotals[r];
+        rowSums[r] = sum;
+    }
+}
+
+// Index of the first of `count` inclusive sums that is greater than `target`; when rounding leaves
+// none, the last one that grew. Entries of zero weight are never returned while any other exists.
+LW_FN int find_sum(__global const float* sums, int count, float target) {
+    target = fmin(target, sums[count - 1]);
+    int low = 0, high = count - 1;
+    while (low < high) {
+        const int middle = (low + high) >> 1;
+        if (sums[middle] > target) high = middle;
+        else low = middle + 1;
+    }
+    while (low > 0 && !(sums[low] > sums[low - 1])) --low;
+    return low;
+}
+
+// The radical inverse of k in base 2, in [0,1): 24 bits, so that it never rounds up to 1.
+LW_FN float radical_inverse(uint k) {
+    k = (k << 16) | (k >> 16);
+    k = ((k & 0x00ff00ffu) << 8) | ((k & 0xff00ff00u) >> 8);
+    k = ((k & 0x0f0f0f0fu) << 4) | ((k & 0xf0f0f0f0u) >> 4);
+    k = ((k & 0x33333333u) << 2) | ((k & 0xccccccccu) >> 2);
+    k = ((k & 0x55555555u) << 1) | ((k & 0xaaaaaaaau) >> 1);
+    return (float)(k >> 8) * (1.0f / 16777216.0f);
+}
+
+LW_FN float wrap_unit(float u) {
+    u -= u >= 1.0f ? 1.0f : 0.0f;
+    return fmin(u, 0.99999994f);
+}
+
+LW_FN lw_vpl texel_vpl(__global const float* texels, int planeStride, int texel, float factor) {
+    __global const float* p = texels + texel;
+    lw_vpl vpl;
+    vpl.positionArea = (float4)(p[0], p[planeStride], p[2 * planeStride], p[9 * planeStride] * factor);
+    vpl.normal = (float4)(p[3 * planeStride], p[4 * planeStride], p[5 * planeStride], 0.0f);
+    vpl.flux = (float4)(p[6 * planeStride] * factor, p[7 * planeStride] * factor, p[8 * planeStride] * factor, 0.0f);
+    return vpl;
+}
+
+LW_FN lw_vpl no_vpl(void) {
+    lw_vpl vpl;
+    vpl.positionArea = (float4)(0.0f);
+    vpl.normal = (float4)(0.0f);
+    vpl.flux = (float4)(0.0f);
+    return vpl;
+}
+
+// One work-item = one slot of the VPL list (order.subsets * order.capacity of them). Of the order's
+// `count` VPLs the first `sampleCount` are drawn from the texels, the rest are the host's own.
+// `shift`: Cranley-Patterson rotation of the set.
+__kernel void vpl_sampling_draw(__global const float* texels, int4 layout, __global const int4* rows,
+                                int rowCount, __global const float* texelSums, __global const float* rowSums,
+                                int uniformWeights, int sampleCount, float2 shift,
+                                __global const lw_vpl* authored, lw_subset_order order, __global lw_vpl* vpls) {
+    const int slot = (int)get_global_id(0);
+    if (slot >= order.subsets * order.capacity) return;
+    const int k = lw_subset_index(order, slot);
+    if (k < 0) { vpls[slot] = no_vpl(); return; }
+    if (k >= sampleCount) { vpls[slot] = authored[k - sampleCount]; return; }
+    const float total = rowSums[rowCount - 1];
+    if (!(total > 0.0f)) { vpls[slot] = no_vpl(); return; }
+
+    // The middle of each stratum in u: with its start, texels at the map's edge would be favoured.
+    const float u = wrap_unit(((float)k + 0.5f) / (float)sampleCount + shift.x);
+    const float v = wrap_unit(radical_inverse((uint)k) + shift.y);
+    const int r = find_sum(rowSums, rowCount, u * total);
+    const int4 row = rows[r];
+    const float rowTotal = texelSums[row.x + row.y - 1];
+    const int texel = row.x + find_sum(texelSums + row.x, row.y, v * rowTotal);
+    __global const float* base = texels + layout.x;
+    const float probability = texel_weight(base, layout.z, texel, uniformWeights) / total;
+    vpls[slot] = texel_vpl(base, layout.z, texel, 1.0f / ((float)sampleCount * probability));
+}
+
+// The same list when every texel is a VPL of its own, with its flux and area as they are.
+__kernel void vpl_sampling_all(__global const float* texels, int4 layout, int texelCount,
+                               __global const lw_vpl* authored, lw_subset_order order, __global lw_vpl* vpls) {
+    const int slot = (int)get_global_id(0);
+    if (slot >= order.subsets * order.capacity) return;
+    const int k = lw_subset_index(order, slot);
+    if (k < 0) vpls[slot] = no_vpl();
+    else if (k >= texelCount) vpls[slot] = authored[k - texelCount];
+    else vpls[slot] = texel_vpl(texels + layout.x, layout.z, k, 1.0f);
+}
+
+// For debugging: the list as ten planes (position, normal, flux, area).
+__kernel void vpl_sampling_planes(__global const lw_vpl* vpls, int count, __global float* planes, int planeStride) {
+    const int i = (int)get_global_id(0);
+    if (i >= count) return;
+    const lw_vpl vpl = vpls[i];
+    const float values[10] = {vpl.positionArea.x, vpl.positionArea.y, vpl.positionArea.z,
+                              vpl.normal.x, vpl.normal.y, vpl.normal.z,
+                              vpl.flux.x, vpl.flux.y, vpl.flux.z, vpl.positionArea.w};
+    for (int c = 0; c < 10; ++c) planes[c * planeStride + i] = values[c];
+}
