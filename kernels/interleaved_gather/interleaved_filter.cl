@@ -4,9 +4,9 @@
 #ifndef LW_INTERLEAVE
 #define LW_INTERLEAVE 4  // 2, 4, 8
 #endif
-#include "wide.h"
-#include "surface.h"
-#include "edge_weight.h"
+#include "shared/wide.h"
+#include "shared/surface.h"
+#include "shared/edge_weight.h"
 
 #define LW_BACK (LW_INTERLEAVE / 2 - 1)  // the window is [x - LW_BACK, x - LW_BACK + LW_INTERLEAVE)
 

@@ -7,9 +7,9 @@
 #ifndef LW_INTERLEAVE
 #define LW_INTERLEAVE 4  // 1, 2, 4, 8
 #endif
-#include "wide.h"
-#include "surface.h"
-#include "subset_order.h"
+#include "shared/wide.h"
+#include "shared/surface.h"
+#include "shared/subset_order.h"
 
 #if LW_INTERLEAVE == 1
 #define LW_STAGES 0
@@ -83,12 +83,12 @@ LW_FN rgb gather_subset(const lw_surface s, __global const float* vpl, int count
 
 // One work-item = LW_WIDTH * LW_INTERLEAVE adjacent pixels of one row, of a width x height image.
 // vpls: float[12] each, subset by subset, order.capacity (even) of them per subset.
-// irradiance: 3 planes, W/m^2. rejected: count of pixels that are neither surface nor background.
+// irradiance: 3 planes, W/m^2. counts[0]: pixels that are neither surface nor background.
 __kernel void interleaved_gather_gather(__global const float* position, int4 positionLayout,
                                         __global const float* normal, int4 normalLayout, int width, int height,
                                         __global const float* vpls, lw_subset_order order,
                                         __global float* irradiance, int4 irradianceLayout,
-                                        __global int* rejected) {
+                                        __global int* counts) {
     const int x = (int)get_global_id(0) * LW_WIDTH * LW_INTERLEAVE, y = (int)get_global_id(1);
     if (x >= width || y >= height) return;
     const int rowEnd = (width + 15) & ~15;  // rows can be read up to here
@@ -132,5 +132,18 @@ __kernel void interleaved_gather_gather(__global const float* position, int4 pos
                 store(e[a][j], irradiance, irradianceLayout.x + a * irradianceLayout.z + y * irradianceLayout.y + at);
         }
     }
-    if (rejectedHere) atomic_add(rejected, rejectedHere);
+    if (rejectedHere) atomic_add(counts, rejectedHere);
+}
+
+// One work-item = LW_WIDTH adjacent pixels: 1 where the gather lit a surface, 0 elsewhere.
+__kernel void interleaved_gather_validity(__global const float* position, int4 positionLayout,
+                                          __global const float* normal, int4 normalLayout, int width, int height,
+                                          __global float* validity, int4 validityLayout) {
+    const int x = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);
+    if (x >= width || y >= height) return;
+    const int p = positionLayout.x + y * positionLayout.y + x, n = normalLayout.x + y * normalLayout.y + x;
+    const int pz = positionLayout.z, nz = normalLayout.z;
+    const lw_surface s = make_surface(load(position, p), load(position, p + pz), load(position, p + 2 * pz),
+                                      load(normal, n), load(normal, n + nz), load(normal, n + 2 * nz));
+    store(ones_(s.valid), validity, validityLayout.x + y * validityLayout.y + x);
 }

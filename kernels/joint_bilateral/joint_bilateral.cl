@@ -1,10 +1,10 @@
 // Half resolution and back: a G-buffer of every second column and row, and joint bilateral up-sampling
 // (Kopf et al. 2007) of what was computed on it: 3x3 half-resolution samples around a pixel, a tent in
 // the distance of pixels, nothing across a depth or normal edge.
-#include "wide.h"
-#include "surface.h"
-#include "edge_weight.h"
-#include "neighbours.h"
+#include "shared/wide.h"
+#include "shared/surface.h"
+#include "shared/edge_weight.h"
+#include "shared/neighbours.h"
 
 // The columns 2x and 2x + 1 of LW_WIDTH blocks of two: the even and odd ones of two vectors.
 typedef struct { real even, odd; } lw_pair;
@@ -88,14 +88,14 @@ LW_FN void add_sample(lw_sum* sum, lw_sum* rest, const lw_surface s, const lw_su
 }
 
 // One work-item = 2 * LW_WIDTH pixels of one row: the even ones and the odd ones of LW_WIDTH blocks.
-// half*: 3 planes each of the half-resolution image. fallbacks: count of pixels lit without edge test.
+// half*: 3 planes each of the half-resolution image. counts[1]: pixels lit without edge test.
 __kernel void joint_bilateral_upsample(__global const float* position, int4 positionLayout,
                                        __global const float* normal, int4 normalLayout, int width, int height,
                                        __global const float* halfPosition, int4 halfPositionLayout,
                                        __global const float* halfNormal, int4 halfNormalLayout,
                                        __global const float* halfIrradiance, int4 halfIrradianceLayout,
                                        __global float* irradiance, int4 irradianceLayout,
-                                       __global int* fallbacks) {
+                                       __global int* counts) {
     const int hx = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);
     const int x = 2 * hx;
     if (x >= width || y >= height) return;
@@ -156,5 +156,5 @@ __kernel void joint_bilateral_upsample(__global const float* position, int4 posi
     }
     const lanei at = lanei_iota() * 2 + (lanei)x;
     const mask lostEven = and_(evenLost, at < (lanei)width), lostOdd = and_(oddLost, at + 1 < (lanei)width);
-    if (any_(or_(lostEven, lostOdd))) atomic_add(fallbacks, count_(lostEven) + count_(lostOdd));
+    if (any_(or_(lostEven, lostOdd))) atomic_add(counts + 1, count_(lostEven) + count_(lostOdd));
 }

@@ -11,14 +11,13 @@ typedef struct {
     mask rejected;    // not a surface although the host did not mark it as background (zero normal)
 } lw_surface;
 
-LW_FN mask finite_(real x) { return fabs(x) < (real)INFINITY; }  // false for NaN
 
 // Normals of compact formats are off unit length by quantisation: they are normalised, not refused.
 // Shorter than 1/2 or longer than 2 is no normal at all.
 LW_FN lw_surface make_surface(real px, real py, real pz, real nx, real ny, real nz) {
     lw_surface s;
     const real n2 = fma_(nx, nx, fma_(ny, ny, nz * nz));
-    s.valid = and_(and_(n2 > 0.25f, n2 < 4.0f), and_(finite_(px), and_(finite_(py), finite_(pz))));
+    s.valid = and_(and_(n2 > 0.25f, n2 < 4.0f), and_(isfinite_(px), and_(isfinite_(py), isfinite_(pz))));
     s.rejected = and_(not_(s.valid), not_(n2 == 0.0f));
     const real scale = rsqrt(n2);
     s.px = select_((real)0.0f, px, s.valid);

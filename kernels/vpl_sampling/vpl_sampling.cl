@@ -5,9 +5,9 @@
 //
 // Sampling texel p with probability P_p divides its flux *and* its area by N * P_p.
 // Planes of `texels`: position xyz, normal xyz, flux rgb, area; `planeStride` floats apart.
-#include "wide.h"
-#include "vpl_types.h"
-#include "subset_order.h"
+#include "shared/wide.h"
+#include "shared/vpl_types.h"
+#include "shared/subset_order.h"
 
 // What a texel is drawn by. The mean of the channels, not luminance: a texel that reflects only blue
 // must keep a probability in proportion to what it sends.

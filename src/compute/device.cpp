@@ -138,6 +138,7 @@ void Device::adopt(const LWDeviceDesc& desc) {
 void Device::readLimits() {
     computeUnits_ = deviceValue<cl_uint>(id_, CL_DEVICE_MAX_COMPUTE_UNITS);
     unifiedMemory_ = deviceValue<cl_bool>(id_, CL_DEVICE_HOST_UNIFIED_MEMORY) != 0;
+    hasFma_ = (deviceValue<cl_device_fp_config>(id_, CL_DEVICE_SINGLE_FP_CONFIG) & CL_FP_FMA) != 0;
     maxAllocation_ = deviceValue<cl_ulong>(id_, CL_DEVICE_MAX_MEM_ALLOC_SIZE);
     globalMemory_ = deviceValue<cl_ulong>(id_, CL_DEVICE_GLOBAL_MEM_SIZE);
     for (const std::string& part :

@@ -26,6 +26,7 @@ public:
 
     std::uint32_t width() const { return width_; }  // lanes per work-item of wide kernels
     bool unifiedMemory() const { return unifiedMemory_; }
+    bool hasFma() const { return hasFma_; }  // fused multiply-add in hardware, by the driver's word
     bool profiling() const { return profiling_; }
     bool outOfOrder() const { return outOfOrder_; }
     std::uint64_t maxAllocation() const { return maxAllocation_; }
@@ -61,7 +62,7 @@ private:
     cl_context context_ = nullptr;
     cl_command_queue queue_ = nullptr;
     std::uint32_t width_ = 0, computeUnits_ = 0;
-    bool unifiedMemory_ = false, profiling_ = false, outOfOrder_ = false;
+    bool unifiedMemory_ = false, hasFma_ = false, profiling_ = false, outOfOrder_ = false;
     std::uint64_t maxAllocation_ = 0, globalMemory_ = 0, allocatedBytes_ = 0, kernelsSpecialised_ = 0;
     LWLogCallback log_ = nullptr;
     void* logUser_ = nullptr;

@@ -8,8 +8,11 @@
 namespace lightwell {
 namespace {
 
-std::string buildOptions(const Defines& defines, std::uint32_t width) {
+// LW_HAS_FMA: the device says that it fuses in hardware. PoCL does so without defining FP_FAST_FMAF, and
+// its mad() is then a multiplication and an addition, slower and rounded twice.
+std::string buildOptions(const Defines& defines, std::uint32_t width, bool fma) {
     std::string options = "-cl-std=CL1.2 -DLW_WIDTH=" + std::to_string(width);
+    if (fma) options += " -DLW_HAS_FMA";
     for (const auto& [name, value] : defines) options += " -D" + name + "=" + value;
     return options;
 }
@@ -114,7 +117,7 @@ Kernel& ProgramCache::kernel(const std::string& programName, const std::string& 
 
 ProgramCache::Program& ProgramCache::program(const std::string& name, const Defines& defines,
                                              std::uint32_t width) {
-    const std::string options = buildOptions(defines, width);
+    const std::string options = buildOptions(defines, width, device_.hasFma());
     std::unique_ptr<Program>& slot = programs_[name + '\n' + options];
     if (slot) return *slot;
 

@@ -1,0 +1,38 @@
+#include "passes/joint_bilateral.h"
+
+#include "compute/device.h"
+
+namespace lightwell {
+namespace {
+
+constexpr const char* kProgram = "joint_bilateral/joint_bilateral";
+
+Range groupOf(const Kernel& kernel) { return kernel.width() == 1 ? Range{64, 1} : Range{8, 1}; }
+
+// One work-item per `width` half-resolution columns; rows as given.
+Range itemsOver(std::uint32_t fullWidth, std::uint32_t rows, const Kernel& kernel) {
+    return {(JointBilateral::halved(fullWidth) + kernel.width() - 1) / kernel.width(), rows};
+}
+
+}  // namespace
+
+JointBilateral::JointBilateral(Device& device)
+    : downsample_(device.programs().kernel(kProgram, "joint_bilateral_downsample")),
+      upsample_(device.programs().kernel(kProgram, "joint_bilateral_upsample")) {}
+
+void JointBilateral::recordDownsample(Executor& executor, const Planes& position, const Planes& normal,
+                                      const Planes& halfPosition, const Planes& halfNormal) {
+    executor.run("joint_bilateral.downsample", downsample_,
+                 itemsOver(position.width, halved(position.height), downsample_), groupOf(downsample_), position,
+                 normal, cl_int(position.width), cl_int(position.height), halfPosition, halfNormal);
+}
+
+void JointBilateral::recordUpsample(Executor& executor, const Planes& position, const Planes& normal,
+                                    const Planes& halfPosition, const Planes& halfNormal,
+                                    const Planes& halfIrradiance, const Planes& irradiance, const Buffer& counts) {
+    executor.run("joint_bilateral.upsample", upsample_, itemsOver(position.width, position.height, upsample_),
+                 groupOf(upsample_), position, normal, cl_int(position.width), cl_int(position.height), halfPosition,
+                 halfNormal, halfIrradiance, irradiance, counts);
+}
+
+}  // namespace lightwell

@@ -1,0 +1,29 @@
+// A half-resolution G-buffer, and joint bilateral up-sampling of what was computed on it (Kopf et al.
+// 2007).
+#pragma once
+
+#include "compute/buffer.h"
+#include "compute/executor.h"
+
+namespace lightwell {
+
+class JointBilateral {
+public:
+    explicit JointBilateral(Device& device);
+
+    static std::uint32_t halved(std::uint32_t size) { return (size + 1) / 2; }
+
+    // Pass "joint_bilateral.downsample": one surface of each 2x2 block of pixels.
+    void recordDownsample(Executor& executor, const Planes& position, const Planes& normal,
+                          const Planes& halfPosition, const Planes& halfNormal);
+    // Pass "joint_bilateral.upsample". counts[1] grows by the pixels without a sample on their own
+    // surface.
+    void recordUpsample(Executor& executor, const Planes& position, const Planes& normal,
+                        const Planes& halfPosition, const Planes& halfNormal, const Planes& halfIrradiance,
+                        const Planes& irradiance, const Buffer& counts);
+
+private:
+    Kernel &downsample_, &upsample_;
+};
+
+}  // namespace lightwell

@@ -1,0 +1,142 @@
+#include "passes/vpl_sampling.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "compute/device.h"
+#include "compute/error.h"
+
+namespace lightwell {
+namespace {
+
+constexpr Range kGroup{64, 1};
+constexpr const char* kProgram = "vpl_sampling/vpl_sampling";
+
+// Two decorrelated numbers in [0,1) of a seed (Murmur's finaliser); (0, 0) for seed 0.
+cl_float2 rotation(std::uint32_t seed) {
+    auto unit = [](std::uint32_t x) {
+        x = (x ^ (x >> 16)) * 0x85ebca6bu;
+        x = (x ^ (x >> 13)) * 0xc2b2ae35u;
+        return float((x ^ (x >> 16)) >> 8) / 16777216.0f;
+    };
+    cl_float2 shift = {{0.0f, 0.0f}};
+    if (seed) shift = {{unit(seed), unit(seed ^ 0x9e3779b9u)}};
+    return shift;
+}
+
+void checkVpls(const LWVpl* vpls, std::uint32_t count) {
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const LWVpl& v = vpls[i];
+        bool finite = std::isfinite(v.area) && v.area >= 0.0f;
+        for (int a = 0; a < 3; ++a)
+            finite = finite && std::isfinite(v.position[a]) && std::isfinite(v.normal[a]) &&
+                     std::isfinite(v.flux[a]) && v.flux[a] >= 0.0f;
+        if (!finite)
+            fail(LW_ERROR_INVALID_ARGUMENT, "frame.vpls[", i,
+                 "]: expected a finite position and normal and finite area and flux of at least 0");
+        const float n2 = v.normal[0] * v.normal[0] + v.normal[1] * v.normal[1] + v.normal[2] * v.normal[2];
+        if (!(n2 > 0.98f && n2 < 1.02f))
+            fail(LW_ERROR_INVALID_ARGUMENT, "frame.vpls[", i, "].normal: expected unit length, got ", std::sqrt(n2));
+    }
+}
+
+}  // namespace
+
+lw_subset_order subsetOrder(std::uint32_t count, std::uint32_t subsets) {
+    // The middle bits choose the subset: as many index bits above them as below.
+    std::uint32_t step = 1;
+    while (std::uint64_t(step) * 2 * step * 2 * subsets <= count) step *= 2;
+    const std::uint64_t rounds = (count + std::uint64_t(step) * subsets - 1) / (std::uint64_t(step) * subsets);
+    std::uint64_t capacity = std::max<std::uint64_t>(rounds, 1) * step;
+    capacity += capacity & 1;  // the gather takes two VPLs at a time
+    if (capacity * subsets * 12 > std::uint64_t(std::numeric_limits<std::int32_t>::max()))
+        fail(LW_ERROR_UNSUPPORTED, "vpls: ", count, " VPLs exceed the 32-bit indices of the kernels");
+    lw_subset_order order;
+    order.subsets = cl_int(subsets);
+    order.step = cl_int(step);
+    order.capacity = cl_int(capacity);
+    order.count = cl_int(count);
+    return order;
+}
+
+VplSampling::VplSampling(Device& device, const VplSamplingOptions& options)
+    : device_(device),
+      options_(options),
+      rowSums_(device.programs().kernel(kProgram, "vpl_sampling_row_sums")),
+      total_(device.programs().kernel(kProgram, "vpl_sampling_total")),
+      draw_(device.programs().kernel(kProgram, "vpl_sampling_draw")),
+      all_(device.programs().kernel(kProgram, "vpl_sampling_all")),
+      planes_(device.programs().kernel(kProgram, "vpl_sampling_planes")) {}
+
+void VplSampling::reserve(const RsmInput& rsms, std::uint32_t authoredCount) {
+    const std::uint32_t drawn = rsms.texelCount == 0 ? 0
+                                : options_.count == 0 ? rsms.texels.width
+                                                      : options_.count;
+    const lw_subset_order order = subsetOrder(drawn + authoredCount, options_.subsets);
+    vpls_.reserve(device_, std::size_t(order.subsets) * std::size_t(order.capacity) * sizeof(lw_vpl), "VPLs");
+    if (drawn && options_.count) {
+        texelSums_.reserve(device_, std::size_t(rsms.texels.width) * 4, "cumulative flux of texels");
+        rowTotals_.reserve(device_, std::size_t(rsms.rowCount) * 4, "flux of RSM rows");
+        rowSumsBuffer_.reserve(device_, std::size_t(rsms.rowCount) * 4, "cumulative flux of RSM rows");
+    }
+    order_ = order;
+}
+
+void VplSampling::record(Executor& executor, const RsmInput& rsms, const LWVpl* authored,
+                         std::uint32_t authoredCount) {
+    checkVpls(authored, authoredCount);
+    reserve(rsms, authoredCount);
+    static_assert(sizeof(LWVpl) == sizeof(lw_vpl), "LWVpl is uploaded as it is");
+    const lw_vpl none{};
+    authored_ = Buffer::withContents(device_, authoredCount ? static_cast<const void*>(authored) : &none,
+                                     std::max(authoredCount, 1u) * sizeof(lw_vpl), "frame.vpls");
+    draw(executor, rsms, vplCount() - authoredCount);
+}
+
+void VplSampling::draw(Executor& executor, const RsmInput& rsms, std::uint32_t sampleCount) {
+    const Range slots{std::size_t(order_.subsets) * std::size_t(order_.capacity), 1};
+    if (options_.count == 0 || sampleCount == 0) {
+        // Without texels the list holds the host's VPLs alone; the texel planes are then not read.
+        Planes texels = rsms.texels;
+        if (!texels) texels.memory = authored_.get();
+        executor.run("vpl_sampling.draw", all_, slots, kGroup, texels, cl_int(sampleCount), authored_, order_, vpls_);
+        return;
+    }
+    const cl_int rowCount = cl_int(rsms.rowCount), uniform = options_.uniform ? 1 : 0;
+    executor.run("vpl_sampling.row_sums", rowSums_, {rsms.rowCount, 1}, {4, 1}, rsms.texels, rsms.rows, rowCount,
+                 uniform, texelSums_, rowTotals_);
+    executor.run("vpl_sampling.total", total_, {1, 1}, {1, 1}, rowTotals_, rowCount, rowSumsBuffer_);
+    executor.run("vpl_sampling.draw", draw_, slots, kGroup, rsms.texels, rsms.rows, rowCount, texelSums_,
+                 rowSumsBuffer_, uniform, cl_int(sampleCount), rotation(options_.seed), authored_, order_, vpls_);
+}
+
+Planes VplSampling::debugPlanes(Executor& executor) {
+    const std::uint32_t slots = std::uint32_t(order_.subsets * order_.capacity);
+    const std::uint32_t stride = paddedWidth(slots);
+    debug_.reserve(device_, std::size_t(stride) * 40, "debug view of VPLs");
+    executor.run("vpl_sampling.planes", planes_, {slots, 1}, kGroup, vpls_, cl_int(slots), debug_, cl_int(stride));
+    Planes planes;
+    planes.memory = debug_.get();
+    planes.rowStride = planes.planeStride = stride;
+    planes.width = slots;
+    planes.height = 1;
+    planes.count = 10;
+    return planes;
+}
+
+std::uint64_t VplSampling::bytes() const {
+    return texelSums_.bytes() + rowTotals_.bytes() + rowSumsBuffer_.bytes() + authored_.bytes() + vpls_.bytes() +
+           debug_.bytes();
+}
+
+std::uint64_t VplSampling::estimateBytes(const VplSamplingOptions& options, std::uint64_t texels) {
+    const std::uint64_t drawn = options.count ? options.count : texels;
+    const lw_subset_order order = subsetOrder(std::uint32_t(drawn), options.subsets);
+    const std::uint64_t list = std::uint64_t(order.subsets) * std::uint64_t(order.capacity) * sizeof(lw_vpl);
+    // Rows are not known before the RSMs are: a square map's are the most common.
+    const std::uint64_t rows = std::uint64_t(std::ceil(std::sqrt(double(texels))));
+    return list + sizeof(lw_vpl) + (options.count ? texels * 4 + rows * 8 : 0);
+}
+
+}  // namespace lightwell

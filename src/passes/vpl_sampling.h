@@ -1,0 +1,52 @@
+// Virtual point lights drawn from reflective shadow maps (Dachsbacher & Stamminger 2005), in the order
+// that an interleaved gather walks them.
+#pragma once
+
+#include <cstdint>
+
+#include "compute/buffer.h"
+#include "compute/executor.h"
+#include "inputs/rsm_input.h"
+#include "shared/subset_order.h"
+#include "shared/vpl_types.h"
+
+namespace lightwell {
+
+struct VplSamplingOptions {
+    std::uint32_t count = 256;     // drawn from the texels; 0: every texel is a VPL
+    bool uniform = false;          // over texels, instead of by reflected flux
+    std::uint32_t subsets = 16;    // of the gather
+    std::uint32_t seed = 0;        // Cranley-Patterson rotation; 0: none
+};
+
+// The slots of `count` VPLs dealt out to `subsets`.
+lw_subset_order subsetOrder(std::uint32_t count, std::uint32_t subsets);
+
+class VplSampling {
+public:
+    VplSampling(Device& device, const VplSamplingOptions& options);
+
+    // Records passes "vpl_sampling.*". `authored`: the host's own VPLs, appended to those drawn; read
+    // before the call returns.
+    void record(Executor& executor, const RsmInput& rsms, const LWVpl* authored, std::uint32_t authoredCount);
+    void prewarm(Executor& executor);
+
+    const Buffer& vpls() const { return vpls_; }         // lw_vpl by slot
+    lw_subset_order order() const { return order_; }
+    std::uint32_t vplCount() const { return std::uint32_t(order_.count); }
+    Planes debugPlanes(Executor& executor);               // position, normal, flux, area by slot
+    std::uint64_t bytes() const;
+    static std::uint64_t estimateBytes(const VplSamplingOptions& options, std::uint64_t texels);
+
+private:
+    void reserve(const RsmInput& rsms, std::uint32_t authoredCount);
+    void draw(Executor& executor, const RsmInput& rsms, std::uint32_t sampleCount);
+
+    Device& device_;
+    VplSamplingOptions options_;
+    Kernel &rowSums_, &total_, &draw_, &all_, &planes_;
+    Buffer texelSums_, rowTotals_, rowSumsBuffer_, authored_, vpls_, debug_;
+    lw_subset_order order_{};
+};
+
+}  // namespace lightwell

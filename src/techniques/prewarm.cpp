@@ -1,0 +1,85 @@
+#include "techniques/prewarm.h"
+
+#include <array>
+
+#include "compute/device.h"
+
+namespace lightwell {
+namespace {
+
+constexpr std::uint32_t kSize = 16;  // pixels along each side
+using Pixels = std::array<float, kSize * kSize * 3>;
+
+LWImage imageOf(Pixels& pixels, LWFormat format) {
+    LWImage image{};
+    image.host = pixels.data();
+    image.format = format;
+    image.width = image.height = kSize;
+    return image;
+}
+
+// A floor under a camera that looks down on it, as interleaved images: everything has to be unpacked.
+struct Inputs {
+    Pixels position{}, normal{}, flux{}, depth{}, irradiance{}, validity{};
+    LWCamera camera{};
+
+    Inputs() {
+        for (std::uint32_t i = 0; i < kSize * kSize; ++i) {
+            position[3 * i] = float(i % kSize) / kSize;
+            position[3 * i + 2] = float(i / kSize) / kSize;
+            normal[3 * i + 1] = 1.0f;
+            flux[3 * i] = flux[3 * i + 1] = flux[3 * i + 2] = 1.0f;
+            depth[i] = 0.5f;
+        }
+        // Looks along -y, up = -z; orthographic, one unit wide, depth 0..1.
+        const float view[16] = {1, 0, 0, -0.5f, 0, 0, -1, 0.5f, 0, 1, 0, -1, 0, 0, 0, 1};
+        const float projection[16] = {2, 0, 0, 0, 0, 2, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1};
+        for (int i = 0; i < 16; ++i) {
+            camera.view[i] = view[i];
+            camera.projection[i] = projection[i];
+        }
+    }
+};
+
+}  // namespace
+
+void exerciseTechnique(Executor& executor, Technique& technique) {
+    Inputs inputs;
+    const auto view = std::make_shared<View>(kSize, kSize);
+    for (const bool byDepth : {false, true}) {
+        LWRsm rsm{};
+        rsm.structSize = sizeof rsm;
+        rsm.normal = imageOf(inputs.normal, LW_FORMAT_FLOAT3);
+        rsm.flux = imageOf(inputs.flux, LW_FORMAT_FLOAT3);
+        rsm.camera = inputs.camera;
+        LWGBuffer gbuffer{};
+        gbuffer.structSize = sizeof gbuffer;
+        gbuffer.normal = imageOf(inputs.normal, LW_FORMAT_FLOAT3);
+        gbuffer.camera = inputs.camera;
+        if (byDepth) {
+            rsm.depth = gbuffer.depth = imageOf(inputs.depth, LW_FORMAT_FLOAT1);
+        } else {
+            rsm.position = gbuffer.position = imageOf(inputs.position, LW_FORMAT_FLOAT3);
+        }
+        LWLight light{};
+        light.structSize = sizeof light;
+        light.kind = LW_LIGHT_DIRECTIONAL;
+        light.direction[1] = -1.0f;
+        light.rsmCount = 1;
+        light.rsms = &rsm;
+        LWFrame frame{};
+        frame.structSize = sizeof frame;
+        frame.lightCount = 1;
+        frame.lights = &light;
+        LWOutput output{};
+        output.structSize = sizeof output;
+        output.irradiance = imageOf(inputs.irradiance, LW_FORMAT_FLOAT3);
+        output.validity = imageOf(inputs.validity, LW_FORMAT_FLOAT1);
+        technique.update(executor, frame);
+        technique.render(executor, view, gbuffer, output);
+        technique.debugViews(view.get());
+        executor.device().finish();
+    }
+}
+
+}  // namespace lightwell

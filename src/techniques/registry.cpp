@@ -1,0 +1,14 @@
+// One line per technique.
+#include "techniques/rsm.h"
+#include "techniques/technique.h"
+
+namespace lightwell {
+
+const std::vector<TechniqueEntry>& techniqueEntries() {
+    static const std::vector<TechniqueEntry> entries = {
+        rsmEntry(),
+    };
+    return entries;
+}
+
+}  // namespace lightwell

@@ -1,0 +1,288 @@
+#include "techniques/rsm.h"
+
+#include <array>
+#include <iterator>
+
+#include "compute/device.h"
+#include "compute/error.h"
+#include "inputs/gbuffer_input.h"
+#include "inputs/output_target.h"
+#include "inputs/rsm_input.h"
+#include "passes/interleaved_gather.h"
+#include "passes/joint_bilateral.h"
+#include "passes/vpl_sampling.h"
+#include "techniques/prewarm.h"
+
+namespace lightwell {
+namespace {
+
+VplSamplingOptions samplingOptions(const LWRsmDesc& desc) {
+    VplSamplingOptions options;
+    options.count = desc.vpls;
+    options.uniform = desc.sampling == LW_SAMPLING_UNIFORM;
+    options.subsets = desc.interleave * desc.interleave;
+    options.seed = desc.seed;
+    return options;
+}
+
+bool halfResolution(const LWRsmDesc& desc) { return desc.resolution == LW_RESOLUTION_HALF; }
+bool filters(const LWRsmDesc& desc) { return desc.filter != 0 && desc.interleave > 1; }
+
+class RsmTechnique final : public Technique {
+public:
+    RsmTechnique(Device& device, const LWRsmDesc& desc)
+        : device_(device), desc_(desc), sampling_(device, samplingOptions(desc)), gather_(device, desc.interleave),
+          bilateral_(device) {}
+
+    void update(Executor& executor, const LWFrame& frame) override {
+        rsms_.import(executor, frame);
+        sampling_.record(executor, rsms_, frame.vpls, frame.vplCount);
+    }
+
+    void render(Executor& executor, const std::shared_ptr<View>& view, const LWGBuffer& gbuffer,
+                const LWOutput& output) override {
+        checkOutputs(output);
+        ViewState& state = states_.get(view, [&] { return std::make_unique<ViewState>(device_, desc_, *view); });
+        state.gbuffer.import(executor, *view, gbuffer, 0, "gbuffer");
+        const Planes irradiance = state.irradiance.begin(executor, *view, output.irradiance, 3, "output.irradiance");
+        const Planes validity = state.validity.begin(executor, *view, output.validity, 1, "output.validity");
+        if (irradiance) light(executor, state, irradiance);
+        if (validity) gather_.recordValidity(executor, state.gbuffer.position, state.gbuffer.normal, validity);
+        state.irradiance.end(executor);
+        state.validity.end(executor);
+    }
+
+    void prewarm(Executor& executor, const std::shared_ptr<View>&) override {
+        // A twin, so that this technique's frame stays as it is; kernels belong to the device.
+        RsmTechnique twin(device_, desc_);
+        exerciseTechnique(executor, twin);
+    }
+
+    Report report() override;
+    std::vector<DebugView> debugViews(const View* view) override;
+    std::uint64_t bytes() const override;
+
+    // Images of one view that lie between the passes.
+    struct ViewState {
+        ViewState(Device& device, const LWRsmDesc& desc, const View& view);
+        std::uint64_t bytes() const;
+        static std::uint64_t imageBytes(const LWRsmDesc& desc, std::uint32_t width, std::uint32_t height);
+
+        GBufferInput gbuffer;
+        OutputTarget irradiance, validity;
+        PlanarImage gathered, filtered, halfPosition, halfNormal;
+        Buffer counts;  // rejected pixels, up-sampling fallbacks
+        Planes lastGathered, lastFiltered;
+    };
+
+private:
+    static void checkOutputs(const LWOutput& output);
+    void light(Executor& executor, ViewState& state, const Planes& irradiance);
+
+    Device& device_;
+    LWRsmDesc desc_;
+    RsmInput rsms_;
+    VplSampling sampling_;
+    InterleavedGather gather_;
+    JointBilateral bilateral_;
+    PerView<ViewState> states_;
+};
+
+RsmTechnique::ViewState::ViewState(Device& device, const LWRsmDesc& desc, const View& view)
+    : counts(device, 2 * sizeof(cl_int), "counts of a view") {
+    const bool half = halfResolution(desc);
+    const std::uint32_t width = half ? JointBilateral::halved(view.maxWidth) : view.maxWidth;
+    const std::uint32_t height = half ? JointBilateral::halved(view.maxHeight) : view.maxHeight;
+    if (half || filters(desc)) gathered = PlanarImage(device, width, height, 3, "gathered irradiance");
+    if (half && filters(desc)) filtered = PlanarImage(device, width, height, 3, "filtered irradiance");
+    if (half) {
+        halfPosition = PlanarImage(device, width, height, 3, "half-resolution positions");
+        halfNormal = PlanarImage(device, width, height, 3, "half-resolution normals");
+    }
+}
+
+std::uint64_t RsmTechnique::ViewState::imageBytes(const LWRsmDesc& desc, std::uint32_t width, std::uint32_t height) {
+    const bool half = halfResolution(desc);
+    const std::uint64_t w = paddedWidth(half ? JointBilateral::halved(width) : width);
+    const std::uint64_t h = half ? JointBilateral::halved(height) : height;
+    const std::uint64_t images = (half || filters(desc) ? 1u : 0u) + (half && filters(desc) ? 1u : 0u) + (half ? 2u : 0u);
+    return images * 3 * w * h * sizeof(float) + 2 * sizeof(cl_int);
+}
+
+void RsmTechnique::checkOutputs(const LWOutput& output) {
+    const std::pair<const LWImage*, const char*> unsupported[] = {{&output.ambientOcclusion, "ambientOcclusion"},
+                                                                  {&output.specularRadiance, "specularRadiance"},
+                                                                  {&output.shadow, "shadow"}};
+    for (const auto& [image, name] : unsupported)
+        if (image->format != LW_FORMAT_NONE)
+            fail(LW_ERROR_UNSUPPORTED, "output.", name, ": technique rsm makes irradiance and validity only");
+    if (output.irradiance.format == LW_FORMAT_NONE && output.validity.format == LW_FORMAT_NONE)
+        fail(LW_ERROR_INVALID_ARGUMENT, "output: expected irradiance or validity, got neither");
+}
+
+void RsmTechnique::light(Executor& executor, ViewState& state, const Planes& irradiance) {
+    Planes position = state.gbuffer.position, normal = state.gbuffer.normal;
+    const bool half = halfResolution(desc_), filter = filters(desc_);
+    executor.fill("interleaved_gather.counts", state.counts, 0, 0, state.counts.bytes());
+    if (half) {
+        const std::uint32_t w = JointBilateral::halved(position.width), h = JointBilateral::halved(position.height);
+        const Planes halfPosition = state.halfPosition.planes(w, h), halfNormal = state.halfNormal.planes(w, h);
+        bilateral_.recordDownsample(executor, position, normal, halfPosition, halfNormal);
+        position = halfPosition;
+        normal = halfNormal;
+    }
+    const Planes gathered = half || filter ? state.gathered.planes(position.width, position.height) : irradiance;
+    gather_.recordGather(executor, position, normal, sampling_, gathered, state.counts);
+    Planes lit = gathered;
+    if (filter) {
+        lit = half ? state.filtered.planes(position.width, position.height) : irradiance;
+        gather_.recordFilter(executor, position, normal, gathered, lit);
+    }
+    if (half)
+        bilateral_.recordUpsample(executor, state.gbuffer.position, state.gbuffer.normal, position, normal, lit,
+                                  irradiance, state.counts);
+    state.lastGathered = gathered;
+    state.lastFiltered = lit;
+}
+
+Report RsmTechnique::report() {
+    Report report;
+    rsms_.report(report);
+    report.counts.push_back({"vpls", sampling_.vplCount()});
+    std::array<cl_int, 2> total{};
+    states_.each([&](const ViewState& state) {
+        state.gbuffer.report(report);
+        state.irradiance.report(report);
+        state.validity.report(report);
+        std::array<cl_int, 2> counts{};
+        if (state.lastGathered) state.counts.download(0, sizeof counts, counts.data());
+        for (std::size_t i = 0; i < counts.size(); ++i) total[i] += counts[i];
+    });
+    report.counts.push_back({"rejected_pixels", std::uint64_t(total[0])});
+    report.counts.push_back({"upsample_fallbacks", std::uint64_t(total[1])});
+    return report;
+}
+
+std::vector<DebugView> RsmTechnique::debugViews(const View* view) {
+    std::vector<DebugView> views;
+    Profile unused;
+    Executor executor(device_, unused);
+    if (sampling_.vpls())
+        views.push_back({"vpls", "one column per slot: position xyz (m), unit normal xyz, flux rgb (W), area (m^2)",
+                         sampling_.debugPlanes(executor)});
+    if (ViewState* state = states_.find(view); state && state->lastGathered) {
+        views.push_back({"position", "world position (m)", state->gbuffer.position});
+        views.push_back({"normal", "world normal as the host gave it", state->gbuffer.normal});
+        views.push_back({"gathered", "irradiance before the filter (W/m^2)", state->lastGathered});
+        if (filters(desc_)) views.push_back({"filtered", "irradiance after the filter (W/m^2)", state->lastFiltered});
+    }
+    device_.finish();
+    return views;
+}
+
+std::uint64_t RsmTechnique::ViewState::bytes() const {
+    return gbuffer.bytes() + irradiance.bytes() + validity.bytes() + gathered.bytes() + filtered.bytes() +
+           halfPosition.bytes() + halfNormal.bytes() + counts.bytes();
+}
+
+std::uint64_t RsmTechnique::bytes() const {
+    std::uint64_t total = rsms_.bytes() + sampling_.bytes();
+    states_.each([&](const ViewState& state) { total += state.bytes(); });
+    return total;
+}
+
+// ------------------------------------------------------------------------------------- registration
+
+void setDefaults(void* desc) { lwDefaultRsm(static_cast<LWRsmDesc*>(desc)); }
+
+std::unique_ptr<Technique> create(Device& device, const void* desc) {
+    return std::make_unique<RsmTechnique>(device, *static_cast<const LWRsmDesc*>(desc));
+}
+
+std::uint64_t estimateBytes(const void* desc, const LWViewDesc& view, std::uint64_t rsmTexels) {
+    const LWRsmDesc& rsm = *static_cast<const LWRsmDesc*>(desc);
+    return RsmInput::estimateBytes(rsmTexels) + VplSampling::estimateBytes(samplingOptions(rsm), rsmTexels) +
+           GBufferInput::estimateBytes(view, 0) + OutputTarget::estimateBytes(view, 3) +
+           OutputTarget::estimateBytes(view, 1) + RsmTechnique::ViewState::imageBytes(rsm, view.maxWidth, view.maxHeight);
+}
+
+constexpr const char* kSamplingNames[] = {"flux", "uniform", nullptr};
+constexpr const char* kResolutionNames[] = {"full", "half", nullptr};
+constexpr double kInterleaveValues[] = {1, 2, 4, 8};
+constexpr double kInterleaveSweep[] = {1, 4};
+constexpr double kVplSweep[] = {64, 256, 1024, 4096};
+
+LWParameter parameter(const char* name, const char* description, LWParameterKind kind, std::size_t byteOffset,
+                      double minimum, double maximum, double defaultValue) {
+    LWParameter p{};
+    p.name = name;
+    p.description = description;
+    p.kind = kind;
+    p.byteOffset = std::uint32_t(byteOffset);
+    p.minimum = minimum;
+    p.maximum = maximum;
+    p.defaultValue = defaultValue;
+    return p;
+}
+
+const std::vector<LWParameter>& parameters() {
+    static const std::vector<LWParameter> table = [] {
+        std::vector<LWParameter> all = {
+            parameter("vpls", "virtual point lights drawn from all RSMs together; 0: every texel. Error falls and time grows with it",
+                      LW_PARAMETER_UINT, offsetof(LWRsmDesc, vpls), 0, 1u << 24, 256),
+            parameter("sampling", "what VPLs are drawn by: reflected flux, or every texel alike", LW_PARAMETER_ENUM,
+                      offsetof(LWRsmDesc, sampling), 0, 1, LW_SAMPLING_FLUX),
+            parameter("interleave", "n of n x n pixels that share out the VPLs: time falls with n^2, noise at edges grows",
+                      LW_PARAMETER_UINT, offsetof(LWRsmDesc, interleave), 1, 8, 4),
+            parameter("filter", "edge-aware n x n filter after an interleaved gather", LW_PARAMETER_BOOL,
+                      offsetof(LWRsmDesc, filter), 0, 1, 1),
+            parameter("resolution", "pixels that are gathered; half: every second column and row, up-sampled after",
+                      LW_PARAMETER_ENUM, offsetof(LWRsmDesc, resolution), 0, 1, LW_RESOLUTION_FULL),
+            parameter("seed", "shift of the sample set; 0: unshifted", LW_PARAMETER_UINT, offsetof(LWRsmDesc, seed), 0,
+                      4294967295.0, 0)};
+        all[0].sweep = kVplSweep;
+        all[0].sweepCount = std::uint32_t(std::size(kVplSweep));
+        all[1].choices = kSamplingNames;
+        all[2].allowed = kInterleaveValues;
+        all[2].allowedCount = std::uint32_t(std::size(kInterleaveValues));
+        all[2].sweep = kInterleaveSweep;
+        all[2].sweepCount = std::uint32_t(std::size(kInterleaveSweep));
+        all[4].choices = kResolutionNames;
+        return all;
+    }();
+    return table;
+}
+
+TechniqueEntry makeEntry() {
+    TechniqueEntry entry{};
+    entry.info.structSize = sizeof(LWTechniqueInfo);
+    entry.info.descSize = sizeof(LWRsmDesc);
+    entry.info.name = "rsm";
+    entry.info.summary = "virtual point lights from reflective shadow maps, gathered without visibility";
+    entry.info.parameters = parameters().data();
+    entry.info.parameterCount = std::uint32_t(parameters().size());
+    entry.info.setDefaults = setDefaults;
+    entry.create = create;
+    entry.estimateBytes = estimateBytes;
+    return entry;
+}
+
+}  // namespace
+
+const TechniqueEntry& rsmEntry() {
+    static const TechniqueEntry entry = makeEntry();
+    return entry;
+}
+
+}  // namespace lightwell
+
+extern "C" void lwDefaultRsm(LWRsmDesc* desc) {
+    if (!desc) return;
+    *desc = LWRsmDesc{};
+    desc->structSize = sizeof *desc;
+    desc->vpls = 256;
+    desc->sampling = LW_SAMPLING_FLUX;
+    desc->interleave = 4;
+    desc->filter = 1;
+    desc->resolution = LW_RESOLUTION_FULL;
+}
