@@ -30,10 +30,11 @@ InterleavedGather::InterleavedGather(Device& device, std::uint32_t interleave)
 }
 
 void InterleavedGather::recordGather(Executor& executor, const Planes& position, const Planes& normal,
-                                     const VplSampling& vpls, const Planes& irradiance, const Buffer& counts) {
+                                     const Buffer& vpls, lw_subset_order order, const Planes& irradiance,
+                                     const Buffer& counts) {
     executor.run("interleaved_gather.gather", gather_, itemsOver(position, gather_.width() * interleave_),
-                 groupOf(gather_), position, normal, cl_int(position.width), cl_int(position.height), vpls.vpls(),
-                 vpls.order(), irradiance, counts);
+                 groupOf(gather_), position, normal, cl_int(position.width), cl_int(position.height), vpls, order,
+                 irradiance, counts);
 }
 
 void InterleavedGather::recordFilter(Executor& executor, const Planes& position, const Planes& normal,

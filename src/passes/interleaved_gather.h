@@ -6,7 +6,7 @@
 
 #include "compute/buffer.h"
 #include "compute/executor.h"
-#include "passes/vpl_sampling.h"
+#include "shared/subset_order.h"
 
 namespace lightwell {
 
@@ -15,11 +15,11 @@ public:
     // interleave: 1, 2, 4 or 8.
     InterleavedGather(Device& device, std::uint32_t interleave);
 
-    // Pass "interleaved_gather.gather": irradiance (3 planes) from one subset of the VPLs per pixel, times
-    // the number of subsets. counts[0] grows by the pixels with neither
+    // Pass "interleaved_gather.gather": irradiance (3 planes) from one subset of the VPLs (lw_vpl by slot)
+    // per pixel, times the number of subsets. counts[0] grows by the pixels with neither
     // a surface nor a zero normal.
-    void recordGather(Executor& executor, const Planes& position, const Planes& normal, const VplSampling& vpls,
-                      const Planes& irradiance, const Buffer& counts);
+    void recordGather(Executor& executor, const Planes& position, const Planes& normal, const Buffer& vpls,
+                      lw_subset_order order, const Planes& irradiance, const Buffer& counts);
     // Pass "interleaved_gather.filter"; irradiance and filtered are different images. interleave > 1 only.
     void recordFilter(Executor& executor, const Planes& position, const Planes& normal, const Planes& irradiance,
                       const Planes& filtered);

@@ -132,7 +132,7 @@ void RsmTechnique::light(Executor& executor, ViewState& state, const Planes& irr
         normal = halfNormal;
     }
     const Planes gathered = half || filter ? state.gathered.planes(position.width, position.height) : irradiance;
-    gather_.recordGather(executor, position, normal, sampling_, gathered, state.counts);
+    gather_.recordGather(executor, position, normal, sampling_.vpls(), sampling_.order(), gathered, state.counts);
     Planes lit = gathered;
     if (filter) {
         lit = half ? state.filtered.planes(position.width, position.height) : irradiance;

@@ -1,0 +1,122 @@
+// Half resolution and back, against serial twins and invariants.
+#include "passes/joint_bilateral.h"
+
+#include <catch2/catch.hpp>
+#include <limits>
+
+#include "reference/surfaces.h"
+#include "support/kernel_rig.h"
+
+using namespace lightwell;
+using namespace lightwell::test;
+using reference::Image;
+using reference::Vec;
+
+namespace {
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr double kTwinTolerance = 2e-5;
+
+struct Half {
+    Image position, normal;
+};
+Half downsampleOn(KernelRig& rig, const Image& position, const Image& normal) {
+    const std::uint32_t w = position.width, h = position.height, hw = JointBilateral::halved(w), hh = JointBilateral::halved(h);
+    const Guarded p = rig.uploadPlanes(position.planes, w, h, 3, kNaN), n = rig.uploadPlanes(normal.planes, w, h, 3, 1.0f);
+    const Guarded hp = rig.makePlanes(hw, hh, 3), hn = rig.makePlanes(hw, hh, 3);
+    JointBilateral pass(rig.device());
+    pass.recordDownsample(rig.executor(), rig.planes(p, w, h, 3), rig.planes(n, w, h, 3), rig.planes(hp, hw, hh, 3),
+                          rig.planes(hn, hw, hh, 3));
+    rig.device().finish();
+    Half half{Image(hw, hh), Image(hw, hh)};
+    half.position.planes = rig.downloadPlanes(rig.planes(hp, hw, hh, 3));
+    half.normal.planes = rig.downloadPlanes(rig.planes(hn, hw, hh, 3));
+    return half;
+}
+
+Image upsampleOn(KernelRig& rig, const Image& position, const Image& normal, const Half& half, const Image& light, int& fallbacks) {
+    const std::uint32_t w = position.width, h = position.height, hw = light.width, hh = light.height;
+    const Guarded p = rig.uploadPlanes(position.planes, w, h, 3, kNaN), n = rig.uploadPlanes(normal.planes, w, h, 3, 1.0f);
+    const Guarded hp = rig.uploadPlanes(half.position.planes, hw, hh, 3, kNaN), hn = rig.uploadPlanes(half.normal.planes, hw, hh, 3, 1.0f);
+    const Guarded e = rig.uploadPlanes(light.planes, hw, hh, 3, kNaN), out = rig.makePlanes(w, h, 3);
+    const Guarded counts = rig.upload(std::vector<cl_int>{0, 0});
+    JointBilateral pass(rig.device());
+    pass.recordUpsample(rig.executor(), rig.planes(p, w, h, 3), rig.planes(n, w, h, 3), rig.planes(hp, hw, hh, 3),
+                        rig.planes(hn, hw, hh, 3), rig.planes(e, hw, hh, 3), rig.planes(out, w, h, 3), counts);
+    rig.device().finish();
+    fallbacks = rig.download<cl_int>(counts)[1];
+    Image result(w, h);
+    result.planes = rig.downloadPlanes(rig.planes(out, w, h, 3));
+    return result;
+}
+
+}  // namespace
+
+TEST_CASE("down- and up-sampling equal their serial twins", "[joint_bilateral]") {
+    const auto width = GENERATE(1u, 16u);
+    const auto size = GENERATE(std::make_pair(1u, 1u), std::make_pair(2u, 31u), std::make_pair(33u, 8u), std::make_pair(131u, 57u));
+    CAPTURE(width, size.first, size.second);
+    KernelRig rig(width);
+    Image position(size.first, size.second), normal(size.first, size.second);
+    reference::fillCorner(position, normal);
+    const std::uint32_t hw = JointBilateral::halved(size.first), hh = JointBilateral::halved(size.second);
+    const Half half = downsampleOn(rig, position, normal);
+    Half twin{Image(hw, hh), Image(hw, hh)};
+    reference::downsample(position, normal, twin.position, twin.normal);
+    CHECK(disagreement(half.position.planes, twin.position.planes, 1e-6) == "");
+    CHECK(disagreement(half.normal.planes, twin.normal.planes, 1e-6) == "");
+
+    const Image light = reference::randomImage(hw, hh, 4);
+    int fallbacks = 0;
+    const Image up = upsampleOn(rig, position, normal, half, light, fallbacks);
+    Image expected(size.first, size.second);
+    const std::uint32_t expectedFallbacks = reference::upsample(position, normal, twin.position, twin.normal, light, expected);
+    CHECK(disagreement(up.planes, expected.planes, kTwinTolerance, 1e-3) == "");
+    CHECK(fallbacks == int(expectedFallbacks));
+}
+
+TEST_CASE("up-sampling has the same bits at every width", "[joint_bilateral]") {
+    Image position(77, 33), normal(77, 33);
+    reference::fillCorner(position, normal);
+    const Image light = reference::randomImage(39, 17, 8);
+    int fallbacks = 0;
+    KernelRig scalar(1);
+    const Image first = upsampleOn(scalar, position, normal, downsampleOn(scalar, position, normal), light, fallbacks);
+    for (const std::uint32_t width : {4u, 8u, 16u}) {
+        KernelRig rig(width);
+        int other = 0;
+        CHECK(bitDifference(upsampleOn(rig, position, normal, downsampleOn(rig, position, normal), light, other).planes,
+                            first.planes) == "");
+        CHECK(other == fallbacks);
+    }
+}
+
+TEST_CASE("a constant passes, nothing crosses an edge, no surface stays dark", "[joint_bilateral]") {
+    const auto width = GENERATE(1u, 16u);
+    KernelRig rig(width);
+    Image position(90, 70), normal(90, 70);
+    reference::fillCorner(position, normal);
+    // A lone pixel before the background: its block's sample is itself.
+    position.set(41, 3, {0.4, 0.9, 2.0});
+    normal.set(41, 3, {0, 0, 1});
+    const Half half = downsampleOn(rig, position, normal);
+    Image light(45, 35);
+    for (float& v : light.planes) v = 0.3f;
+    int fallbacks = 0;
+    const Image constant = upsampleOn(rig, position, normal, half, light, fallbacks);
+    for (std::uint32_t y = 0; y < 70; ++y)
+        for (std::uint32_t x = 0; x < 90; ++x)
+            REQUIRE(constant.get(x, y).x == Approx(reference::surfaceAt(position, normal, x, y).valid ? 0.3 : 0.0).epsilon(1e-6));
+    // The slab glows; where a pixel of another surface has a sample of its own, nothing of it arrives.
+    for (std::uint32_t y = 0; y < 35; ++y)
+        for (std::uint32_t x = 0; x < 45; ++x)
+            light.set(x, y, half.position.get(x, y).z == Approx(0.7) && half.normal.get(x, y).z > 0.5 ? Vec{5, 5, 5} : Vec{});
+    const Image slab = upsampleOn(rig, position, normal, half, light, fallbacks);
+    int crossed = 0;
+    for (std::uint32_t y = 0; y < 70; ++y)
+        for (std::uint32_t x = 0; x < 90; ++x) {
+            const bool onSlab = position.get(x, y).z == Approx(0.7) && normal.get(x, y).z > 0.5;
+            if (!onSlab && slab.get(x, y).x > 1e-5) ++crossed;
+        }
+    CHECK(crossed <= fallbacks);
+}

@@ -1,0 +1,216 @@
+// Plain serial double-precision twins of the gather and its filters: no tiling, no lanes, no float
+// tricks. They state what the kernels compute, pixel by pixel.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <random>
+#include <vector>
+
+#include "shared/subset_order.h"
+#include "shared/vpl_types.h"
+
+namespace lightwell::reference {
+
+struct Vec {
+    double x = 0, y = 0, z = 0;
+};
+inline Vec operator+(Vec a, Vec b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+inline Vec operator-(Vec a, Vec b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline Vec operator*(Vec a, double s) { return {a.x * s, a.y * s, a.z * s}; }
+inline double dot(Vec a, Vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline Vec unit(Vec a) { return a * (1.0 / std::sqrt(dot(a, a))); }
+
+// Packed planes of width * height floats, as the rig uploads them.
+struct Image {
+    std::uint32_t width = 0, height = 0;
+    std::vector<float> planes;
+    Image(std::uint32_t w, std::uint32_t h, std::uint32_t count = 3) : width(w), height(h), planes(std::size_t(w) * h * count) {}
+    std::size_t at(std::uint32_t x, std::uint32_t y) const { return std::size_t(y) * width + x; }
+    Vec get(std::uint32_t x, std::uint32_t y) const {
+        const std::size_t n = std::size_t(width) * height, i = at(x, y);
+        return {planes[i], planes[n + i], planes[2 * n + i]};
+    }
+    void set(std::uint32_t x, std::uint32_t y, Vec v) {
+        const std::size_t n = std::size_t(width) * height, i = at(x, y);
+        planes[i] = float(v.x);
+        planes[n + i] = float(v.y);
+        planes[2 * n + i] = float(v.z);
+    }
+};
+
+struct Surface {
+    Vec position, normal;
+    bool valid = false;
+};
+inline Surface surfaceAt(const Image& position, const Image& normal, std::uint32_t x, std::uint32_t y) {
+    Surface s{position.get(x, y), normal.get(x, y)};
+    const double n2 = dot(s.normal, s.normal);
+    s.valid = n2 > 0.25 && n2 < 4.0 && std::isfinite(s.position.x + s.position.y + s.position.z);
+    if (s.valid) s.normal = s.normal * (1.0 / std::sqrt(n2));
+    return s;
+}
+
+inline lw_vpl makeVpl(Vec position, Vec normal, Vec flux, double area) {
+    lw_vpl v{};
+    v.positionArea = {{float(position.x), float(position.y), float(position.z), float(area)}};
+    v.normal = {{float(normal.x), float(normal.y), float(normal.z), 0.0f}};
+    v.flux = {{float(flux.x), float(flux.y), float(flux.z), 0.0f}};
+    return v;
+}
+
+// E += Phi / pi * c_p c / (d^2 + c_p A / pi), with the cosines as cosines.
+inline Vec vplIrradiance(const lw_vpl& v, const Surface& s) {
+    const double pi = 3.14159265358979323846;
+    const Vec to = Vec{v.positionArea.s[0], v.positionArea.s[1], v.positionArea.s[2]} - s.position;
+    const double d = std::sqrt(dot(to, to));
+    if (d == 0.0) return {};
+    const double c = std::max(0.0, dot(to, s.normal) / d);
+    const double cp = std::max(0.0, -dot(to, {v.normal.s[0], v.normal.s[1], v.normal.s[2]}) / d);
+    const double w = cp * c / (pi * (d * d + cp * v.positionArea.s[3] / pi));
+    return Vec{v.flux.s[0], v.flux.s[1], v.flux.s[2]} * w;
+}
+
+// The raw interleaved image: pixel (x, y) takes subset (y mod n) * n + x mod n, times n^2.
+inline Image gather(const Image& position, const Image& normal, const std::vector<lw_vpl>& vpls, lw_subset_order order,
+                    std::uint32_t n) {
+    Image out(position.width, position.height);
+    for (std::uint32_t y = 0; y < out.height; ++y)
+        for (std::uint32_t x = 0; x < out.width; ++x) {
+            const Surface s = surfaceAt(position, normal, x, y);
+            if (!s.valid) continue;
+            const std::size_t first = std::size_t((y % n) * n + x % n) * std::size_t(order.capacity);
+            Vec sum;
+            for (std::size_t k = 0; k < std::size_t(order.capacity); ++k) sum = sum + vplIrradiance(vpls[first + k], s);
+            out.set(x, y, sum * double(n * n));
+        }
+    return out;
+}
+
+// Neighbour q on the tangent plane of s (slope 1/4), weight linear in the cosine from 0.8 on.
+inline double edgeWeight(const Surface& s, const Surface& q) {
+    if (!q.valid) return 0.0;
+    const Vec d = q.position - s.position;
+    const double off = dot(d, s.normal);
+    if (off * off > 0.25 * 0.25 * dot(d, d)) return 0.0;
+    return std::clamp((dot(q.normal, s.normal) - 0.8) / 0.2, 0.0, 1.0);
+}
+
+// n x n window around each pixel, moved inside at the border.
+inline Image filter(const Image& position, const Image& normal, const Image& light, std::uint32_t n) {
+    Image out(light.width, light.height);
+    auto first = [n](std::uint32_t at, std::uint32_t size) {
+        const int last = std::max(int(size) - int(n), 0);
+        return std::uint32_t(std::clamp(int(at) - int(n / 2 - 1), 0, last));
+    };
+    for (std::uint32_t y = 0; y < out.height; ++y)
+        for (std::uint32_t x = 0; x < out.width; ++x) {
+            const Surface s = surfaceAt(position, normal, x, y);
+            if (!s.valid) continue;
+            Vec sum;
+            double weight = 0.0;
+            for (std::uint32_t j = first(y, out.height); j < std::min(first(y, out.height) + n, out.height); ++j)
+                for (std::uint32_t i = first(x, out.width); i < std::min(first(x, out.width) + n, out.width); ++i) {
+                    const double w = edgeWeight(s, surfaceAt(position, normal, i, j));
+                    sum = sum + light.get(i, j) * w;
+                    weight += w;
+                }
+            out.set(x, y, sum * (1.0 / weight));
+        }
+    return out;
+}
+
+// Half resolution: the first valid pixel of each 2x2 block: (0,0), (1,1), (1,0), (0,1).
+inline void downsample(const Image& position, const Image& normal, Image& halfPosition, Image& halfNormal) {
+    const std::uint32_t order[4][2] = {{0, 0}, {1, 1}, {1, 0}, {0, 1}};
+    for (std::uint32_t y = 0; y < halfPosition.height; ++y)
+        for (std::uint32_t x = 0; x < halfPosition.width; ++x)
+            for (const auto& [dx, dy] : order) {
+                const std::uint32_t fx = 2 * x + dx, fy = std::min(2 * y + dy, position.height - 1);
+                if (fx >= position.width) continue;
+                const Surface s = surfaceAt(position, normal, fx, fy);
+                if (!s.valid) continue;
+                halfPosition.set(x, y, s.position);
+                halfNormal.set(x, y, s.normal);
+                break;
+            }
+}
+
+// Returns the number of pixels lit without the edge test.
+inline std::uint32_t upsample(const Image& position, const Image& normal, const Image& halfPosition,
+                              const Image& halfNormal, const Image& halfLight, Image& out) {
+    std::uint32_t fallbacks = 0;
+    for (std::uint32_t y = 0; y < out.height; ++y)
+        for (std::uint32_t x = 0; x < out.width; ++x) {
+            const Surface s = surfaceAt(position, normal, x, y);
+            if (!s.valid) continue;
+            Vec sum, rest;
+            double weight = 0.0, restWeight = 0.0;
+            for (int j = -1; j <= 1; ++j)
+                for (int i = -1; i <= 1; ++i) {
+                    const int hx = int(x / 2) + i, hy = int(y / 2) + j;
+                    if (hx < 0 || hy < 0 || hx >= int(halfLight.width) || hy >= int(halfLight.height)) continue;
+                    const double tx = 1.0 - std::abs(2 * hx - int(x)) / 3.0, ty = 1.0 - std::abs(2 * hy - int(y)) / 3.0;
+                    const Surface q = surfaceAt(halfPosition, halfNormal, std::uint32_t(hx), std::uint32_t(hy));
+                    if (tx <= 1e-9 || ty <= 1e-9 || !q.valid) continue;
+                    const Vec e = halfLight.get(std::uint32_t(hx), std::uint32_t(hy));
+                    const double w = tx * ty * edgeWeight(s, q);
+                    const double r = tx * ty * (std::max(0.0, dot(q.normal, s.normal)) + 1e-3);
+                    sum = sum + e * w;
+                    weight += w;
+                    rest = rest + e * r;
+                    restWeight += r;
+                }
+            const bool lost = weight <= 1e-4;
+            fallbacks += lost ? 1 : 0;
+            out.set(x, y, lost ? rest * (1.0 / restWeight) : sum * (1.0 / weight));
+        }
+    return fallbacks;
+}
+
+// ------------------------------------------------------------------------------------ test scenes
+
+// A floor that meets a wall, a slab standing before them, and background: depth edges, normal edges,
+// grazing angles.
+inline void fillCorner(Image& position, Image& normal) {
+    for (std::uint32_t y = 0; y < position.height; ++y)
+        for (std::uint32_t x = 0; x < position.width; ++x) {
+            const double u = (x + 0.5) / position.width, v = (y + 0.5) / position.height;
+            if (v < 0.1) continue;  // background
+            if (u > 0.3 && u < 0.5 && v > 0.3 && v < 0.8) {
+                position.set(x, y, {u, 1.0 - v, 0.7});
+                normal.set(x, y, {0, 0, 1});
+            } else if (v < 0.6) {
+                position.set(x, y, {u, 1.0 - v, 0.0});
+                normal.set(x, y, {0, 0, 1});
+            } else {
+                position.set(x, y, {u, 0.4, (v - 0.6) * 2.0});
+                normal.set(x, y, {0, 1, 0});
+            }
+        }
+}
+
+inline Image randomImage(std::uint32_t width, std::uint32_t height, unsigned seed) {
+    Image image(width, height);
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> value(0.0f, 2.0f);
+    for (float& v : image.planes) v = value(random);
+    return image;
+}
+
+inline std::vector<lw_vpl> randomVpls(std::size_t count, unsigned seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> place(-1.0, 2.0), component(-1.0, 1.0), flux(0.0, 1.0);
+    std::vector<lw_vpl> vpls;
+    while (vpls.size() < count) {
+        const Vec n{component(random), component(random), component(random)};
+        if (dot(n, n) < 0.01) continue;
+        vpls.push_back(makeVpl({place(random), place(random), place(random)}, unit(n),
+                               {flux(random), flux(random), flux(random)}, 0.01 * flux(random)));
+    }
+    return vpls;
+}
+
+}  // namespace lightwell::reference
