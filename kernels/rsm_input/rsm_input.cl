@@ -1,0 +1,106 @@
+// The last steps of importing reflective shadow maps; unpacking itself is gbuffer_input's.
+#include "shared/rsm_types.h"
+#include "shared/wide.h"
+
+// One work-item = one row of one map: its entry (first texel, width, map, 0) in the table of rows. The
+// first map's launch also clears the counters.
+__kernel void rsm_input_rows(__global int4* rows, __global uint* counters, const LwRsmSpan span) {
+    const int y = (int)get_global_id(0);
+    if (y >= span.height) return;
+    const int padded = (span.width + 15) & ~15;
+    rows[span.firstRow + y] = (int4)(span.firstTexel + y * padded, span.width, span.index, 0);
+    if (span.index == 0 && y < LW_RSM_COUNTERS) counters[y] = 0;
+    if (span.index == 0 && y == 0)
+        for (int c = span.height; c < LW_RSM_COUNTERS; ++c) counters[c] = 0;
+}
+
+#if LW_WIDTH == 1
+#define LW_COUNT(m) ((uint)(m))
+#else
+// Lanes that are set (-1 each).
+LW_FN uint lw_count_lanes(mask m) {
+    int lanes[LW_WIDTH];
+    LW_CAT(vstore, LW_WIDTH)(m, 0, lanes);
+    int count = 0;
+    for (int l = 0; l < LW_WIDTH; ++l) count -= lanes[l];
+    return (uint)count;
+}
+#define LW_COUNT(m) lw_count_lanes(m)
+#endif
+
+LW_FN real lw_linear(float4 c, real i, real j) { return fma_(c.x, i, fma_(c.y, j, c.w)); }
+
+// One work-item = LW_WIDTH texels of a row, in place. Makes every value finite, the normals unit length
+// and the padding dark, and computes the texel's surface area:
+//   directional: A_p = A_texel / c_l;   perspective: A_p = Omega_texel * d^2 / c_l,
+//   Omega_texel = (texel's area at unit distance) * cos^3(angle to the axis),
+// c_l the cosine between normal and light, bounded below by LW_MIN_LIGHT_COSINE. `texels` holds
+// LW_RSM_PLANES planes, `stride` floats apart.
+__kernel void rsm_input_finish(__global float* texels, int stride, __global uint* counters,
+                               const LwRsmSpan span) {
+    const int x = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);
+    const int padded = (span.width + 15) & ~15;
+    if (x >= padded || y >= span.height) return;
+    __global float* at = texels + span.firstTexel + y * padded + x;
+    const real none = (real)0.0f;
+    const real i = lane_iota() + ((float)x + 0.5f), j = (real)((float)y + 0.5f);
+    const mask inside = i < (float)span.width;
+
+    real px = load(at, 0), py = load(at, stride), pz = load(at, 2 * stride);
+    real nx = load(at, 3 * stride), ny = load(at, 4 * stride), nz = load(at, 5 * stride);
+    real r = load(at, 6 * stride), g = load(at, 7 * stride), b = load(at, 8 * stride);
+
+    // What is there: nothing (zero normal), something that can't be used, or a lit surface.
+    const real n2 = fma_(nx, nx, fma_(ny, ny, nz * nz));
+    const real p2 = fma_(px, px, fma_(py, py, pz * pz));
+    const mask empty = n2 == 0.0f;
+    const mask usable = isfinite(n2) & isfinite(p2) & isfinite(r) & isfinite(g) & isfinite(b) &
+                        (r >= 0.0f) & (g >= 0.0f) & (b >= 0.0f);
+    const mask rejected = inside & not_(empty) & not_(usable);
+    const mask surface = inside & not_(empty) & usable;
+    mask covered = inside & not_(inside);
+    for (int c = 0; c < span.finerCount; ++c) {
+        const real cx = lw_linear(span.finer[2 * c], i, j), cy = lw_linear(span.finer[2 * c + 1], i, j);
+        covered = covered | (inside & (fabs(cx) <= 1.0f) & (fabs(cy) <= 1.0f));
+    }
+
+    // Area of the surface seen through the texel.
+    const real scale = select_((real)1.0f, sqrt(n2), surface);
+    nx = select_(none, nx / scale, surface);
+    ny = select_(none, ny / scale, surface);
+    nz = select_(none, nz / scale, surface);
+    px = select_(none, px, surface);
+    py = select_(none, py, surface);
+    pz = select_(none, pz, surface);
+    real area;
+    if (span.perspective) {
+        const real lx = span.light.x - px, ly = span.light.y - py, lz = span.light.z - pz;
+        const real d2 = fma_(lx, lx, fma_(ly, ly, lz * lz));
+        const real distance = sqrt(select_((real)1.0f, d2, d2 > 0.0f));
+        const real cosine = fma_(nx, lx, fma_(ny, ly, nz * lz)) / distance;
+        const real ax = lw_linear(span.rayX, i, j), ay = lw_linear(span.rayY, i, j),
+                   az = lw_linear(span.rayZ, i, j);
+        const real ray2 = fma_(ax, ax, fma_(ay, ay, az * az));  // 1 / cos^2 of the angle to the axis
+        area = span.texelArea / (ray2 * sqrt(ray2)) * d2 / fmax(cosine, (real)LW_MIN_LIGHT_COSINE);
+    } else {
+        // The normal stands on the lit side, so the axis needs no sign.
+        const real cosine = fabs(fma_(nx, span.light.x, fma_(ny, span.light.y, nz * span.light.z)));
+        area = span.texelArea / fmax(cosine, (real)LW_MIN_LIGHT_COSINE);
+    }
+
+    const mask lit = surface & not_(covered);
+    store(px, at, 0);
+    store(py, at, stride);
+    store(pz, at, 2 * stride);
+    store(nx, at, 3 * stride);
+    store(ny, at, 4 * stride);
+    store(nz, at, 5 * stride);
+    store(select_(none, r, lit), at, 6 * stride);
+    store(select_(none, g, lit), at, 7 * stride);
+    store(select_(none, b, lit), at, 8 * stride);
+    store(select_(none, area, surface), at, 9 * stride);
+
+    // Whole-number counts: the order of the additions does not show.
+    if (any_(rejected)) atomic_add(counters + LW_RSM_REJECTED, LW_COUNT(rejected));
+    if (any_(covered)) atomic_add(counters + LW_RSM_COVERED, LW_COUNT(covered));
+}
