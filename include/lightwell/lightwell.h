@@ -68,7 +68,7 @@ extern "C" {
 /** Zeroes a struct and sets its `structSize`: `LWFrame frame; LW_INIT(frame);` */
 #define LW_INIT(object)                               \
     do {                                              \
-        static const char lwZero_[sizeof(object)];    \
+        static const char lwZero_[sizeof(object)] = {0}; \
         const char* lwFrom_ = lwZero_;                \
         char* lwTo_ = (char*)&(object);               \
         size_t lwByte_;                               \

@@ -35,11 +35,11 @@ __kernel void gbuffer_input_unproject(__global const uchar* depthSource, const L
     p.x = lw_linear(u.x, i, j);
     p.y = lw_linear(u.y, i, j);
     p.z = lw_linear(u.z, i, j);
-    mask valid = isfinite(depth);
+    mask valid = isfinite_(depth);
     if (u.mode == LW_UNPROJECT_HOMOGENEOUS) {
         const real high = fma_(u.w.x, i, fma_(u.w.y, j, fma_(u.w.z, depth, u.w.w)));
         const real w = high + fma_(u.wRest.z, depth, lw_linear(u.wRest, i, j));
-        valid = valid & (w > 0.0f);
+        valid = and_(valid, w > 0.0f);
         p.x = fma_(u.x.z, depth, p.x) / w;
         p.y = fma_(u.y.z, depth, p.y) / w;
         p.z = fma_(u.z.z, depth, p.z) / w;
@@ -50,12 +50,12 @@ __kernel void gbuffer_input_unproject(__global const uchar* depthSource, const L
         p.y *= scale;
         p.z *= scale;
     }
-    if (u.positiveOnly) valid = valid & (depth > 0.0f);
+    if (u.positiveOnly) valid = and_(valid, depth > 0.0f);
     p.x += u.origin.x;
     p.y += u.origin.y;
     p.z += u.origin.z;
     // Squared distances must be finite too, or the gather would meet infinities.
-    valid = valid & isfinite(fma_(p.x, p.x, fma_(p.y, p.y, p.z * p.z)));
+    valid = and_(valid, isfinite_(fma_(p.x, p.x, fma_(p.y, p.y, p.z * p.z))));
 
     const real none = (real)0.0f;
     int at = positionLayout.x + y * positionLayout.y + x;

@@ -14,21 +14,9 @@ __kernel void rsm_input_rows(__global int4* rows, __global uint* counters, const
         for (int c = span.height; c < LW_RSM_COUNTERS; ++c) counters[c] = 0;
 }
 
-#if LW_WIDTH == 1
-#define LW_COUNT(m) ((uint)(m))
-#else
-// Lanes that are set (-1 each).
-LW_FN uint lw_count_lanes(mask m) {
-    int lanes[LW_WIDTH];
-    LW_CAT(vstore, LW_WIDTH)(m, 0, lanes);
-    int count = 0;
-    for (int l = 0; l < LW_WIDTH; ++l) count -= lanes[l];
-    return (uint)count;
-}
-#define LW_COUNT(m) lw_count_lanes(m)
-#endif
-
 LW_FN real lw_linear(float4 c, real i, real j) { return fma_(c.x, i, fma_(c.y, j, c.w)); }
+
+LW_FN mask lw_usable_flux(real flux) { return and_(isfinite_(flux), flux >= 0.0f); }
 
 // One work-item = LW_WIDTH texels of a row, in place. Makes every value finite, the normals unit length
 // and the padding dark, and computes the texel's surface area:
@@ -54,14 +42,15 @@ __kernel void rsm_input_finish(__global float* texels, int stride, __global uint
     const real n2 = fma_(nx, nx, fma_(ny, ny, nz * nz));
     const real p2 = fma_(px, px, fma_(py, py, pz * pz));
     const mask empty = n2 == 0.0f;
-    const mask usable = isfinite(n2) & isfinite(p2) & isfinite(r) & isfinite(g) & isfinite(b) &
-                        (r >= 0.0f) & (g >= 0.0f) & (b >= 0.0f);
-    const mask rejected = inside & not_(empty) & not_(usable);
-    const mask surface = inside & not_(empty) & usable;
-    mask covered = inside & not_(inside);
+    const mask usable = and_(and_(isfinite_(n2), isfinite_(p2)),
+                             and_(lw_usable_flux(r), and_(lw_usable_flux(g), lw_usable_flux(b))));
+    const mask occupied = and_(inside, not_(empty));
+    const mask rejected = and_(occupied, not_(usable));
+    const mask surface = and_(occupied, usable);
+    mask covered = splat_mask(0);
     for (int c = 0; c < span.finerCount; ++c) {
         const real cx = lw_linear(span.finer[2 * c], i, j), cy = lw_linear(span.finer[2 * c + 1], i, j);
-        covered = covered | (inside & (fabs(cx) <= 1.0f) & (fabs(cy) <= 1.0f));
+        covered = or_(covered, and_(inside, and_(fabs(cx) <= 1.0f, fabs(cy) <= 1.0f)));
     }
 
     // Area of the surface seen through the texel.
@@ -88,7 +77,7 @@ __kernel void rsm_input_finish(__global float* texels, int stride, __global uint
         area = span.texelArea / fmax(cosine, (real)LW_MIN_LIGHT_COSINE);
     }
 
-    const mask lit = surface & not_(covered);
+    const mask lit = and_(surface, not_(covered));
     store(px, at, 0);
     store(py, at, stride);
     store(pz, at, 2 * stride);
@@ -101,6 +90,6 @@ __kernel void rsm_input_finish(__global float* texels, int stride, __global uint
     store(select_(none, area, surface), at, 9 * stride);
 
     // Whole-number counts: the order of the additions does not show.
-    if (any_(rejected)) atomic_add(counters + LW_RSM_REJECTED, LW_COUNT(rejected));
-    if (any_(covered)) atomic_add(counters + LW_RSM_COVERED, LW_COUNT(covered));
+    if (any_(rejected)) atomic_add(counters + LW_RSM_REJECTED, (uint)count_(rejected));
+    if (any_(covered)) atomic_add(counters + LW_RSM_COVERED, (uint)count_(covered));
 }

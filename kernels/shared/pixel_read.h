@@ -60,7 +60,7 @@ LW_FN LwTriple lw_unit_or_none(LwTriple n) {
 // Octahedral map of the unit sphere (Cigolle et al. 2014, "A Survey of Efficient Representations for
 // Independent Unit Vectors"), snorm16: value / 32767, at least -1.
 LW_FN LwTriple lw_decode_octahedral(real u, real v) {
-    const mask none = (u == (real)LW_OCT_NO_SURFACE) & (v == (real)LW_OCT_NO_SURFACE);
+    const mask none = and_(u == (real)(LW_OCT_NO_SURFACE), v == (real)(LW_OCT_NO_SURFACE));
     u = fmax(u / 32767.0f, (real)-1.0f);
     v = fmax(v / 32767.0f, (real)-1.0f);
     LwTriple n;

@@ -182,6 +182,10 @@ bool Device::insideLog() const {
     return insideLogOf == this;
 }
 
+bool Device::insideAnyLog() {
+    return insideLogOf != nullptr;
+}
+
 void Device::warnOfCache(const std::string& problem) {
     if (std::exchange(warnedOfCache_, true)) return;
     log(LW_LOG_WARNING, "cache: " + problem +

@@ -38,7 +38,8 @@ public:
     const std::string& identity() const { return identity_; }
 
     void log(LWLogLevel level, const std::string& message) const;
-    bool insideLog() const;  // this thread is inside the device's log callback
+    bool insideLog() const;        // this thread is inside the device's log callback
+    static bool insideAnyLog();    // ... of any device
     void describe(LWDeviceInfo& info) const;
     void finish();  // clFinish, then saves new binaries; throws DEVICE on an execution error
 

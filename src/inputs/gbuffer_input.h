@@ -12,6 +12,7 @@
 namespace lightwell {
 
 // Which images a technique reads; others are neither checked nor touched. Position and normal always.
+// Albedo, direct radiance and roughness must then be given; motion and mask may be absent (empty planes).
 enum GBufferNeeds : std::uint32_t {
     kNeedsAlbedo = 1, kNeedsDirectRadiance = 2, kNeedsRoughness = 4, kNeedsMotion = 8, kNeedsReceiveMask = 16
 };
@@ -32,6 +33,8 @@ public:
 
     void report(Report& report) const;  // one choice per image: in place, or unpacked from what
     std::uint64_t bytes() const;
+    // The most that bytes() becomes for a view, whatever formats the host hands over.
+    static std::uint64_t estimateBytes(const LWViewDesc& view, std::uint32_t needs);
 
 private:
     struct Impl;

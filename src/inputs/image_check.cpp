@@ -192,6 +192,8 @@ CheckedImage checkImage(Device& device, const LWImage& image, const ImageRole& r
              ", so that no row starts before the memory, got ", image.byteOffset);
     const std::int64_t lastPlane = std::int64_t(facts.planes - 1) * pixels.bytePlaneStride;
     const std::int64_t lastStart = pixels.byteOffset + std::max<std::int64_t>(lastRow, 0) + lastPlane;
+    checked.pixelBytes = facts.pixelBytes;
+    checked.planes = facts.planes;
     checked.firstByte = std::uint64_t(first);
     checked.endByte =
         std::uint64_t(lastStart + (std::int64_t(width) - 1) * pixels.bytePixelStride) + facts.pixelBytes;

@@ -41,6 +41,7 @@ struct CheckedImage {
     LWImage image;  // the host's, as it came
     LwPixels pixels;
     std::uint64_t firstByte, endByte;  // from the start of memory
+    std::uint32_t pixelBytes, planes;  // bytes of a pixel in one plane; planes of the format
     // Rows of whole groups of 16 float32 on 64-byte borders, planes apart: usable as planes as it stands,
     // with the padding of the last row in `paddedEndByte`.
     bool planesLayout;

@@ -25,6 +25,8 @@ public:
 
     void report(Report& report) const;
     std::uint64_t bytes() const;
+    // The most that bytes() becomes for a view, whatever format the host asks for.
+    static std::uint64_t estimateBytes(const LWViewDesc& view, std::uint32_t planeCount);
 
 private:
     struct Impl;

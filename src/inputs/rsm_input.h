@@ -42,6 +42,8 @@ public:
 
     void report(Report& report) const;  // rejected_texels, covered_texels, choices; after Device::finish
     std::uint64_t bytes() const;
+    // What bytes() becomes for maps of so many texels in all (rows a multiple of 16 long).
+    static std::uint64_t estimateBytes(std::uint64_t rsmTexels);
 
 private:
     struct Impl;

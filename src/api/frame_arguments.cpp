@@ -1,0 +1,125 @@
+#include "api/frame_arguments.h"
+
+#include <cmath>
+#include <string>
+
+#include "api/call.h"
+#include "api/structs.h"
+
+namespace lightwell {
+namespace {
+
+// Counts beyond these are garbage that would be read past the end of some array.
+constexpr std::uint32_t kMaxLights = 4096;
+constexpr std::uint32_t kMaxRsms = 64;
+constexpr std::uint32_t kMaxVpls = 1u << 24;
+constexpr std::uint32_t kMaxBlockers = 1u << 20;
+constexpr std::uint32_t kMaxSourceViews = 64;
+constexpr std::uint32_t kMaxWaitEvents = 1024;
+
+void checkCount(std::uint32_t count, const void* array, std::uint32_t most, const std::string& name,
+                const char* countField, const char* arrayField) {
+    if (count > most)
+        fail(LW_ERROR_INVALID_ARGUMENT, name, ".", countField, ": expected at most ", most, ", got ", count);
+    if (count > 0 && !array)
+        fail(LW_ERROR_INVALID_ARGUMENT, name, ".", arrayField, ": expected an array of ", count, ", got null");
+}
+
+void checkFinite(const float* values, int count, const std::string& name, bool notNegative = false) {
+    for (int i = 0; i < count; ++i)
+        if (!std::isfinite(values[i]) || (notNegative && values[i] < 0.0f))
+            fail(LW_ERROR_INVALID_ARGUMENT, name, ": expected finite numbers", notNegative ? " of 0 or more" : "",
+                 ", got ", values[i]);
+}
+
+void checkLight(const LWLight& light, const std::string& name) {
+    checkFinite(light.position, 3, name + ".position");
+    checkFinite(light.direction, 3, name + ".direction");
+    checkFinite(light.irradiance, 3, name + ".irradiance", true);
+    checkFinite(light.radiantIntensity, 3, name + ".radiantIntensity", true);
+    checkFinite(&light.innerConeAngle, 1, name + ".innerConeAngle", true);
+    constexpr float kRightAngle = 1.5707964f;
+    if (!(light.outerConeAngle >= light.innerConeAngle && light.outerConeAngle <= kRightAngle))
+        fail(LW_ERROR_INVALID_ARGUMENT, name, ".outerConeAngle: expected innerConeAngle (", light.innerConeAngle,
+             ") .. pi/2, got ", light.outerConeAngle);
+}
+
+}  // namespace
+
+SyncArgument::SyncArgument(const LWSync* from, void* clContext, const char* name) {
+    if (!from) return;
+    sync_ = readStruct(from, name);
+    given_ = true;
+    checkCount(sync_.waitEventCount, sync_.waitEvents, kMaxWaitEvents, name, "waitEventCount", "waitEvents");
+    for (std::uint32_t i = 0; i < sync_.waitEventCount; ++i) {
+        cl_context context = nullptr;
+        if (!sync_.waitEvents[i] ||
+            clGetEventInfo(static_cast<cl_event>(sync_.waitEvents[i]), CL_EVENT_CONTEXT, sizeof context, &context,
+                           nullptr) != CL_SUCCESS ||
+            context != clContext)
+            fail(LW_ERROR_INVALID_ARGUMENT, name, ".waitEvents[", i, "]: expected a cl_event of the device's context, got ",
+                 sync_.waitEvents[i] ? "another" : "null");
+    }
+}
+
+FrameArgument::FrameArgument(Call& call, const LWFrame* from) : frame_(readStruct(from, "frame")) {
+    checkCount(frame_.lightCount, frame_.lights, kMaxLights, "frame", "lightCount", "lights");
+    checkCount(frame_.vplCount, frame_.vpls, kMaxVpls, "frame", "vplCount", "vpls");
+    checkCount(frame_.blockerCount, frame_.blockers, kMaxBlockers, "frame", "blockerCount", "blockers");
+    checkCount(frame_.sourceViewCount, frame_.sourceViews, kMaxSourceViews, "frame", "sourceViewCount",
+               "sourceViews");
+    copyLights();
+    copySourceViews(call);
+    if (frame_.geometry) {
+        geometry_ = readStruct(frame_.geometry, "frame.geometry");
+        frame_.geometry = &geometry_;
+    }
+    checkNumbers();
+}
+
+void FrameArgument::copyLights() {
+    lights_ = readStructs(frame_.lights, frame_.lightCount, "frame.lights");
+    rsms_.reserve(lights_.size());
+    for (std::size_t i = 0; i < lights_.size(); ++i) {
+        LWLight& light = lights_[i];
+        const std::string name = "frame.lights[" + std::to_string(i) + "]";
+        checkLight(light, name);
+        checkCount(light.rsmCount, light.rsms, kMaxRsms, name, "rsmCount", "rsms");
+        rsms_.push_back(readStructs(light.rsms, light.rsmCount, name + ".rsms"));
+        light.rsms = rsms_.back().data();
+    }
+    frame_.lights = lights_.data();
+}
+
+void FrameArgument::copySourceViews(Call& call) {
+    sourceGBuffers_.reserve(frame_.sourceViewCount);
+    for (std::uint32_t i = 0; i < frame_.sourceViewCount; ++i) {
+        const std::string name = "frame.sourceViews[" + std::to_string(i) + "]";
+        const LWSourceView& source = frame_.sourceViews[i];
+        call.viewOfDevice(source.view, (name + ".view").c_str());
+        sourceGBuffers_.push_back(readStruct(source.gbuffer, name + ".gbuffer"));
+        sourceViews_.push_back({source.view, &sourceGBuffers_.back()});
+    }
+    frame_.sourceViews = sourceViews_.data();
+}
+
+void FrameArgument::checkNumbers() const {
+    checkFinite(frame_.environment, 3, "frame.environment", true);
+    for (std::uint32_t i = 0; i < frame_.vplCount; ++i) {
+        const LWVpl& vpl = frame_.vpls[i];
+        const bool good = std::isfinite(vpl.position[0] + vpl.position[1] + vpl.position[2] + vpl.normal[0] +
+                                        vpl.normal[1] + vpl.normal[2]);
+        const bool lit = vpl.area >= 0.0f && vpl.flux[0] >= 0.0f && vpl.flux[1] >= 0.0f && vpl.flux[2] >= 0.0f &&
+                         std::isfinite(vpl.area + vpl.flux[0] + vpl.flux[1] + vpl.flux[2]);
+        if (!good || !lit)
+            fail(LW_ERROR_INVALID_ARGUMENT, "frame.vpls[", i,
+                 "]: expected finite numbers, area and flux of 0 or more, got something else");
+    }
+    for (std::uint32_t i = 0; i < frame_.blockerCount; ++i) {
+        const LWBlocker& blocker = frame_.blockers[i];
+        checkFinite(blocker.center, 3, "frame.blockers[" + std::to_string(i) + "].center");
+        checkFinite(&blocker.radius, 1, "frame.blockers[" + std::to_string(i) + "].radius", true);
+    }
+}
+
+}  // namespace lightwell

@@ -1,0 +1,67 @@
+// What stands behind the API's handles.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "compute/device.h"
+#include "compute/executor.h"
+#include "lightwell/lightwell.h"
+#include "techniques/technique.h"
+
+namespace lightwell {
+
+struct Object {
+    virtual ~Object() = default;
+};
+
+struct DeviceObject : Object {
+    explicit DeviceObject(const LWDeviceDesc& desc) : device(desc) {}
+
+    // Keeps the first error until it is fetched.
+    void keepError(LWStatus status, const std::string& message) {
+        const std::lock_guard<std::mutex> lock(errorMutex);
+        if (errorStatus != LW_SUCCESS) return;
+        errorStatus = status;
+        errorMessage = message;
+    }
+
+    std::mutex mutex;  // serialises every call on the device; taken before the errors' mutex
+    Device device;
+
+    std::mutex errorMutex;
+    LWStatus errorStatus = LW_SUCCESS;
+    std::string errorMessage;
+};
+
+// Children name their device first, so that it goes last.
+struct ViewObject : Object {
+    ViewObject(std::shared_ptr<DeviceObject> owner, std::uint32_t maxWidth, std::uint32_t maxHeight)
+        : device(std::move(owner)), view(std::make_shared<View>(maxWidth, maxHeight)) {}
+
+    std::shared_ptr<DeviceObject> device;
+    std::shared_ptr<View> view;
+};
+
+// The times and copies of the frame since one lwUpdate.
+struct FrameRecord {
+    explicit FrameRecord(Device& device) : executor(device, profile) {}
+    Profile profile;
+    Executor executor;
+};
+
+struct TechniqueObject : Object {
+    std::shared_ptr<DeviceObject> device;
+    std::unique_ptr<Technique> technique;
+    std::unique_ptr<FrameRecord> record;  // of the last lwUpdate; null before the first
+    bool updated = false;
+    std::uint64_t frameIndex = 0;
+
+    // What the last lwGetStats pointed to.
+    std::vector<LWPassTime> passes;
+    Report report;
+};
+
+}  // namespace lightwell

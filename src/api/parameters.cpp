@@ -1,0 +1,86 @@
+#include "api/parameters.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <string>
+
+#include "compute/error.h"
+
+namespace lightwell {
+namespace {
+
+template <class T>
+T fieldAs(const char* desc, const LWParameter& parameter) {
+    T value;
+    std::memcpy(&value, desc + parameter.byteOffset, sizeof value);
+    return value;
+}
+
+double valueOf(const char* desc, const LWParameter& parameter) {
+    switch (parameter.kind) {
+        case LW_PARAMETER_FLOAT: return double(fieldAs<float>(desc, parameter));
+        case LW_PARAMETER_ENUM: return double(fieldAs<std::int32_t>(desc, parameter));
+        default: return double(fieldAs<std::uint32_t>(desc, parameter));
+    }
+}
+
+bool allows(const LWParameter& parameter, double value) {
+    if (!(value >= parameter.minimum && value <= parameter.maximum)) return false;  // also NaN
+    if (!parameter.allowed) return true;
+    return std::any_of(parameter.allowed, parameter.allowed + parameter.allowedCount,
+                       [&](double allowed) { return allowed == value; });
+}
+
+[[noreturn]] void refuse(const LWParameter& parameter, double value) {
+    std::ostringstream expected;
+    if (parameter.allowed) {
+        for (std::uint32_t i = 0; i < parameter.allowedCount; ++i)
+            expected << (i ? ", " : "one of ") << parameter.allowed[i];
+    } else if (parameter.choices) {
+        for (int i = 0; parameter.choices[i]; ++i)
+            expected << (i ? ", " : "one of ") << i << " (" << parameter.choices[i] << ")";
+    } else {
+        expected << parameter.minimum << " .. " << parameter.maximum;
+    }
+    fail(LW_ERROR_INVALID_ARGUMENT, "desc.", parameter.name, ": expected ", expected.str(), ", got ", value);
+}
+
+}  // namespace
+
+const TechniqueEntry& findTechniqueEntry(const char* name) {
+    if (!name) fail(LW_ERROR_INVALID_ARGUMENT, "name: expected a technique's name, got null");
+    std::string names;
+    for (const TechniqueEntry& entry : techniqueEntries()) {
+        if (std::strcmp(entry.info.name, name) == 0) return entry;
+        names += (names.empty() ? "" : ", ") + std::string(entry.info.name);
+    }
+    fail(LW_ERROR_INVALID_ARGUMENT, "name: expected one of ", names, ", got \"", std::string(name).substr(0, 64), "\"");
+}
+
+std::vector<std::uint64_t> readDescriptor(const TechniqueEntry& entry, const void* desc) {
+    const LWTechniqueInfo& info = entry.info;
+    // Whole 8-byte words, so that the descriptor is aligned for any of its fields.
+    std::vector<std::uint64_t> defaults((info.descSize + 7) / 8);
+    info.setDefaults(defaults.data());
+    if (!desc) return defaults;
+    std::vector<std::uint64_t> result = defaults;
+    std::uint32_t size = 0;
+    std::memcpy(&size, desc, sizeof size);
+    if (size != info.descSize)
+        fail(LW_ERROR_INVALID_ARGUMENT, "desc.structSize: expected ", info.descSize,
+             " (set it with the technique's lwDefault function or LW_INIT), got ", size);
+    std::memcpy(result.data(), desc, size);
+    char* fields = reinterpret_cast<char*>(result.data());
+    const char* defaultFields = reinterpret_cast<const char*>(defaults.data());
+    for (std::uint32_t i = 0; i < info.parameterCount; ++i) {
+        const LWParameter& parameter = info.parameters[i];
+        const double value = valueOf(fields, parameter);
+        if (allows(parameter, value)) continue;
+        if (value != 0.0) refuse(parameter, value);
+        std::memcpy(fields + parameter.byteOffset, defaultFields + parameter.byteOffset, 4);
+    }
+    return result;
+}
+
+}  // namespace lightwell

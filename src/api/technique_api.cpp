@@ -1,0 +1,145 @@
+// Entry points: techniques and frames.
+#include "api/call.h"
+#include "api/frame_arguments.h"
+#include "api/parameters.h"
+#include "api/structs.h"
+
+using namespace lightwell;
+
+namespace {
+
+LWStatus createTechnique(const char* function, LWDevice device, const char* name, const void* desc,
+                         LWTechnique* technique) {
+    return enter(function, [&](Call& call) {
+        Device& own = call.device(device);
+        if (!technique) fail(LW_ERROR_INVALID_ARGUMENT, "technique: expected an address for the handle, got null");
+        *technique = nullptr;
+        const TechniqueEntry& entry = findTechniqueEntry(name);
+        const auto descriptor = readDescriptor(entry, desc);
+        auto object = std::make_shared<TechniqueObject>();
+        object->device = call.owner();
+        object->technique = entry.create(own, descriptor.data());
+        *technique = static_cast<LWTechnique>(addHandle(HandleKind::kTechnique, std::move(object)));
+    });
+}
+
+// True when a failed update left the technique's world part as it was: techniques and inputs check their
+// arguments before they change anything.
+bool refusedUnchanged(LWStatus status) {
+    return status == LW_ERROR_INVALID_ARGUMENT || status == LW_ERROR_INVALID_HANDLE || status == LW_ERROR_UNSUPPORTED;
+}
+
+void checkOutput(const LWOutput& output) {
+    for (const LWImage* image : {&output.irradiance, &output.validity, &output.ambientOcclusion,
+                                 &output.specularRadiance, &output.shadow})
+        if (image->format != LW_FORMAT_NONE || image->host || image->clMem) return;
+    fail(LW_ERROR_INVALID_ARGUMENT, "output: expected at least one image, got none");
+}
+
+}  // namespace
+
+std::uint32_t lwCountTechniques(void) { return std::uint32_t(techniqueEntries().size()); }
+
+LWStatus lwDescribeTechnique(std::uint32_t index, LWTechniqueInfo* info) {
+    return enter("lwDescribeTechnique", [&](Call&) {
+        const std::uint32_t size = checkedStructSize(info, "info");
+        const auto& entries = techniqueEntries();
+        if (index >= entries.size())
+            fail(LW_ERROR_INVALID_ARGUMENT, "index: expected less than ", entries.size(), ", got ", index);
+        writeStruct(info, size, entries[index].info);
+    });
+}
+
+LWStatus lwCreateTechnique(LWDevice device, const char* name, const void* desc, LWTechnique* technique) {
+    return createTechnique("lwCreateTechnique", device, name, desc, technique);
+}
+
+LWStatus lwCreateRsm(LWDevice device, const LWRsmDesc* desc, LWTechnique* technique) {
+    return createTechnique("lwCreateRsm", device, "rsm", desc, technique);
+}
+
+LWStatus lwRetainTechnique(LWTechnique technique) {
+    return enter("lwRetainTechnique",
+                 [&](Call&) { retainHandle(HandleKind::kTechnique, technique, "technique"); });
+}
+
+LWStatus lwReleaseTechnique(LWTechnique technique) {
+    return enter("lwReleaseTechnique", [&](Call& call) {
+        auto object = std::static_pointer_cast<TechniqueObject>(
+            releaseHandle(HandleKind::kTechnique, technique, "technique"));
+        if (object) call.dispose(std::move(object));
+    });
+}
+
+LWStatus lwEstimateMemory(LWDevice device, const char* name, const void* desc, const LWViewDesc* view,
+                          std::uint64_t rsmTexels, std::uint64_t* bytes) {
+    return enter("lwEstimateMemory", [&](Call& call) {
+        call.device(device);
+        if (!bytes) fail(LW_ERROR_INVALID_ARGUMENT, "bytes: expected an address, got null");
+        const TechniqueEntry& entry = findTechniqueEntry(name);
+        const auto descriptor = readDescriptor(entry, desc);
+        const LWViewDesc own = readStruct(view, "view");
+        constexpr std::uint32_t kMaxSide = 16384;
+        if (own.maxWidth == 0 || own.maxHeight == 0 || own.maxWidth > kMaxSide || own.maxHeight > kMaxSide)
+            fail(LW_ERROR_INVALID_ARGUMENT, "view: expected 1 .. ", kMaxSide, " pixels a side, got ", own.maxWidth,
+                 " x ", own.maxHeight);
+        constexpr std::uint64_t kMaxTexels = std::uint64_t(1) << 40;  // products with it stay in 64 bits
+        if (rsmTexels > kMaxTexels)
+            fail(LW_ERROR_INVALID_ARGUMENT, "rsmTexels: expected at most ", kMaxTexels, ", got ", rsmTexels);
+        *bytes = entry.estimateBytes(descriptor.data(), own, rsmTexels);
+    });
+}
+
+LWStatus lwPrewarm(LWTechnique technique, LWView view) {
+    return enter("lwPrewarm", [&](Call& call) {
+        const auto object = call.technique(technique);
+        const auto own = call.viewOfDevice(view, "view");
+        FrameRecord scratch(call.owner()->device);  // its times belong to no frame
+        object->technique->prewarm(scratch.executor, own);
+        call.waitIdle();
+        call.owner()->device.finish();
+    });
+}
+
+LWStatus lwUpdate(LWTechnique technique, const LWFrame* frame) {
+    return enter("lwUpdate", [&](Call& call) {
+        const auto object = call.technique(technique);
+        Device& device = call.owner()->device;
+        const FrameArgument own(call, frame);
+        const SyncArgument sync(own.get().sync, device.context(), "frame.sync");
+        auto record = std::make_unique<FrameRecord>(device);
+        try {
+            record->executor.waitFor(sync.get());
+            object->technique->update(record->executor, own.get());
+            record->executor.signal(sync.get());
+            record->executor.flush();
+        } catch (const Error& error) {
+            if (!refusedUnchanged(error.status())) object->updated = false;
+            throw;
+        } catch (...) {
+            object->updated = false;
+            throw;
+        }
+        object->record = std::move(record);
+        object->frameIndex = own.get().frameIndex;
+        object->updated = true;
+    });
+}
+
+LWStatus lwRender(LWTechnique technique, LWView view, const LWGBuffer* gbuffer, const LWOutput* output) {
+    return enter("lwRender", [&](Call& call) {
+        const auto object = call.technique(technique);
+        const auto own = call.viewOfDevice(view, "view");
+        const LWGBuffer ownGBuffer = readStruct(gbuffer, "gbuffer");
+        const LWOutput ownOutput = readStruct(output, "output");
+        checkOutput(ownOutput);
+        const SyncArgument sync(ownOutput.sync, call.owner()->device.context(), "output.sync");
+        if (!object->updated)
+            fail(LW_ERROR_NOT_UPDATED, "technique: expected a successful lwUpdate before, got none");
+        Executor& executor = object->record->executor;
+        executor.waitFor(sync.get());
+        object->technique->render(executor, own, ownGBuffer, ownOutput);
+        executor.signal(sync.get());
+        executor.flush();
+    });
+}
