@@ -19,16 +19,16 @@ public:
         glm::vec3 position{0.0f}, normal{0.0f}, emission{0.0f};
         float areaDensity = 0.0f;  // 1/m^2
     };
-    // A point on the emitters, area times radiance deciding how often; u in [0,1)^3.
-    Sample sample(const glm::vec3& u) const;
+    // A point on the emitters, area times radiance deciding how often; u in [0,1)^2.
+    Sample sample(const glm::vec2& u) const;
     // Density per area with which sample() picks a point of this emission.
     float areaDensity(const glm::vec3& emission) const;
 
     // Irradiance from the emitters straight to a surface, shadow rays included: deterministic, from
-    // kSamples points on emitters and kSamples cosine-distributed rays, joined by the balance heuristic.
+    // kSamples points on emitters and kSamples cosine-distributed rays, joined by the power heuristic.
     glm::vec3 irradiance(const glm::vec3& position, const glm::vec3& geometricNormal,
                          const glm::vec3& normal, std::uint32_t pixel) const;
-    static constexpr int kSamples = 32;
+    static constexpr int kSamples = 64;
 
 private:
     struct Triangle {

@@ -120,12 +120,17 @@ std::vector<Rsm> renderSuns(const RayScene& scene, const Light& light, const Rsm
 // Cube around the light; the first face looks along `forward`, the last the other way.
 std::vector<Rsm> renderFaces(const RayScene& scene, const Light& light, const glm::vec3& forward,
                              int faces, int size) {
-    const LightAxes axes(forward);
-    const glm::dvec3 directions[6] = {-axes.back, axes.right, -axes.right, axes.up, -axes.up, axes.back};
+    const LightAxes cube(forward);
+    // Each face's "up" is an axis of the cube too, so that the faces tile the sphere.
+    const LightAxes axes[6] = {cube,
+                               {cube.right, cube.up},
+                               {-cube.right, cube.up},
+                               {cube.up, cube.back},
+                               {-cube.up, -cube.back},
+                               {cube.back, cube.up}};
     std::vector<Rsm> rsms;
     for (int i = 0; i < faces; ++i)
-        rsms.push_back(
-            renderFrustum(scene, light, LightAxes(glm::vec3(directions[i])), 0.25 * double(kPi), size));
+        rsms.push_back(renderFrustum(scene, light, axes[i], 0.25 * double(kPi), size));
     return rsms;
 }
 

@@ -11,6 +11,8 @@ namespace studio {
 struct LightAxes {
     glm::dvec3 right, up, back;
     explicit LightAxes(const glm::vec3& direction);
+    LightAxes(const glm::dvec3& forward, const glm::dvec3& upwards)  // unit, at right angles
+        : right(glm::cross(forward, upwards)), up(upwards), back(-forward) {}
     glm::mat3 rows() const;  // world -> light, rotation only
 };
 
