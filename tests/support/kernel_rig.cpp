@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "compute/error.h"
-#include "support/test_programs.h"
+#include "support/test_device.h"
 
 namespace lightwell::test {
 namespace {
@@ -32,10 +32,7 @@ Device& sharedDevice(std::uint32_t width) {
         desc.structSize = sizeof desc;
         desc.width = width;
         device = new Device(desc);
-        for (std::size_t i = 0; i < kTestProgramsCount; ++i)
-            device->programs().addSource(
-                kTestPrograms[i].name, std::string(reinterpret_cast<const char*>(kTestPrograms[i].bytes),
-                                                   kTestPrograms[i].size));
+        addTestPrograms(*device);
     }
     return *device;
 }
