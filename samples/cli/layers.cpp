@@ -1,0 +1,23 @@
+#include "layers.h"
+
+#include <algorithm>
+
+namespace cli {
+
+void addLayer(studio::Image& image, const std::string& prefix, const studio::PlanarBuffer& buffer) {
+    const char* channels = "RGB";
+    for (int plane = 0; plane < buffer.planes(); ++plane) {
+        std::vector<float>& to = image.plane(buffer.planes() == 1 ? prefix : prefix + channels[plane]);
+        for (int y = 0; y < buffer.height(); ++y)
+            std::copy_n(buffer.row(plane, y), buffer.width(),
+                        to.data() + std::ptrdiff_t(y) * buffer.width());
+    }
+}
+
+void addViewLayers(studio::Image& image, const studio::GBuffer& gbuffer) {
+    addLayer(image, "direct.", gbuffer.direct);
+    addLayer(image, "albedo.", gbuffer.albedo);
+    addLayer(image, "normal.", gbuffer.normal);
+}
+
+}  // namespace cli

@@ -1,0 +1,83 @@
+// The program `lightwell`: render with the library, trace the truth, compare the two. docs/cli.md.
+//
+// Exit codes: 0 done; 1 the work failed (device, disk); 2 a wrong argument; 130 interrupted.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <new>
+#include <string>
+
+#include "cli.h"
+#include "interrupt.h"
+
+namespace {
+
+constexpr int kFailed = 1, kWrongArgument = 2;
+
+// One line, whatever the message's own layout.
+void printError(std::string message) {
+    std::replace(message.begin(), message.end(), '\n', ' ');
+    fmt::print(stderr, "lightwell: {}\n", message);
+}
+
+std::vector<std::string> commandNames(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands(nullptr)) names.push_back(command->get_name());
+    return names;
+}
+
+// Named by the user, or "" when the first word is an option or missing.
+std::string commandWord(int argc, char** argv) {
+    return argc > 1 && argv[1][0] != '-' ? argv[1] : "";
+}
+
+int parse(CLI::App& app, int argc, char** argv) {
+    const std::string command = commandWord(argc, argv);
+    try {
+        if (!command.empty()) cli::requireOneOf("command", command, commandNames(app));
+        app.parse(argc, argv);
+        return 0;
+    } catch (const CLI::Success& success) {  // --help, --version
+        return app.exit(success);
+    } catch (const CLI::RequiredError& error) {
+        if (!command.empty()) throw cli::UsageError(fmt::format("{}: {}", command, error.what()));
+        throw cli::UsageError("expected a command; valid: " + cli::joinNames(commandNames(app)));
+    } catch (const CLI::ParseError& error) {
+        throw cli::UsageError(fmt::format("{}{}; see lightwell {}{}--help",
+                                          command.empty() ? "" : command + ": ", error.what(), command,
+                                          command.empty() ? "" : " "));
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app{
+        "Lightwell: indirect light for pictures already lit directly, and the truth to judge it by"};
+    app.name("lightwell");
+    app.set_version_flag("--version", LIGHTWELL_CLI_VERSION);
+    app.require_subcommand(1);
+    try {
+        cli::addDevices(app);
+        cli::addScenes(app);
+        cli::addRender(app);
+        cli::addReference(app);
+        cli::addCompare(app);
+        cli::addTriptych(app);
+        return parse(app, argc, argv);
+    } catch (const cli::UsageError& error) {
+        printError(error.what());
+        return kWrongArgument;
+    } catch (const cli::Interrupted& error) {
+        printError(error.what());
+        return cli::kInterruptedExitCode;
+    } catch (const std::bad_alloc&) {
+        printError("out of memory; a smaller --size needs less");
+        return kFailed;
+    } catch (const std::exception& error) {
+        printError(error.what());
+        return kFailed;
+    }
+}

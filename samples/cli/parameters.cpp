@@ -1,0 +1,167 @@
+#include "parameters.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "cli.h"
+#include "device_handles.h"
+
+namespace cli {
+namespace {
+
+std::vector<LWTechniqueInfo> describeTechniques() {
+    std::vector<LWTechniqueInfo> infos(lwCountTechniques(), sized<LWTechniqueInfo>());
+    for (std::size_t i = 0; i < infos.size(); ++i)
+        check(nullptr, lwDescribeTechnique(std::uint32_t(i), &infos[i]));
+    return infos;
+}
+
+std::vector<std::string> choicesOf(const LWParameter& parameter) {
+    std::vector<std::string> names;
+    for (const char* const* choice = parameter.choices; choice != nullptr && *choice != nullptr;
+         ++choice)
+        names.emplace_back(*choice);
+    return names;
+}
+
+std::string validValues(const LWParameter& parameter) {
+    if (parameter.kind == LW_PARAMETER_ENUM)
+        return fmt::format("{}", fmt::join(choicesOf(parameter), ", "));
+    if (parameter.kind == LW_PARAMETER_BOOL) return "on, off, true, false, 1, 0";
+    if (parameter.allowedCount > 0)
+        return fmt::format(
+            "{}", fmt::join(parameter.allowed, parameter.allowed + parameter.allowedCount, ", "));
+    // UINT limits are whole: no exponent.
+    if (parameter.kind == LW_PARAMETER_UINT)
+        return fmt::format("{:.0f} to {:.0f}", parameter.minimum, parameter.maximum);
+    return fmt::format("{} to {}", parameter.minimum, parameter.maximum);
+}
+
+bool isValid(const LWParameter& parameter, double value) {
+    const double* const end = parameter.allowed + parameter.allowedCount;
+    if (parameter.allowedCount > 0) return std::find(parameter.allowed, end, value) != end;
+    return value >= parameter.minimum && value <= parameter.maximum;
+}
+
+// The field's value as a number: an enum's index, a bool's 0 or 1.
+double parseValue(const LWParameter& parameter, const std::string& text) {
+    const auto refuse = [&]() -> double {
+        throw UsageError(fmt::format("--set {}: '{}' is not valid; expected {}", parameter.name, text,
+                                     validValues(parameter)));
+    };
+    if (parameter.kind == LW_PARAMETER_ENUM) {
+        const std::vector<std::string> names = choicesOf(parameter);
+        const auto name = std::find(names.begin(), names.end(), text);
+        return name == names.end() ? refuse() : double(name - names.begin());
+    }
+    if (parameter.kind == LW_PARAMETER_BOOL) {
+        if (text == "on" || text == "true" || text == "1") return 1.0;
+        return text == "off" || text == "false" || text == "0" ? 0.0 : refuse();
+    }
+    const std::string option = fmt::format("--set {}", parameter.name);
+    const double value = parameter.kind == LW_PARAMETER_UINT ? double(parseUnsigned(option, text))
+                                                             : parseNumber(option, text);
+    return isValid(parameter, value) ? value : refuse();
+}
+
+std::string defaultText(const LWParameter& parameter) {
+    if (parameter.kind == LW_PARAMETER_ENUM)
+        return choicesOf(parameter).at(std::size_t(parameter.defaultValue));
+    if (parameter.kind == LW_PARAMETER_BOOL) return parameter.defaultValue != 0.0 ? "on" : "off";
+    return fmt::format("{}", parameter.defaultValue);
+}
+
+}  // namespace
+
+std::vector<std::string> techniqueNames() {
+    std::vector<std::string> names;
+    for (const LWTechniqueInfo& info : describeTechniques()) names.emplace_back(info.name);
+    return names;
+}
+
+std::string describeParameters() {
+    std::string text = "Techniques and what --set takes (key=default: valid values; meaning):\n";
+    for (const LWTechniqueInfo& info : describeTechniques()) {
+        text += fmt::format("  {}: {}\n", info.name, info.summary);
+        for (std::uint32_t i = 0; i < info.parameterCount; ++i) {
+            const LWParameter& parameter = info.parameters[i];
+            text += fmt::format("    {}={}: {}; {}\n", parameter.name, defaultText(parameter),
+                                validValues(parameter), parameter.description);
+        }
+    }
+    return text;
+}
+
+Parameters::Parameters(const std::string& technique) {
+    requireOneOf("technique", technique, techniqueNames());
+    for (const LWTechniqueInfo& info : describeTechniques())
+        if (technique == info.name) info_ = info;
+    bytes_.resize((info_.descSize + sizeof(std::uint64_t) - 1) / sizeof(std::uint64_t));
+    info_.setDefaults(bytes_.data());
+}
+
+const LWParameter* Parameters::find(const std::string& name) const {
+    for (std::uint32_t i = 0; i < info_.parameterCount; ++i)
+        if (name == info_.parameters[i].name) return &info_.parameters[i];
+    return nullptr;
+}
+
+void Parameters::set(const std::string& assignment) {
+    const std::size_t equals = assignment.find('=');
+    if (equals == std::string::npos)
+        throw UsageError(fmt::format("--set '{}': expected key=value", assignment));
+    const std::string name = assignment.substr(0, equals);
+    const LWParameter* parameter = find(name);
+    if (parameter == nullptr) {
+        std::vector<std::string> names;
+        for (std::uint32_t i = 0; i < info_.parameterCount; ++i)
+            names.emplace_back(info_.parameters[i].name);
+        requireOneOf(fmt::format("--set key of technique {}", info_.name), name, names);
+    }
+    assign(*parameter, assignment.substr(equals + 1));
+}
+
+void Parameters::assign(const LWParameter& parameter, const std::string& text) {
+    const double value = parseValue(parameter, text);
+    char* field = reinterpret_cast<char*>(bytes_.data()) + parameter.byteOffset;
+    if (parameter.kind == LW_PARAMETER_FLOAT) {
+        const float real = float(value);
+        std::memcpy(field, &real, sizeof real);
+    } else {  // UINT, BOOL: uint32_t; ENUM: int32_t, never negative
+        const std::uint32_t whole = std::uint32_t(value);
+        std::memcpy(field, &whole, sizeof whole);
+    }
+}
+
+std::vector<std::pair<std::string, ParameterValue>> Parameters::resolved() const {
+    std::vector<std::pair<std::string, ParameterValue>> values;
+    for (std::uint32_t i = 0; i < info_.parameterCount; ++i) {
+        const LWParameter& parameter = info_.parameters[i];
+        const char* field = reinterpret_cast<const char*>(bytes_.data()) + parameter.byteOffset;
+        float real = 0.0f;
+        std::uint32_t whole = 0;
+        std::memcpy(&real, field, sizeof real);
+        std::memcpy(&whole, field, sizeof whole);
+        ParameterValue value;
+        switch (parameter.kind) {
+            case LW_PARAMETER_UINT:
+                value = std::uint64_t(whole);
+                break;
+            case LW_PARAMETER_FLOAT:
+                value = double(real);
+                break;
+            case LW_PARAMETER_ENUM:
+                value = choicesOf(parameter).at(whole);
+                break;
+            case LW_PARAMETER_BOOL:
+                value = whole != 0;
+                break;
+        }
+        values.emplace_back(parameter.name, std::move(value));
+    }
+    return values;
+}
+
+}  // namespace cli

@@ -1,0 +1,191 @@
+// `lightwell reference`: the truth by path tracing (studio/path_tracer.h), as an EXR with its noise.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+#include "cli.h"
+#include "gbuffer.h"
+#include "interrupt.h"
+#include "layers.h"
+#include "path_tracer.h"
+#include "progress.h"
+
+namespace cli {
+namespace {
+
+struct ReferenceOptions {
+    ViewOptions view;
+    std::string bounces, vpls, until, out, checkpoint;
+    std::string samples = "256", seed = "1";
+    bool unshadowed = false, half = false, compact = false;
+};
+
+// The traced layers whose sum stands in R, G, B.
+std::vector<std::string> chosenLayers(const ReferenceOptions& options) {
+    requireOneOf("--bounces", options.bounces, {"1", "2", "all"});
+    if (options.bounces != "1" && (options.unshadowed || !options.vpls.empty()))
+        throw UsageError(fmt::format("--bounces {}: {} knows one bounce only; expected --bounces 1",
+                                     options.bounces, options.unshadowed ? "--unshadowed" : "--vpls"));
+    if (options.bounces == "1") return {"bounce1"};
+    if (options.bounces == "2") return {"bounce1", "bounce2"};
+    return {"all"};
+}
+
+double parseUntil(const std::string& text) {
+    constexpr std::string_view kKey = "relMSE=";
+    if (text.rfind(kKey, 0) != 0) throw UsageError(fmt::format("--until '{}': expected relMSE=X", text));
+    const double target = parseNumber("--until relMSE", text.substr(kKey.size()));
+    if (target <= 0.0) throw UsageError(fmt::format("--until '{}': expected X above 0", text));
+    return target;
+}
+
+studio::PathTracerOptions tracerOptions(const ReferenceOptions& options) {
+    studio::PathTracerOptions tracer;
+    const std::uint64_t samples = parseUnsigned("--spp", options.samples);
+    if (samples < 2 || samples % 2 != 0 || samples > std::uint64_t(1) << 24)
+        throw UsageError(
+            fmt::format("--spp '{}': expected an even number from 2 to {} (half of the samples to "
+                        "each of two independent pictures)",
+                        options.samples, 1 << 24));
+    tracer.samplesPerPixel = int(samples);
+    tracer.seed = parseUnsigned("--seed", options.seed);
+    tracer.unshadowed = options.unshadowed;
+    tracer.judgedLayers = chosenLayers(options);
+    if (!options.until.empty()) {
+        if (!options.vpls.empty())
+            throw UsageError("--until: --vpls sums without noise; leave --until out");
+        tracer.untilRelMse = parseUntil(options.until);
+        tracer.samplesPerPixel = 16;  // look at the halves early; the target decides
+    }
+    return tracer;
+}
+
+void addTo(studio::Image& to, const std::string& prefix, const studio::Image& from,
+           const std::string& layer) {
+    for (const char* channel : {"R", "G", "B"}) {
+        std::vector<float>& sum = to.plane(prefix + channel);
+        const std::vector<float>& values = from.plane(layer + "." + channel);
+        for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += values[i];
+    }
+}
+
+// R, G, B: the sum of the chosen layers, whose halves a.<layer>.*, b.<layer>.* come along; then every
+// layer: direct_irradiance ("direct" is taken by the radiance L_d), bounce1, bounce2, all.
+studio::Image assemble(const studio::Image& traced, const std::vector<std::string>& chosen,
+                       bool isCompact) {
+    studio::Image image(traced.width, traced.height);
+    image.metadata = traced.metadata;
+    for (const std::string& layer : chosen) addTo(image, "", traced, layer);
+    if (isCompact) return image;
+    for (const std::string& layer : chosen)
+        for (const std::string half : {"a.", "b."})
+            if (traced.has(half + layer + ".R")) addTo(image, half + layer + ".", traced, half + layer);
+    for (const std::string layer : {"direct", "bounce1", "bounce2", "all"})
+        if (traced.has(layer + ".R"))
+            addTo(image, layer == "direct" ? "direct_irradiance." : layer + ".", traced, layer);
+    if (traced.has("validity")) image.plane("validity") = traced.plane("validity");
+    return image;
+}
+
+void describe(studio::Image& image, const ReferenceOptions& options, const studio::Camera& camera,
+              const std::vector<std::string>& chosen, double noise) {
+    const std::string layer = fmt::format("{}", fmt::join(chosen, "+"));
+    image.metadata["layer"] = layer;
+    image.metadata["scene"] = std::filesystem::path(options.view.scene).stem().string();
+    image.metadata["camera"] = camera.name;
+    image.metadata["size"] = options.view.size;
+    if (options.unshadowed) image.metadata["unshadowed"] = "1";
+    if (!options.vpls.empty())
+        image.metadata["vpls"] = std::filesystem::path(options.vpls).filename().string();
+    if (noise >= 0.0) image.metadata["noise." + layer] = fmt::format("{:.9g}", noise);
+}
+
+std::string checkpointPath(const ReferenceOptions& options) {
+    return options.checkpoint.empty() ? options.out + ".part" : options.checkpoint;
+}
+
+studio::Image traceWithProgress(const studio::RayScene& rayScene, const studio::GBuffer& gbuffer,
+                                studio::PathTracerOptions tracer) {
+    const InterruptGuard guard;
+    studio::ProgressLine line("tracing " + rayScene.scene().name);
+    tracer.progress = [&](double fraction, double relMse) {
+        line.update(fraction, relMse < 0.0 ? "" : fmt::format("noise (relMSE) {:.2e}", relMse));
+        if (InterruptGuard::wasRaised())
+            throw Interrupted("interrupted; the same command goes on from " + tracer.checkpoint);
+    };
+    studio::Image traced = studio::tracePaths(rayScene, gbuffer, tracer);
+    line.finish();
+    return traced;
+}
+
+void traceReference(const ReferenceOptions& options) {
+    studio::PathTracerOptions tracer = tracerOptions(options);
+    tracer.checkpoint = checkpointPath(options);
+    const Size size = parseSize(options.view.size);
+    requireOutputPath("--out", options.out, {".exr"});
+    requireOutputPath("--checkpoint", tracer.checkpoint, {});
+    std::vector<studio::VplRecord> vpls;
+    if (!options.vpls.empty()) {
+        vpls = asUsage([&] { return studio::readVpls(options.vpls); });
+        tracer.vpls = &vpls;
+    }
+    const auto scene = loadScene(options.view);
+    const studio::Camera camera = findCamera(*scene, options.view);
+
+    const float time = float(options.view.time);
+    const studio::RayScene rayScene(scene, time);
+    const studio::GBuffer gbuffer =
+        studio::renderGBuffer(rayScene, camera, size.width, size.height, camera, time);
+    const studio::Image traced = traceWithProgress(rayScene, gbuffer, tracer);
+
+    const bool hasHalves = traced.has("a." + tracer.judgedLayers.front() + ".R");
+    const double noise = hasHalves ? studio::estimateNoise(traced, tracer.judgedLayers) : -1.0;
+    studio::Image image = assemble(traced, tracer.judgedLayers, options.compact);
+    addLayer(image, "direct.", gbuffer.direct);
+    addLayer(image, "albedo.", gbuffer.albedo);
+    if (!options.compact) addLayer(image, "normal.", gbuffer.normal);
+    describe(image, options, camera, tracer.judgedLayers, noise);
+    studio::writeExr(options.out, image, options.half);
+    std::remove(tracer.checkpoint.c_str());
+    fmt::print("{}: {}x{}, {}, {} samples per pixel, noise (relMSE) {}\n", options.out, size.width,
+               size.height, image.metadata["layer"], image.metadata["spp"],
+               noise < 0.0 ? "none" : fmt::format("{:.3g}", noise));
+}
+
+}  // namespace
+
+void addReference(CLI::App& app) {
+    CLI::App* command = app.add_subcommand(
+        "reference",
+        "Path-trace the true indirect irradiance (W/m^2) of a view, with its own noise estimate");
+    auto options = std::make_shared<ReferenceOptions>();
+    options->view.declare(*command);
+    command
+        ->add_option("--bounces", options->bounces,
+                     "What stands in R,G,B: 1 = one indirect bounce; 2 = first and second together; all")
+        ->required();
+    command->add_flag("--unshadowed", options->unshadowed,
+                      "Every lit surface along a pixel's ray sends light, none blocks it (one bounce)");
+    command->add_option(
+        "--vpls", options->vpls,
+        "VPLs of `lightwell render --vpls-out`, summed with exact visibility (one bounce)");
+    CLI::Option* spp = command->add_option("--spp", options->samples, "Paths per pixel, an even number");
+    spp->capture_default_str();
+    command
+        ->add_option("--until", options->until, "relMSE=X: trace until the noise estimate is X or less")
+        ->excludes(spp);
+    command->add_option("--seed", options->seed, "Seed of the random numbers")->capture_default_str();
+    command->add_flag("--half", options->half, "Half-float channels instead of 32 bits");
+    command->add_flag(
+        "--compact", options->compact,
+        "Only R,G,B, direct.* and albedo.*, as a comparison needs them; the noise as metadata");
+    command->add_option("--checkpoint", options->checkpoint,
+                        "File to resume from; default: OUT.part, removed when done");
+    command->add_option("--out", options->out, "EXR to write")->required();
+    command->callback([options] { traceReference(*options); });
+}
+
+}  // namespace cli

@@ -1,0 +1,258 @@
+// `lightwell render`: one view of a scene with a technique of the library, measured.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstring>
+
+#include "cli.h"
+#include "layers.h"
+#include "path_tracer.h"
+#include "render_frames.h"
+#include "render_inputs.h"
+#include "render_report.h"
+
+namespace cli {
+namespace {
+
+// Direct light only: no device, no technique.
+constexpr const char* kNoTechnique = "none";
+constexpr std::uint32_t kVplChannels = 10;  // position, normal, flux, area
+
+struct RenderOptions {
+    ViewOptions view;
+    std::string technique, seed, vplsOut, device, debugView;
+    std::vector<std::string> assignments, outs;
+    int frames = 9, width = 0, rsmSize = 512, cascades = 1;
+    double exposure = 0.0, scale = 1.0;
+    bool asJson = false, printsHash = false;
+};
+
+void checkOptions(const RenderOptions& options) {
+    std::vector<std::string> techniques = techniqueNames();
+    techniques.push_back(kNoTechnique);
+    if (options.technique.empty())
+        throw UsageError("--technique is required; valid: " + joinNames(techniques));
+    requireOneOf("technique", options.technique, techniques);
+    if (options.width != 0)
+        requireOneOf("--width", std::to_string(options.width), {"1", "4", "8", "16"});
+    for (const std::string& out : options.outs) requireOutputPath("--out", out, {".exr", ".png"});
+    if (!options.vplsOut.empty()) requireOutputPath("--vpls-out", options.vplsOut, {});
+    const bool hasResult =
+        !options.outs.empty() || !options.vplsOut.empty() || options.asJson || options.printsHash;
+    if (!hasResult) throw UsageError("--out is required: a file name ending in .exr or .png");
+    if (options.technique == kNoTechnique) {
+        if (!options.vplsOut.empty() || !options.debugView.empty() || !options.assignments.empty())
+            throw UsageError("--technique none has no VPLs, debug views or parameters");
+    }
+}
+
+Parameters parseParameters(const RenderOptions& options) {
+    Parameters parameters(options.technique);
+    for (const std::string& assignment : options.assignments) parameters.set(assignment);
+    if (!options.seed.empty()) {
+        parseUnsigned("--seed", options.seed);
+        if (parameters.has("seed"))
+            parameters.set("seed=" + options.seed);
+        else
+            fmt::print(stderr, "note: technique {} draws no random numbers; --seed changes nothing\n",
+                       options.technique);
+    }
+    return parameters;
+}
+
+// FNV-1a over the bits of the pixels, padding left out: equal hashes, equal pictures.
+std::uint64_t hashBits(const studio::PlanarBuffer& buffer) {
+    std::uint64_t hash = 0xcbf29ce484222325u;
+    for (int plane = 0; plane < buffer.planes(); ++plane)
+        for (int y = 0; y < buffer.height(); ++y)
+            for (int x = 0; x < buffer.width(); ++x) {
+                std::uint32_t bits = 0;
+                std::memcpy(&bits, buffer.row(plane, y) + x, sizeof bits);
+                for (int byte = 0; byte < 4; ++byte)
+                    hash = (hash ^ ((bits >> (8 * byte)) & 0xffu)) * 0x100000001b3u;
+            }
+    return hash;
+}
+
+// The VPLs that light the picture; those that only fill the last group carry no flux.
+std::vector<studio::VplRecord> toVpls(const DebugPlanes& planes) {
+    if (planes.channels != kVplChannels)
+        throw std::runtime_error(
+            fmt::format("debug view vpls: expected {} channels, got {}", kVplChannels, planes.channels));
+    std::vector<studio::VplRecord> vpls;
+    for (std::size_t i = 0; i < std::size_t(planes.width) * planes.height; ++i) {
+        const auto vector = [&](std::uint32_t first) {
+            return glm::vec3(planes.plane(first)[i], planes.plane(first + 1)[i],
+                             planes.plane(first + 2)[i]);
+        };
+        const studio::VplRecord vpl{vector(0), vector(3), vector(6), planes.plane(9)[i]};
+        if (vpl.flux != glm::vec3(0.0f)) vpls.push_back(vpl);
+    }
+    return vpls;
+}
+
+// "NAME=FILE.exr": the channels c0, c1, ... of an intermediate buffer.
+void writeDebugView(const FrameRunner& runner, const std::string& argument) {
+    const std::size_t equals = argument.find('=');
+    const std::string path = equals == std::string::npos ? "" : argument.substr(equals + 1);
+    const DebugPlanes planes = runner.readDebugView(argument.substr(0, equals));
+    requireOutputPath("--debug-view", path, {".exr"});
+    studio::Image image(int(planes.width), int(planes.height));
+    for (std::uint32_t c = 0; c < planes.channels; ++c)
+        image.plane(fmt::format("c{:02}", c))
+            .assign(planes.plane(c), planes.plane(c) + image.pixelCount());
+    studio::writeExr(path, image);
+}
+
+studio::Image assemble(const RenderInputs& inputs, const studio::PlanarBuffer& irradiance,
+                       const studio::PlanarBuffer& validity, const RenderReport& report) {
+    studio::Image image(report.size.width, report.size.height);
+    addLayer(image, "", irradiance);
+    addLayer(image, "validity", validity);
+    addViewLayers(image, inputs.gbuffer());
+    image.metadata = {{"layer", "irradiance"},
+                      {"scene", report.scene},
+                      {"camera", report.camera},
+                      {"technique", report.technique}};
+    if (report.hasDevice) image.metadata["device"] = report.device.name;
+    for (const auto& [name, value] : report.parameters)
+        image.metadata["set." + name] =
+            std::visit([](const auto& held) { return fmt::format("{}", held); }, value);
+    return image;
+}
+
+void writeOutputs(const RenderOptions& options, const studio::Image& image, RenderReport& report) {
+    for (const std::string& out : options.outs) {
+        if (hasExtension(out, ".exr")) {
+            studio::writeExr(out, image);
+        } else {
+            const studio::Image lit = studio::composite(image);
+            const float exposure =
+                options.exposure > 0.0 ? float(options.exposure) : studio::autoExposure(lit);
+            studio::writePng(out, studio::toneMap(lit, exposure));
+            report.exposure = exposure;
+        }
+        report.outputs.push_back(out);
+    }
+}
+
+// The technique's picture into `report` and `image`.
+studio::Image renderWithTechnique(const RenderOptions& options, const RenderInputs& inputs,
+                                  RenderReport& report) {
+    const Parameters parameters = parseParameters(options);
+    const DeviceHandle device = openDevice(options.device, std::uint32_t(options.width));
+    FrameRunner runner(device.get(), options.technique, parameters, inputs);
+    report.parameters = parameters.resolved();
+    report.hasDevice = true;
+    report.figures = runner.run(options.frames);
+    report.device = deviceInfo(device.get());
+    report.frames = options.frames;
+    report.hash = hashBits(runner.irradiance());
+    if (!options.vplsOut.empty()) {
+        studio::writeVpls(options.vplsOut, toVpls(runner.readDebugView("vpls")));
+        report.outputs.push_back(options.vplsOut);
+    }
+    if (!options.debugView.empty()) writeDebugView(runner, options.debugView);
+    return assemble(inputs, runner.irradiance(), runner.validity(), report);
+}
+
+studio::Image renderDirectOnly(const RenderInputs& inputs, RenderReport& report) {
+    const studio::PlanarBuffer nothing(report.size.width, report.size.height, 3);
+    const studio::PlanarBuffer invalid(report.size.width, report.size.height, 1);
+    report.hash = hashBits(nothing);
+    return assemble(inputs, nothing, invalid, report);
+}
+
+void render(const RenderOptions& options) {
+    checkOptions(options);
+    RenderReport report;
+    report.size = parseSize(options.view.size);
+    if (options.technique != kNoTechnique) parseParameters(options);  // refuse before loading anything
+    const auto scene = loadScene(options.view);
+    if (options.scale != 1.0) scaleScene(*scene, float(options.scale));
+    const studio::Camera camera = findCamera(*scene, options.view);
+    report.scene = scene->name;
+    report.camera = camera.name;
+    report.technique = options.technique;
+    if (scene->lights.empty())
+        fmt::print(stderr, "note: scene {} has no sun, spot or point light\n", scene->name);
+
+    InputOptions inputOptions;
+    inputOptions.width = report.size.width;
+    inputOptions.height = report.size.height;
+    inputOptions.time = float(options.view.time);
+    inputOptions.rsm.size = options.rsmSize;
+    inputOptions.rsm.cascades = options.cascades;
+    const studio::RayScene rayScene(scene, inputOptions.time);
+    const RenderInputs inputs(rayScene, camera, inputOptions);
+    const studio::Image image = options.technique == kNoTechnique
+                                    ? renderDirectOnly(inputs, report)
+                                    : renderWithTechnique(options, inputs, report);
+    writeOutputs(options, image, report);
+    if (options.asJson)
+        fmt::print("{}", toJson(report));
+    else
+        fmt::print("{}", toText(report));
+    if (options.printsHash && !options.asJson) fmt::print("hash {}\n", hashText(report.hash));
+}
+
+void declareExtras(CLI::App& command, RenderOptions& options) {
+    command.add_option(
+        "--device", options.device,
+        "gpu, cpu, PLATFORM:DEVICE indices or part of a name; default: LIGHTWELL_DEVICE, else the best");
+    command.add_option("--width", options.width,
+                       "Lanes per work-item: 1, 4, 8 or 16; default: by probe");
+    command.add_option("--rsm-size", options.rsmSize, "Texels along each side of an RSM")
+        ->check(CLI::Range(1, kMaxSize))
+        ->capture_default_str();
+    command.add_option("--cascades", options.cascades, "Nested RSMs of a sun")
+        ->check(CLI::Range(1, 8))
+        ->capture_default_str();
+    command
+        .add_option(
+            "--exposure", options.exposure,
+            "PNG: factor on radiance before Reinhard's L/(1+L); default: log-average luminance to 0.18")
+        ->check(CLI::PositiveNumber);
+    command
+        .add_option("--scale", options.scale,
+                    "Scene in another unit: lengths times S, point and spot intensities times S^2")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    command.add_flag("--hash", options.printsHash,
+                     "Print a hash of the irradiance's bits (always in JSON)");
+    command.add_option("--debug-view", options.debugView, "NAME=FILE.exr: write an intermediate buffer");
+}
+
+}  // namespace
+
+void addRender(CLI::App& app) {
+    CLI::App* command =
+        app.add_subcommand("render", "Indirect light of a view with a technique of the library");
+    auto options = std::make_shared<RenderOptions>();
+    options->view.declare(*command);
+    command->add_option("--technique", options->technique,
+                        "A technique (below), or none: direct light only");
+    command->add_option("--set", options->assignments, "key=value parameters of the technique (below)");
+    command
+        ->add_option("--frames", options->frames,
+                     "Frames measured, after three of warm-up; times are medians")
+        ->check(CLI::Range(1, 100000))
+        ->capture_default_str();
+    command->add_option("--seed", options->seed, "Seed of the technique's samples; default: its own");
+    command->add_option("--vpls-out", options->vplsOut,
+                        "Write the VPLs, for `lightwell reference --vpls`");
+    command
+        ->add_option(
+            "--out", options->outs,
+            "FILE.exr: linear irradiance (W/m^2) R,G,B with layers direct.* (W/(sr m^2)), albedo.*, "
+            "normal.*, validity; FILE.png: the tone-mapped composite. May be repeated")
+        ->allow_extra_args(false);
+    command->add_flag("--json", options->asJson,
+                      "JSON on stdout: device, width, parameters, passes, total_ms, bytes, counts ...");
+    declareExtras(*command, *options);
+    command->footer([] { return describeParameters(); });
+    command->callback([options] { render(*options); });
+}
+
+}  // namespace cli

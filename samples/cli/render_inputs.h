@@ -1,0 +1,49 @@
+// What a host would hand to Lightwell for one view of a scene: G-buffer, lights and their RSMs, drawn by
+// the studio and described by lightwell.h's structs without a copy.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "gbuffer.h"
+#include "lightwell/lightwell.h"
+
+namespace cli {
+
+struct InputOptions {
+    int width = 0, height = 0;
+    float time = 0.0f;
+    studio::RsmOptions rsm;
+};
+
+// The structs point into the buffers beside them: made once, never moved.
+class RenderInputs {
+public:
+    RenderInputs(const studio::RayScene& scene, const studio::Camera& camera,
+                 const InputOptions& options);
+    RenderInputs(const RenderInputs&) = delete;
+    RenderInputs& operator=(const RenderInputs&) = delete;
+
+    const studio::GBuffer& gbuffer() const { return gbuffer_; }
+    const LWGBuffer& lwGBuffer() const { return lwGBuffer_; }
+    const std::vector<LWLight>& lights() const { return lights_; }
+    const float* environment() const { return environment_; }
+    std::uint64_t rsmTexelCount() const;
+
+private:
+    studio::GBuffer gbuffer_;
+    std::vector<std::vector<studio::Rsm>> rsms_;  // of each light
+    std::vector<std::vector<LWRsm>> lwRsms_;
+    std::vector<LWLight> lights_;
+    LWGBuffer lwGBuffer_{};
+    float environment_[3] = {};
+};
+
+// A planar buffer as an image that Lightwell uses in place.
+LWImage describePlanes(const studio::PlanarBuffer& buffer);
+
+// The same scene in another unit of length: lengths * factor, intensities (point, spot) * factor^2,
+// E_perp and radiances unchanged. Irradiance must not change.
+void scaleScene(studio::Scene& scene, float factor);
+
+}  // namespace cli
