@@ -51,6 +51,14 @@ std::uint64_t parseUnsigned(std::string_view option, std::string_view text) {
     return value;
 }
 
+std::pair<std::string, std::string> splitAssignment(std::string_view option, const std::string& text) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos || equals == 0)
+        throw UsageError(fmt::format("{} '{}': expected {}", option, text,
+                                     option == "--set" ? "key=value" : "NAME=FILE"));
+    return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
 std::string joinNames(const std::vector<std::string>& names) {
     return fmt::format("{}", fmt::join(names, ", "));
 }
@@ -81,16 +89,16 @@ void requireOutputPath(std::string_view option, const std::string& path,
             fmt::format("{} '{}': directory {} is not writable", option, path, parent.string()));
 }
 
-void ViewOptions::declare(CLI::App& command) {
-    command
-        .add_option(
-            "SCENE", scene,
-            "Scene name (`lightwell scenes` lists them) or path to a scene JSON, glTF, GLB or OBJ")
-        ->required();
+CLI::Option* ViewOptions::declare(CLI::App& command) {
     command.add_option("--camera", camera, "Camera by name; default: the scene's first");
     command.add_option("--size", size, "Picture size in pixels, WIDTHxHEIGHT")->capture_default_str();
     command.add_option("--time", time, "Time in seconds at which keyframes are taken")
         ->capture_default_str();
+    return command
+        .add_option(
+            "SCENE", scene,
+            "Scene name (`lightwell scenes` lists them) or path to a scene JSON, glTF, GLB or OBJ")
+        ->required();
 }
 
 std::shared_ptr<studio::Scene> loadScene(const ViewOptions& options) {

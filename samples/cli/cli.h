@@ -9,11 +9,13 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace CLI {
 class App;
-}
+class Option;
+}  // namespace CLI
 namespace studio {
 struct Camera;
 struct Image;
@@ -46,6 +48,9 @@ Size parseSize(std::string_view text);
 double parseNumber(std::string_view option, std::string_view text);
 std::uint64_t parseUnsigned(std::string_view option, std::string_view text);
 
+// "key=value" in two; a value may hold further "=".
+std::pair<std::string, std::string> splitAssignment(std::string_view option, const std::string& text);
+
 std::string joinNames(const std::vector<std::string>& names);
 // `name` must be one of `valid`: "unknown camera 'x'; valid: a, b".
 void requireOneOf(std::string_view what, const std::string& name, const std::vector<std::string>& valid);
@@ -59,8 +64,8 @@ bool hasExtension(const std::string& path, std::string_view extension);
 // Which view of which scene a command looks at; declared alike by every command that renders.
 struct ViewOptions {
     std::string scene, camera, size = "1280x720";
-    double time = 0.0;  // s, of keyframed scenes
-    void declare(CLI::App& command);
+    double time = 0.0;                        // s, of keyframed scenes
+    CLI::Option* declare(CLI::App& command);  // returns SCENE, which is required
 };
 std::shared_ptr<studio::Scene> loadScene(const ViewOptions& options);
 studio::Camera findCamera(const studio::Scene& scene, const ViewOptions& options);

@@ -28,6 +28,12 @@ std::vector<std::string> commandNames(const CLI::App& app) {
     return names;
 }
 
+std::vector<std::string> optionNames(const CLI::App& command) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : command.get_options()) names.push_back(option->get_name());
+    return names;
+}
+
 // Named by the user, or "" when the first word is an option or missing.
 std::string commandWord(int argc, char** argv) {
     return argc > 1 && argv[1][0] != '-' ? argv[1] : "";
@@ -44,6 +50,10 @@ int parse(CLI::App& app, int argc, char** argv) {
     } catch (const CLI::RequiredError& error) {
         if (!command.empty()) throw cli::UsageError(fmt::format("{}: {}", command, error.what()));
         throw cli::UsageError("expected a command; valid: " + cli::joinNames(commandNames(app)));
+    } catch (const CLI::ExtrasError& error) {
+        const CLI::App& asked = command.empty() ? app : *app.get_subcommand(command);
+        throw cli::UsageError(
+            fmt::format("{}; valid: {}", error.what(), cli::joinNames(optionNames(asked))));
     } catch (const CLI::ParseError& error) {
         throw cli::UsageError(fmt::format("{}{}; see lightwell {}{}--help",
                                           command.empty() ? "" : command + ": ", error.what(), command,

@@ -109,10 +109,7 @@ const LWParameter* Parameters::find(const std::string& name) const {
 }
 
 void Parameters::set(const std::string& assignment) {
-    const std::size_t equals = assignment.find('=');
-    if (equals == std::string::npos)
-        throw UsageError(fmt::format("--set '{}': expected key=value", assignment));
-    const std::string name = assignment.substr(0, equals);
+    const auto [name, value] = splitAssignment("--set", assignment);
     const LWParameter* parameter = find(name);
     if (parameter == nullptr) {
         std::vector<std::string> names;
@@ -120,7 +117,7 @@ void Parameters::set(const std::string& assignment) {
             names.emplace_back(info_.parameters[i].name);
         requireOneOf(fmt::format("--set key of technique {}", info_.name), name, names);
     }
-    assign(*parameter, assignment.substr(equals + 1));
+    assign(*parameter, value);
 }
 
 void Parameters::assign(const LWParameter& parameter, const std::string& text) {

@@ -25,6 +25,7 @@ struct ReferenceOptions {
 
 // The traced layers whose sum stands in R, G, B.
 std::vector<std::string> chosenLayers(const ReferenceOptions& options) {
+    if (options.bounces.empty()) throw UsageError("--bounces is required; valid: 1, 2, all");
     requireOneOf("--bounces", options.bounces, {"1", "2", "all"});
     if (options.bounces != "1" && (options.unshadowed || !options.vpls.empty()))
         throw UsageError(fmt::format("--bounces {}: {} knows one bounce only; expected --bounces 1",
@@ -163,10 +164,9 @@ void addReference(CLI::App& app) {
         "Path-trace the true indirect irradiance (W/m^2) of a view, with its own noise estimate");
     auto options = std::make_shared<ReferenceOptions>();
     options->view.declare(*command);
-    command
-        ->add_option("--bounces", options->bounces,
-                     "What stands in R,G,B: 1 = one indirect bounce; 2 = first and second together; all")
-        ->required();
+    command->add_option(
+        "--bounces", options->bounces,
+        "What stands in R,G,B: 1 = one indirect bounce; 2 = first and second together; all");
     command->add_flag("--unshadowed", options->unshadowed,
                       "Every lit surface along a pixel's ray sends light, none blocks it (one bounce)");
     command->add_option(

@@ -38,6 +38,9 @@ void checkOptions(const RenderOptions& options) {
         requireOneOf("--width", std::to_string(options.width), {"1", "4", "8", "16"});
     for (const std::string& out : options.outs) requireOutputPath("--out", out, {".exr", ".png"});
     if (!options.vplsOut.empty()) requireOutputPath("--vpls-out", options.vplsOut, {});
+    if (!options.debugView.empty())
+        requireOutputPath("--debug-view", splitAssignment("--debug-view", options.debugView).second,
+                          {".exr"});
     const bool hasResult =
         !options.outs.empty() || !options.vplsOut.empty() || options.asJson || options.printsHash;
     if (!hasResult) throw UsageError("--out is required: a file name ending in .exr or .png");
@@ -92,12 +95,10 @@ std::vector<studio::VplRecord> toVpls(const DebugPlanes& planes) {
     return vpls;
 }
 
-// "NAME=FILE.exr": the channels c0, c1, ... of an intermediate buffer.
+// The channels c00, c01, ... of an intermediate buffer.
 void writeDebugView(const FrameRunner& runner, const std::string& argument) {
-    const std::size_t equals = argument.find('=');
-    const std::string path = equals == std::string::npos ? "" : argument.substr(equals + 1);
-    const DebugPlanes planes = runner.readDebugView(argument.substr(0, equals));
-    requireOutputPath("--debug-view", path, {".exr"});
+    const auto [name, path] = splitAssignment("--debug-view", argument);
+    const DebugPlanes planes = runner.readDebugView(name);
     studio::Image image(int(planes.width), int(planes.height));
     for (std::uint32_t c = 0; c < planes.channels; ++c)
         image.plane(fmt::format("c{:02}", c))
@@ -164,7 +165,19 @@ studio::Image renderDirectOnly(const RenderInputs& inputs, RenderReport& report)
     return assemble(inputs, nothing, invalid, report);
 }
 
-void render(const RenderOptions& options) {
+// `--set a=1 b=2 SCENE`: the last word is no assignment, so it is the scene.
+void takeSceneFromAssignments(RenderOptions& options) {
+    std::vector<std::string>& words = options.assignments;
+    if (options.view.scene.empty() && !words.empty() && words.back().find('=') == std::string::npos) {
+        options.view.scene = words.back();
+        words.pop_back();
+    }
+    if (options.view.scene.empty())
+        throw UsageError("render: SCENE is required; `lightwell scenes` lists them");
+}
+
+void render(RenderOptions& options) {
+    takeSceneFromAssignments(options);
     checkOptions(options);
     RenderReport report;
     report.size = parseSize(options.view.size);
@@ -230,10 +243,11 @@ void addRender(CLI::App& app) {
     CLI::App* command =
         app.add_subcommand("render", "Indirect light of a view with a technique of the library");
     auto options = std::make_shared<RenderOptions>();
-    options->view.declare(*command);
+    options->view.declare(*command)->required(false);
     command->add_option("--technique", options->technique,
                         "A technique (below), or none: direct light only");
-    command->add_option("--set", options->assignments, "key=value parameters of the technique (below)");
+    command->add_option("--set", options->assignments,
+                        "key=value, one or several: parameters of the technique (below)");
     command
         ->add_option("--frames", options->frames,
                      "Frames measured, after three of warm-up; times are medians")

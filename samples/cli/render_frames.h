@@ -21,7 +21,7 @@ struct FrameFigures {
     std::vector<PassFigures> passes;
     double totalMilliseconds =
         -1.0;  // median, device clock, host's images to host's output; -1: unavailable
-    double wallMilliseconds = 0.0;  // median, host clock, lwUpdate to the end of lwFinish
+    double wallMilliseconds = -1.0;  // median, host clock, lwUpdate to the end of lwFinish
     std::uint64_t deviceBytes = 0, hostCopyBytes = 0, estimatedBytes = 0;
     std::vector<std::pair<std::string, std::uint64_t>> counts;
     std::vector<std::pair<std::string, std::string>> choices;
