@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <exception>
 #include <limits>
 #include <stdexcept>
 
@@ -155,14 +156,21 @@ public:
         for (assess(); !finished(); assess()) {
             const std::uint32_t first = film_.samples;
             const std::uint32_t last = std::min(first + perPass, first < enough_ ? enough_ : most_);
+            std::exception_ptr stop;  // the caller's wish to end: granted when the pass is whole
             parallelFor(
                 tiles.size(), options_.threads,
                 [&](std::size_t tile) { body(tiles[tile], first, last); },
                 [&](std::size_t tile) {
-                    report(first + (last - first) * double(tile) / double(tiles.size()));
+                    if (stop) return;
+                    try {
+                        report(first + (last - first) * double(tile) / double(tiles.size()));
+                    } catch (...) {
+                        stop = std::current_exception();
+                    }
                 });
             film_.samples = last;
-            save(false);
+            save(stop != nullptr);
+            if (stop) std::rethrow_exception(stop);
         }
         save(true);
         report(film_.samples);

@@ -41,7 +41,7 @@ struct PathTracerOptions {
     double checkpointSeconds = 30.0;  // least time between two savings
     int threads = 0;                  // 0: one per hardware thread
     // Called by the calling thread; relMse < 0: not estimated yet. An exception thrown here ends the
-    // run and comes out of tracePaths; samples of finished passes are in the checkpoint.
+    // run with its current pass and comes out of tracePaths; all samples so far are in the checkpoint.
     std::function<void(double fraction, double relMse)> progress;
 };
 
