@@ -51,7 +51,7 @@ void printJson(const studio::Metrics& m) {
 
 void printText(const studio::Metrics& m) {
     fmt::print("indirect irradiance (linear)\n");
-    fmt::print("  {:<10} {:.6g}\n  {:<10} {:.4f}\n  {:<10} {:+.4f}\n  {:<10} {:.4f}\n", "relMSE",
+    fmt::print("  {:<10} {:.6g}\n  {:<10} {:.5g}\n  {:<10} {:+.5g}\n  {:<10} {:.5g}\n", "relMSE",
                m.relMse, "nrmse", m.nrmse, "bias", m.bias, "p99", m.p99);
     fmt::print("composite (tone-mapped)\n");
     fmt::print(

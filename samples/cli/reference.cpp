@@ -100,7 +100,7 @@ void describe(studio::Image& image, const ReferenceOptions& options, const studi
     image.metadata["size"] = options.view.size;
     if (options.unshadowed) image.metadata["unshadowed"] = "1";
     if (!options.vpls.empty())
-        image.metadata["vpls"] = std::filesystem::path(options.vpls).filename().string();
+        image.metadata["vpls_file"] = std::filesystem::path(options.vpls).filename().string();
     if (noise >= 0.0) image.metadata["noise." + layer] = fmt::format("{:.9g}", noise);
 }
 
@@ -151,9 +151,10 @@ void traceReference(const ReferenceOptions& options) {
     describe(image, options, camera, tracer.judgedLayers, noise);
     studio::writeExr(options.out, image, options.half);
     std::remove(tracer.checkpoint.c_str());
-    fmt::print("{}: {}x{}, {}, {} samples per pixel, noise (relMSE) {}\n", options.out, size.width,
-               size.height, image.metadata["layer"], image.metadata["spp"],
-               noise < 0.0 ? "none" : fmt::format("{:.3g}", noise));
+    const std::string effort = tracer.vpls == nullptr ? image.metadata["spp"] + " samples per pixel"
+                                                      : fmt::format("{} VPLs", vpls.size());
+    fmt::print("{}: {}x{}, {}, {}{}\n", options.out, size.width, size.height, image.metadata["layer"],
+               effort, noise < 0.0 ? "" : fmt::format(", noise (relMSE) {:.3g}", noise));
 }
 
 }  // namespace
