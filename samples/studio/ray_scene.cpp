@@ -12,12 +12,10 @@
 
 #include <fmt/format.h>
 
-#if __has_include(<embree4/rtcore.h>)
+#if STUDIO_EMBREE4  // set by the build: the major version that it found
 #include <embree4/rtcore.h>
-#define STUDIO_EMBREE4 1
 #else
 #include <embree3/rtcore.h>
-#define STUDIO_EMBREE4 0
 #endif
 
 namespace studio {
