@@ -86,7 +86,8 @@ Buffer& Buffer::operator=(Buffer&& other) noexcept {
 }
 
 void Buffer::download(std::size_t byteOffset, std::size_t bytes, void* to) const {
-    checkCl(clEnqueueReadBuffer(device_->queue(), memory_, CL_TRUE, byteOffset, bytes, to, 0, nullptr, nullptr),
+    checkCl(clEnqueueReadBuffer(device_->queue(), memory_, CL_TRUE, byteOffset, bytes, to, 0, nullptr,
+                                nullptr),
             "clEnqueueReadBuffer");
 }
 

@@ -34,8 +34,11 @@ cl_device_id subDeviceOf(cl_device_id device, std::uint32_t units) {
                                                      CL_DEVICE_PARTITION_BY_COUNTS_LIST_END, 0};
     const cl_device_partition_property equally[] = {CL_DEVICE_PARTITION_EQUALLY,
                                                     cl_device_partition_property(units), 0};
-    cl_int status = CL_SUCCESS;
+    cl_int status = CL_INVALID_DEVICE_PARTITION_COUNT;
+    // Asked first, as drivers without partitions (Rusticl of Mesa 22.3) may crash on the attempt.
+    const bool splits = deviceValue<cl_uint>(device, CL_DEVICE_PARTITION_MAX_SUB_DEVICES) > 1;
     for (const cl_device_partition_property* properties : {byCounts, equally}) {
+        if (!splits) break;
         cl_uint count = 0;
         status = clCreateSubDevices(device, properties, 0, nullptr, &count);
         if (status != CL_SUCCESS || count == 0) continue;

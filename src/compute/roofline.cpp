@@ -9,9 +9,11 @@ namespace lightwell {
 namespace {
 
 constexpr std::size_t kGroup = 64;
-constexpr double kMultiplyAddSeconds = 0.5, kTriadSeconds = 0.6;  // spent on repetitions of each
+constexpr double kMultiplyAddSeconds = 0.4, kTriadSeconds = 0.5;  // spent on repetitions of each
 constexpr int kMostRuns = 30;
-constexpr int kLaunches = 500;
+constexpr double kShortRun = 5e-3;  // a run is made longer until it takes this
+constexpr double kLongRun = 0.1;    // a streamed array is made longer while it stays below this
+constexpr int kFewestLaunches = 16, kMostLaunches = 1024;
 constexpr double kChains = 12;  // LW_CHAINS of roofline.cl
 // A streamed array; three of them exceed the last-level caches of today's machines, shared ones apart.
 constexpr std::size_t kTriadBytes = std::size_t(96) << 20;
@@ -37,7 +39,7 @@ double multiplyAddRate(Device& device, ProbeQueue& queue, const Buffer& out, std
         return watch.seconds();
     };
     run();
-    while (run() < 5e-3 && steps < (1 << 20)) steps *= 2;
+    while (run() < kShortRun && steps < (1 << 20)) steps *= 2;
     const double time = shortest(kMultiplyAddSeconds, run);
     return 2.0 * kChains * device.width() * double(items) * steps / time;
 }
@@ -45,7 +47,7 @@ double multiplyAddRate(Device& device, ProbeQueue& queue, const Buffer& out, std
 double triadRate(Device& device, ProbeQueue& queue) {
     const std::size_t most = std::size_t(std::min(device.maxAllocation(), device.globalMemory() / 8));
     const std::size_t floats =
-        std::min(kTriadBytes, most) / sizeof(float) / (16 * kGroup) * (16 * kGroup);
+        std::min(kTriadBytes, most) / sizeof(float) / (256 * kGroup) * (256 * kGroup);
     const Buffer x(device, floats * sizeof(float), "roofline probe");
     const Buffer y(device, floats * sizeof(float), "roofline probe");
     const Buffer out(device, floats * sizeof(float), "roofline probe");
@@ -55,25 +57,32 @@ double triadRate(Device& device, ProbeQueue& queue) {
                                     nullptr, nullptr),
                 "clEnqueueFillBuffer");
     Kernel& kernel = device.programs().kernel("probe/roofline", "probe_triad");
-    const double time = shortest(kTriadSeconds, [&] {
+    std::size_t used = floats / 16;
+    const auto run = [&] {
         const Stopwatch watch;
-        queue.enqueue(kernel, floats / device.width(), kGroup, 1, x.get(), y.get(), cl_float(0.5f),
+        queue.enqueue(kernel, used / device.width(), kGroup, 1, x.get(), y.get(), cl_float(0.5f),
                       out.get());
         queue.finish();
         return watch.seconds();
-    });
-    return 3.0 * double(floats * sizeof(float)) / time;
+    };
+    run();
+    while (used < floats && 2.0 * run() < kLongRun) used *= 2;  // slow devices stop early
+    const double time = shortest(kTriadSeconds, run);
+    return 3.0 * double(used * sizeof(float)) / time;
 }
 
 double launchSeconds(Device& device, ProbeQueue& queue, const Buffer& out) {
     Kernel& kernel = device.programs().kernel("probe/roofline", "probe_launch");
+    int launches = kFewestLaunches;
     const auto run = [&] {
         const Stopwatch watch;
-        queue.enqueue(kernel, 1, 1, kLaunches, out.get());
+        queue.enqueue(kernel, 1, 1, launches, out.get());
         queue.finish();
         return watch.seconds();
     };
-    return shortest(0.05, run) / kLaunches;
+    run();
+    while (run() < kShortRun && launches < kMostLaunches) launches *= 2;
+    return shortest(0.05, run) / launches;
 }
 
 }  // namespace

@@ -52,6 +52,16 @@ std::unique_ptr<Device> freshDevice(const std::string& cacheDirectory, Log* log)
     return freshDevice(desc);
 }
 
+bool driverIs(const std::string& platform) {
+    return platformString(selectDevice(nullptr).platform, CL_PLATFORM_NAME) == platform;
+}
+
+bool HostQueue::supports(cl_command_queue_properties properties) {
+    const auto supported =
+        deviceValue<cl_command_queue_properties>(selectDevice(nullptr).id, CL_DEVICE_QUEUE_PROPERTIES);
+    return (supported & properties) == properties;
+}
+
 HostQueue::HostQueue(cl_command_queue_properties properties) {
     const FoundDevice found = selectDevice(nullptr);
     cl_int status = CL_SUCCESS;

@@ -31,10 +31,14 @@ std::unique_ptr<Device> freshDevice(const LWDeviceDesc& desc = plainDesc());
 std::unique_ptr<Device> freshDevice(const std::string& cacheDirectory, Log* log);
 void addTestPrograms(Device& device);
 
+// Whether the platform that LIGHTWELL_DEVICE selects has this name: for defects of drivers.
+bool driverIs(const std::string& platform);
+
 // A context and a queue on the device that LIGHTWELL_DEVICE names.
 class HostQueue {
 public:
     explicit HostQueue(cl_command_queue_properties properties);
+    static bool supports(cl_command_queue_properties properties);
     ~HostQueue();
     HostQueue(const HostQueue&) = delete;
     HostQueue& operator=(const HostQueue&) = delete;

@@ -131,6 +131,7 @@ TEST_CASE("transfers move the right bytes and count them", "[executor]") {
 TEST_CASE("launches run in order on in-order and out-of-order queues", "[executor]") {
     constexpr int kSteps = 300;
     CHECK(pingPong(sharedDevice(1), kSteps) == doubled(kSteps));
+    if (!HostQueue::supports(CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE)) return;
     const HostQueue host(CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE);
     const auto device = host.adopt();
     CHECK(device->outOfOrder());
@@ -158,6 +159,7 @@ TEST_CASE("passes are timed and summed by name", "[executor]") {
     CHECK(passes[1].launches == 1);
     CHECK(passes[0].milliseconds > 0.0);
     CHECK(passes[1].milliseconds > 0.0);
+    if (driverIs("rusticl")) return;  // Mesa 22.3's Rusticl stamps every command 1 ns long
     // In order: the commands do not overlap, so the whole takes at least their sum (1 % for clock
     // steps).
     CHECK(profile.totalMilliseconds() >= 0.99 * (passes[0].milliseconds + passes[1].milliseconds));

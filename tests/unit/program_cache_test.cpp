@@ -202,9 +202,9 @@ TEST_CASE("damaged and stale binaries are rebuilt and replaced", "[cache]") {
 }
 
 TEST_CASE("a binary that the driver refuses is rebuilt", "[cache]") {
+    if (driverIs("rusticl")) return;  // Mesa 22.3's Rusticl aborts the process on a foreign binary
     const ScopedDirectory cache;
     Log log;
-    std::string foreign;
     {
         const auto device = freshDevice(cache.string(), &log);
         CHECK(addOnes(*device, 1) == 1);
