@@ -1,0 +1,331 @@
+"""The command line `lightwell`, driven as scripts drive it: exit codes, messages, files, JSON keys.
+
+Usage: cli_test.py PROGRAM [unittest options]. Python's standard library only. Small pictures of the
+shipped Cornell box; LIGHTWELL_DEVICE picks the device.
+"""
+import json
+import math
+import os
+import signal
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import exr  # noqa: E402
+
+PROGRAM = os.path.abspath(sys.argv[1]) if len(sys.argv) > 1 else ""
+SIZE = ["--size", "96x54"]
+COMPARE_KEYS = {"relMSE", "nrmse", "bias", "p99", "rmse", "ssim", "score", "score255", "flip", "reference_noise"}
+# relMSE of one sum over the same VPLs by the device and by the path tracer: order and rounding differ.
+SUM_ROUNDING = 1e-9
+# relMSE of one picture in another unit of length: rounding alone.
+SCALE_ROUNDING = 1e-9
+
+
+def run(*arguments):
+    return subprocess.run([PROGRAM, *arguments], stdin=subprocess.DEVNULL, capture_output=True, text=True,
+                          timeout=120)
+
+
+def png_size(path):
+    with open(path, "rb") as file:
+        head = file.read(24)
+    return struct.unpack(">II", head[16:]) if head[:8] == b"\x89PNG\r\n\x1a\n" else None
+
+
+class CommandLine(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+
+    def path(self, name):
+        return os.path.join(self.folder.name, name)
+
+    def done(self, *arguments):
+        result = run(*arguments)
+        self.assertEqual(result.returncode, 0, "%s: %s" % (arguments, result.stderr))
+        return result
+
+    def json(self, *arguments):
+        return json.loads(self.done(*arguments).stdout)
+
+    def refused(self, arguments, *words):
+        """Exit code 2, nothing on stdout, one line on stderr that holds all of `words`."""
+        with self.subTest(arguments=arguments):
+            result = run(*arguments)
+            self.assertEqual(result.returncode, 2, result.stderr)
+            self.assertEqual(result.stdout, "")
+            self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
+            for word in words:
+                self.assertIn(word, result.stderr)
+
+
+class WrongArguments(CommandLine):
+    def test_commands_and_options(self):
+        self.refused([], "devices, scenes, render, reference, compare")
+        self.refused(["rendr"], "rendr", "devices, scenes, render, reference, compare")
+        self.refused(["scenes", "--jason"], "--jason", "--json")
+        self.refused(["compare", "only-one.exr"], "REFERENCE")
+
+    def test_render(self):
+        out = ["--out", self.path("never.exr")]
+        rsm = ["render", "cornell", "--technique", "rsm"]
+        self.refused(["render", "--technique", "rsm", *out], "SCENE")
+        self.refused(["render", "cornel", "--technique", "rsm", *out], "cornel", "cornell", "rooms")
+        self.refused(["render", "cornell", *out], "--technique", "rsm")
+        self.refused(["render", "cornell", "--technique", "rms", *out], "rms", "rsm")
+        self.refused(rsm, "--out", ".exr")
+        self.refused([*rsm, "--out", "a.jpg"], "a.jpg", ".exr", ".png")
+        self.refused([*rsm, "--out", "/no/such/folder/a.exr"], "/no/such/folder")
+        self.refused([*rsm, "--camera", "back", *out], "back", "front")
+        for size in ("1280", "1280x", "x720", "0x720", "1280x720x3", "-1x5", "99999x1", "1e3x10"):
+            self.refused([*rsm, "--size=" + size, *out], "'%s'" % size, "WIDTHxHEIGHT", "16384")
+        self.refused([*rsm, "--frames", "0", *out], "--frames", "1")
+        self.refused([*rsm, "--width", "3", *out], "3", "1, 4, 8, 16")
+        self.refused([*rsm, "--device", "no such device", *out], "no such device", "cpu", "present:")
+        self.refused([*rsm, "--seed=-1", *out], "--seed", "-1")
+
+    def test_parameters(self):
+        start = ["render", "cornell", "--technique", "rsm", "--out", self.path("never.exr"), "--set"]
+        self.refused([*start, "vpl=4"], "'vpl'", "vpls, sampling, interleave")
+        self.refused([*start, "vpls=many"], "vpls", "many", "whole number")
+        self.refused([*start, "vpls=-1"], "vpls", "-1")
+        self.refused([*start, "vpls=1.5"], "vpls", "1.5")
+        self.refused([*start, "vpls=99999999999"], "99999999999", "0 to ")
+        self.refused([*start, "interleave=3"], "interleave", "'3'", "1, 2, 4, 8")
+        self.refused([*start, "sampling=best"], "best", "flux, uniform")
+        self.refused([*start, "filter=maybe"], "maybe", "on, off, true, false, 1, 0")
+        self.refused([*start, "vpls", "seed=1"], "'vpls'", "key=value")
+
+    def test_reference(self):
+        out = ["--out", self.path("never.exr")]
+        one = ["reference", "cornell", "--bounces", "1"]
+        self.refused(["reference", "cornell", *out], "--bounces", "1, 2, all")
+        self.refused(["reference", "cornell", "--bounces", "3", *out], "'3'", "1, 2, all")
+        self.refused(["reference", "cornell", "--bounces", "all", "--unshadowed", *out], "--unshadowed", "1")
+        self.refused([*one, "--out", "a.png"], "a.png", ".exr")
+        self.refused([*one, "--spp", "7", *out], "'7'", "even")
+        self.refused([*one, "--until", "0.001", *out], "0.001", "relMSE=X")
+        self.refused([*one, "--until", "relMSE=-1", *out], "relMSE=-1")
+        self.refused([*one, "--until", "relMSE=1", "--spp", "4", *out], "--spp", "--until")
+        self.refused([*one, "--vpls", "/no/such/file", *out], "/no/such/file")
+
+    def test_files_to_compare(self):
+        self.refused(["compare", "/no/image.exr", "/no/reference.exr"], "/no/image.exr")
+        small, large = self.path("small.exr"), self.path("large.exr")
+        self.done("render", "cornell", "--technique", "none", "--size", "16x9", "--out", small)
+        self.done("render", "cornell", "--technique", "none", "--size", "32x18", "--out", large)
+        self.refused(["compare", small, large], "16", "32")
+        self.refused(["triptych", small, large, "--out", self.path("never.png")], "16x9", "32x18")
+        self.refused(["triptych", small, small, "--out", self.path("never.exr")], ".png")
+
+    def test_damaged_files(self):
+        damaged, scene = self.path("damaged.exr"), self.path("broken.json")
+        with open(damaged, "wb") as file:
+            file.write(b"no picture")
+        with open(scene, "w", encoding="ascii") as file:
+            file.write('{"mesh": ')
+        self.refused(["compare", damaged, damaged], "damaged.exr")
+        self.refused(["render", scene, "--technique", "none", "--out", self.path("never.exr")], "broken.json")
+
+
+class Lists(CommandLine):
+    def test_scenes(self):
+        scenes = self.json("scenes", "--json")
+        shipped = {scene["name"] for scene in scenes if scene["shipped"]}
+        self.assertLessEqual({"cornell", "basic", "rooms", "furnace", "sphere_room"}, shipped)
+        for scene in scenes:
+            self.assertTrue(os.path.exists(scene["path"]), scene)
+        self.assertIn("cornell", self.done("scenes").stdout)
+
+    def test_devices(self):
+        devices = self.json("devices", "--json")
+        self.assertGreater(len(devices), 0)
+        for device in devices:
+            self.assertLessEqual({"name", "platform", "driver", "compute_units", "memory_bytes"}, set(device))
+        self.assertIn(devices[0]["name"], self.done("devices").stdout)
+
+    def test_help(self):
+        self.assertIn("interleave=", self.done("render", "--help").stdout)
+        for command in ("devices", "scenes", "reference", "compare", "triptych"):
+            self.assertIn("Usage: lightwell " + command, self.done(command, "--help").stdout)
+
+
+class Render(CommandLine):
+    def render(self, *arguments):
+        return self.json("render", "cornell", "--technique", "rsm", *SIZE, "--frames", "2", "--json", *arguments)
+
+    def test_json_and_pictures(self):
+        picture, display = self.path("a.exr"), self.path("a.png")
+        report = self.render("--set", "vpls=64", "sampling=uniform", "--set", "filter=off", "--seed", "5",
+                             "--out", picture, "--out", display)
+        self.assertEqual((report["scene"], report["size"]), ("cornell", [96, 54]))
+        self.assertIn(report["width"], (1, 4, 8, 16))
+        for key, value in {"vpls": 64, "sampling": "uniform", "filter": False, "seed": 5}.items():
+            self.assertEqual(report["parameters"][key], value)
+        self.assertLessEqual({"interleave", "resolution"}, set(report["parameters"]))  # defaults, too
+        self.assertEqual(report["counts"]["vpls"], 64)
+        self.assertGreater(report["bytes"]["device"], 0)
+        self.assertGreater(report["total_ms"], 0)
+        self.assertGreater(report["exposure"], 0)
+        self.assertEqual(report["outputs"], [picture, display])
+        self.check_passes(report["passes"])
+        self.check_picture(picture)
+        self.assertEqual(png_size(display), (96, 54))
+
+    def check_passes(self, passes):
+        names = [entry["name"] for entry in passes]
+        self.assertIn("interleaved_gather.gather", names)
+        self.assertEqual(len(names), len(set(names)))
+        for entry in passes:
+            self.assertRegex(entry["name"], r"^[a-z0-9_]+\.[a-z0-9_]+$")
+            self.assertGreaterEqual(entry["ms"], 0)
+            self.assertGreater(entry["launches"], 0)
+
+    def check_picture(self, path):
+        width, height, planes, texts = exr.read(path)
+        self.assertEqual((width, height), (96, 54))
+        colours = [prefix + c for prefix in ("", "direct.", "albedo.", "normal.") for c in "RGB"]
+        self.assertEqual(set(planes), {*colours, "validity"})
+        self.assertGreater(sum(planes["R"]), 0)
+        self.assertEqual((texts["scene"], texts["set.sampling"]), ("cornell", "uniform"))
+
+    def test_same_bits(self):
+        hashes = {self.render()["hash"] for _ in range(3)}
+        self.assertEqual(len(hashes), 1)
+        self.assertNotIn(self.render("--seed", "9")["hash"], hashes)
+
+    def test_scene_after_parameters(self):
+        report = self.json("render", "--technique", "rsm", *SIZE, "--frames", "1", "--json", "--set", "vpls=32",
+                           "cornell")
+        self.assertEqual((report["scene"], report["parameters"]["vpls"]), ("cornell", 32))
+
+    def test_another_unit_of_length(self):
+        plain, scaled = self.path("plain.exr"), self.path("scaled.exr")
+        self.render("--out", plain)
+        for factor in ("10", "0.1"):
+            self.render("--scale", factor, "--out", scaled)
+            self.assertLess(self.json("compare", scaled, plain, "--json")["relMSE"], SCALE_ROUNDING)
+
+    def test_vpls_given_to_the_path_tracer(self):
+        vpls, picture, truth = self.path("vpls.txt"), self.path("gather.exr"), self.path("sum.exr")
+        self.render("--set", "vpls=128", "interleave=1", "--vpls-out", vpls, "--out", picture)
+        given = ["reference", "cornell", "--bounces", "1", *SIZE, "--vpls", vpls, "--out", truth]
+        self.done(*given, "--unshadowed")
+        self.assertLess(self.json("compare", picture, truth, "--json")["relMSE"], SUM_ROUNDING)
+        self.done(*given)
+        shadowed, gathered = exr.read(truth)[2]["R"], exr.read(picture)[2]["R"]
+        self.assertLess(sum(shadowed), 0.99 * sum(gathered))  # the boxes do cast shadows
+
+    def test_debug_view(self):
+        view = self.path("vpls.exr")
+        self.render("--set", "vpls=64", "--debug-view", "vpls=" + view)
+        width, height, planes, _ = exr.read(view)
+        self.assertGreaterEqual(width * height, 64)
+        self.assertEqual(len(planes), 10)
+        self.refused(["render", "cornell", "--technique", "rsm", *SIZE, "--frames", "1", "--hash", "--debug-view",
+                      "nothing=" + view], "nothing", "vpls")
+
+
+class Reference(CommandLine):
+    def test_layers(self):
+        picture = self.path("two.exr")
+        self.done("reference", "cornell", "--bounces", "2", *SIZE, "--spp", "8", "--seed", "3", "--out", picture)
+        self.assertFalse(os.path.exists(picture + ".part"))
+        _, _, planes, texts = exr.read(picture)
+        for c in "RGB":
+            for rgb, one, two, every in zip(planes[c], planes["bounce1." + c], planes["bounce2." + c],
+                                            planes["all." + c]):
+                self.assertTrue(math.isclose(rgb, one + two, rel_tol=1e-6, abs_tol=1e-9))
+                self.assertLessEqual(rgb, every * 1.00001 + 1e-9)
+            self.assertLessEqual({"direct." + c, "albedo." + c, "direct_irradiance." + c, "a.bounce1." + c,
+                                  "b.bounce2." + c}, set(planes))
+        for key, text in {"layer": "bounce1+bounce2", "scene": "cornell", "camera": "front", "size": "96x54",
+                          "spp": "8", "seed": "3"}.items():
+            self.assertEqual(texts[key], text)
+        self.assertGreater(float(texts["noise.bounce1+bounce2"]), 0)
+
+    def test_same_seed_same_file_and_compact(self):
+        arguments = ["reference", "cornell", "--bounces", "1", *SIZE, "--spp", "8"]
+        paths = [self.path(name) for name in ("a.exr", "b.exr", "other.exr", "compact.exr")]
+        for path, extras in zip(paths, ([], [], ["--seed", "2"], ["--half", "--compact"])):
+            self.done(*arguments, *extras, "--out", path)
+        contents = []
+        for path in paths:
+            with open(path, "rb") as file:
+                contents.append(file.read())
+        self.assertEqual(contents[0], contents[1])
+        self.assertNotEqual(contents[0], contents[2])
+        self.assertLess(len(contents[3]), len(contents[0]) / 3)
+        full, compact = (self.json("compare", paths[2], paths[i], "--json")["reference_noise"] for i in (0, 3))
+        self.assertTrue(math.isclose(full, compact, rel_tol=0.01), (full, compact))
+
+    def test_until(self):
+        picture = self.path("until.exr")
+        self.done("reference", "cornell", "--bounces", "1", *SIZE, "--until", "relMSE=0.05", "--out", picture)
+        self.assertLessEqual(float(exr.read(picture)[3]["noise.bounce1"]), 0.05)
+
+    def test_interrupted_and_resumed(self):
+        picture = self.path("resumed.exr")
+        arguments = ["reference", "cornell", "--bounces", "1", *SIZE, "--out", picture]
+        # Hours of work, cut off once it has begun.
+        process = subprocess.Popen([PROGRAM, *arguments, "--spp", "1000000"], stderr=subprocess.PIPE, text=True)
+        time.sleep(2)
+        process.send_signal(signal.SIGINT)
+        _, message = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 130, message)
+        self.assertIn(picture + ".part", message)
+        self.assertFalse(os.path.exists(picture))
+        self.done(*arguments, "--spp", "2")  # what was traced before counts
+        self.assertGreater(int(exr.read(picture)[3]["spp"]), 2)
+        self.assertFalse(os.path.exists(picture + ".part"))
+
+    def test_foreign_checkpoint(self):
+        checkpoint = self.path("checkpoint")
+        with open(checkpoint, "wb") as file:
+            file.write(b"something else")
+        result = run("reference", "cornell", "--bounces", "1", *SIZE, "--spp", "2", "--checkpoint", checkpoint,
+                     "--out", self.path("never.exr"))
+        self.assertEqual(result.returncode, 1)
+        self.assertIn(checkpoint, result.stderr)
+        self.assertEqual(result.stderr.count("\n"), 1)
+
+
+class Compare(CommandLine):
+    def test_keys_maps_and_noise(self):
+        truth, noisy, maps = self.path("truth.exr"), self.path("noisy.exr"), self.path("maps")
+        arguments = ["reference", "cornell", "--bounces", "1", *SIZE, "--spp", "64"]
+        self.done(*arguments, "--out", truth)
+        self.done(*arguments, "--seed", "2", "--out", noisy)
+        result = self.done("compare", noisy, truth, "--maps", maps, "--json")
+        self.assertEqual(set(json.loads(result.stdout)), COMPARE_KEYS)
+        self.assertIn("noise", result.stderr)  # two pictures of equal noise: neither is the truth
+        self.assertEqual(sorted(os.listdir(maps)), ["flip.png", "relative_error.png", "ssim.png"])
+        for name in os.listdir(maps):
+            self.assertEqual(png_size(os.path.join(maps, name)), (96, 54))
+
+        same = self.json("compare", truth, truth, "--json")
+        for key, value in {"relMSE": 0, "nrmse": 0, "bias": 0, "rmse": 0, "flip": 0, "ssim": 1, "score": 10,
+                           "score255": 10}.items():
+            self.assertEqual(same[key], value, key)
+
+    def test_reference_without_noise(self):
+        picture = self.path("rendered.exr")
+        self.done("render", "cornell", "--technique", "rsm", *SIZE, "--frames", "1", "--out", picture)
+        result = self.done("compare", picture, picture, "--json")
+        self.assertIsNone(json.loads(result.stdout)["reference_noise"])
+        self.assertEqual(result.stderr, "")
+
+    def test_triptych(self):
+        picture, strip = self.path("one.exr"), self.path("strip.png")
+        self.done("render", "cornell", "--technique", "rsm", *SIZE, "--frames", "1", "--out", picture)
+        self.done("triptych", picture, picture, "--out", strip)
+        self.assertEqual(png_size(strip), (3 * 96 + 2 * 4, 54))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[2:]])
