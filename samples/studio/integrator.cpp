@@ -33,6 +33,29 @@ Surface surfaceOf(const Hit& hit) {
     return {hit.position, hit.geometricNormal, hit.normal};
 }
 
+// Density per area with which a cosine-sampled ray from `at` finds a place: c c_p / (pi d^2).
+float rayDensity(float cosine, float geometricCosine, float squaredDistance) {
+    return cosine * geometricCosine / (kPi * squaredDistance);
+}
+
+// The ray's share of what both ways find, by the balance heuristic. (A direction in the horizon, which
+// rounding may give, has no density and no share; an infinite density has all.)
+float rayShare(float byRay, float byLamp) {
+    return byRay > 0.0f ? 1.0f / (1.0f + byLamp / byRay) : 0.0f;
+}
+
+// The connection's two ends, off their surfaces, and what lies between.
+struct Link {
+    glm::vec3 origin, direction;
+    float distance, squared;
+    Link(const glm::vec3& from, const glm::vec3& to) : origin(from) {
+        const glm::vec3 way = to - from;
+        squared = glm::dot(way, way);
+        distance = std::sqrt(squared);
+        direction = distance > 0.0f ? way / distance : glm::vec3(0.0f);
+    }
+};
+
 }  // namespace
 
 LayerSample Integrator::tracePath(const Surface& pixel, const glm::vec3& punctual,
@@ -45,12 +68,14 @@ LayerSample Integrator::tracePath(const Surface& pixel, const glm::vec3& punctua
         if (bounce >= 1) sample[kAllBounces] += throughput * irradiance;
     };
 
+    add(0, punctual);
     for (int bounce = 0;; ++bounce) {
-        // Light that comes straight to this vertex: lamps, then a sample of the emissive surfaces.
-        add(bounce, bounce == 0 ? punctual : punctualIrradiance(at));
+        // From this vertex towards light: to emissive surfaces, and to what lamps shine on.
         add(bounce, areaLights_.sampleIrradiance(scene_, at, sampler));
+        if (bounce < maxBounces_) add(bounce + 1, connect(at, sampler));
 
-        // One ray brings the sky, the rest of the emission, and the next vertex.
+        // One ray brings the sky, the rest of the emission and of the lamplit surfaces, and the next
+        // vertex.
         const glm::vec3 direction = sampleCosine(at.normal, sampler.next());
         if (glm::dot(at.geometricNormal, direction) <= 0.0f) break;
         Hit hit;
@@ -62,6 +87,7 @@ LayerSample Integrator::tracePath(const Surface& pixel, const glm::vec3& punctua
         add(bounce, areaLights_.emissionOfRay(at, direction, hit));
         if (bounce == maxBounces_) break;
         throughput *= hit.albedo;
+        add(bounce + 1, punctualOfRay(at, direction, hit));
 
         // Unbiased Russian roulette in proportion to what the path still carries.
         if (bounce + 1 >= kRouletteFrom) {
@@ -76,12 +102,49 @@ LayerSample Integrator::tracePath(const Surface& pixel, const glm::vec3& punctua
     return sample;
 }
 
-glm::vec3 Integrator::directIrradiance(const Surface& at, Sampler& sampler) const {
-    glm::vec3 irradiance = punctualIrradiance(at);
-    const glm::vec3 sky = scene_.scene().sky;
-    if (areaLights_.empty() && largest(sky) <= 0.0f) return irradiance;
+// The balance heuristic over two ways to a surface that lamp l lights: a cosine-sampled ray of density
+// p_ray per area, and a lit point of density p_l. Either way the irradiance at the ray's start is
+//     rho E_l p_ray / (p_ray + p_l),
+// because rho/pi E_l c c_p / d^2 = rho E_l p_ray.
+glm::vec3 Integrator::punctualOfRay(const Surface& at, const glm::vec3& direction,
+                                    const Hit& hit) const {
+    const float byRay =
+        rayDensity(glm::dot(at.normal, direction), -glm::dot(hit.geometricNormal, direction),
+                   hit.distance * hit.distance);
+    glm::vec3 irradiance(0.0f);
+    for (std::size_t l = 0; l < scene_.lights().size(); ++l) {
+        const glm::vec3 fromLamp = scene_.directIrradiance(scene_.lights()[l], hit.position,
+                                                           hit.geometricNormal, hit.normal);
+        if (largest(fromLamp) <= 0.0f) continue;
+        const float byLamp = litPoints_.density(l, hit.position, hit.geometricNormal);
+        irradiance += fromLamp * rayShare(byRay, byLamp);
+    }
+    return irradiance;
+}
 
-    irradiance += areaLights_.sampleIrradiance(scene_, at, sampler);
+glm::vec3 Integrator::connect(const Surface& at, Sampler& sampler) const {
+    LitPoints::Point point;
+    if (litPoints_.empty() || !litPoints_.sample(sampler, point)) return glm::vec3(0.0f);
+    const Surface& lit = point.surface;
+    const Link link(scene_.offset(at.position, at.geometricNormal),
+                    scene_.offset(lit.position, lit.geometricNormal));
+    const float cosine = glm::dot(at.normal, link.direction);
+    const float litCosine = -glm::dot(lit.geometricNormal, link.direction);
+    if (cosine <= 0.0f || litCosine <= 0.0f || glm::dot(at.geometricNormal, link.direction) <= 0.0f)
+        return glm::vec3(0.0f);
+    const LightArrival lamp = arrivalOf(scene_.lights()[point.light], lit.position);
+    const float lampCosine = glm::dot(lit.normal, lamp.toLight);
+    if (lampCosine <= 0.0f || scene_.occluded(link.origin, link.direction, 0.0f, link.distance))
+        return glm::vec3(0.0f);
+    const float byRay = rayDensity(cosine, litCosine, link.squared);
+    return point.albedo * lamp.irradiance * (lampCosine * rayShare(byRay, point.density));
+}
+
+glm::vec3 Integrator::extendedIrradiance(const Surface& at, Sampler& sampler) const {
+    const glm::vec3 sky = scene_.scene().sky;
+    if (areaLights_.empty() && largest(sky) <= 0.0f) return glm::vec3(0.0f);
+
+    const glm::vec3 irradiance = areaLights_.sampleIrradiance(scene_, at, sampler);
     const glm::vec3 direction = sampleCosine(at.normal, sampler.next());
     if (glm::dot(at.geometricNormal, direction) <= 0.0f) return irradiance;
     Hit hit;
@@ -95,28 +158,53 @@ glm::vec3 Integrator::directIrradiance(const Surface& at, Sampler& sampler) cons
 // A VPL that stands for the area dA of a surface (geometric normal g, shading normal n) carries the flux
 // rho E_g dA, E_g the irradiance on the geometric surface, and sends (1/pi) max(0, n.w) of it towards
 // the pixel; seen from the pixel dA = d^2 dw / |g.w|. A ray's radiance is therefore
-//     rho/pi * E_g * max(0, n.w) / |g.w|,
-// which is the usual rho/pi * E wherever n = g. The lobe stands about n, so the side that counts is the
+//     rho/pi E_g max(0, n.w) / |g.w|,
+// which is the usual rho/pi E wherever n = g. The lobe stands about n, so the side that counts is the
 // one n turns to the pixel, and the pixel's whole hemisphere about its shading normal receives, the part
-// under its own surface too: nothing blocks.
+// under its own surface too: nothing blocks. Rays and lit points share it as above, p_ray = c |g.w| /
+// (pi d^2), so that the quotient's pole does no harm.
 glm::vec3 Integrator::traceUnshadowed(const Surface& pixel, Sampler& sampler) const {
+    glm::vec3 irradiance = connectUnshadowed(pixel, sampler);
     const glm::vec3 direction = sampleCosine(pixel.normal, sampler.next());
+    const float cosine = glm::dot(pixel.normal, direction);
     const bool above = glm::dot(pixel.geometricNormal, direction) > 0.0f;
     const glm::vec3 origin =
         scene_.offset(pixel.position, above ? pixel.geometricNormal : -pixel.geometricNormal);
 
-    glm::vec3 irradiance(0.0f);
     Hit hit;
     for (float from = 0.0f; scene_.trace(origin, direction, from, kInfinity, hit);
          from = hit.distance * (1.0f + kStepThrough) + kTiny) {
         const float facing = -glm::dot(hit.normal, direction);
         const float projected = -glm::dot(hit.geometricNormal, direction);
         if (projected <= 0.0f || largest(hit.albedo) <= 0.0f) continue;
-        const glm::vec3 lobeSide = facing > 0.0f ? hit.geometricNormal : -hit.geometricNormal;
-        const Surface lit{hit.position, lobeSide, lobeSide};
-        irradiance += hit.albedo * directIrradiance(lit, sampler) * (std::abs(facing) / projected);
+        const glm::vec3 side = facing > 0.0f ? hit.geometricNormal : -hit.geometricNormal;
+        const float byRay = rayDensity(cosine, projected, hit.distance * hit.distance);
+        glm::vec3 onSide = extendedIrradiance({hit.position, side, side}, sampler);
+        for (std::size_t l = 0; l < scene_.lights().size(); ++l) {
+            const glm::vec3 fromLamp =
+                scene_.directIrradiance(scene_.lights()[l], hit.position, side, side);
+            if (largest(fromLamp) <= 0.0f) continue;
+            onSide += fromLamp * rayShare(byRay, litPoints_.density(l, hit.position, side));
+        }
+        irradiance += hit.albedo * onSide * (std::abs(facing) / projected);
     }
     return irradiance;
+}
+
+glm::vec3 Integrator::connectUnshadowed(const Surface& at, Sampler& sampler) const {
+    LitPoints::Point point;
+    if (litPoints_.empty() || !litPoints_.sample(sampler, point)) return glm::vec3(0.0f);
+    const Surface& lit = point.surface;
+    const Link link(at.position, lit.position);
+    const float cosine = glm::dot(at.normal, link.direction);
+    const float lobe = -glm::dot(lit.normal, link.direction);
+    if (cosine <= 0.0f || lobe <= 0.0f) return glm::vec3(0.0f);
+    const LightArrival lamp = arrivalOf(scene_.lights()[point.light], lit.position);
+    const float lampCosine = glm::dot(lit.geometricNormal, lamp.toLight);
+    const float projected = std::abs(glm::dot(lit.geometricNormal, link.direction));
+    const float transfer = cosine * lobe / (kPi * link.squared);
+    const float densities = rayDensity(cosine, projected, link.squared) + point.density;
+    return point.albedo * lamp.irradiance * (lampCosine * transfer / densities);
 }
 
 }  // namespace studio

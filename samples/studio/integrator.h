@@ -4,6 +4,7 @@
 #include <array>
 
 #include "area_lights.h"
+#include "lit_points.h"
 
 namespace studio {
 
@@ -12,8 +13,11 @@ using LayerSample = std::array<glm::vec3, kLayerCount>;
 
 class Integrator {
 public:
-    Integrator(const RayScene& scene, int maxBounces)
-        : scene_(scene), areaLights_(scene), maxBounces_(maxBounces) {}
+    // `receivers`: what the picture shows, to find the light that matters there.
+    Integrator(const RayScene& scene, const std::vector<Surface>& receivers, int maxBounces,
+               bool unshadowed)
+        : scene_(scene), areaLights_(scene), litPoints_(scene, receivers, !unshadowed),
+          maxBounces_(maxBounces) {}
 
     // Irradiance by a path from `pixel`; `punctual`: what scene.directIrradiance gives there.
     LayerSample tracePath(const Surface& pixel, const glm::vec3& punctual, Sampler& sampler) const;
@@ -22,14 +26,17 @@ public:
     glm::vec3 traceUnshadowed(const Surface& pixel, Sampler& sampler) const;
 
 private:
-    glm::vec3 punctualIrradiance(const Surface& at) const {
-        return scene_.directIrradiance(at.position, at.geometricNormal, at.normal);
-    }
-    // All light sources at once: punctual, emissive surfaces, sky.
-    glm::vec3 directIrradiance(const Surface& at, Sampler& sampler) const;
+    // Punctual lights at the surface that a ray from `at` met, less the share of connect().
+    glm::vec3 punctualOfRay(const Surface& at, const glm::vec3& direction, const Hit& hit) const;
+    // Irradiance of `at` by one lit point, less the share of rays.
+    glm::vec3 connect(const Surface& at, Sampler& sampler) const;
+    glm::vec3 connectUnshadowed(const Surface& at, Sampler& sampler) const;
+    // Emissive surfaces and sky.
+    glm::vec3 extendedIrradiance(const Surface& at, Sampler& sampler) const;
 
     const RayScene& scene_;
     AreaLights areaLights_;
+    LitPoints litPoints_;
     int maxBounces_;
 };
 

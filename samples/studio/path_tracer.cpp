@@ -62,6 +62,13 @@ struct PixelSurfaces {
     std::vector<Surface> surface;
     std::vector<bool> valid;
 
+    std::vector<Surface> shown() const {
+        std::vector<Surface> result;
+        for (std::size_t i = 0; i < surface.size(); ++i)
+            if (valid[i]) result.push_back(surface[i]);
+        return result;
+    }
+
     PixelSurfaces(const RayScene& scene, const GBuffer& view) {
         constexpr float kAbout = 1e-4f;  // of the distance; a position's rounding is a hundredth of it
         for (int y = 0; y < view.height; ++y)
@@ -234,7 +241,7 @@ Film integratePaths(const RayScene& scene, const GBuffer& view, const PixelSurfa
     const int most = options.untilRelMse > 0.0 ? options.maxSamplesPerPixel : options.samplesPerPixel;
     Run run(scene, view, pixels, options, film, std::uint32_t(options.samplesPerPixel / 2),
             std::uint32_t(most / 2));
-    const Integrator integrator(scene, options.maxBounces);
+    const Integrator integrator(scene, pixels.shown(), options.maxBounces, options.unshadowed);
 
     run.fill([&](const Tile& tile, std::uint32_t first, std::uint32_t last) {
         forEachPixel(tile, film, pixels, [&](std::size_t pixel) {

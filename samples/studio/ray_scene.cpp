@@ -243,27 +243,29 @@ glm::vec3 RayScene::offset(const glm::vec3& position, const glm::vec3& geometric
     return position + geometricNormal * (kRelativeOffset * scale);
 }
 
+const std::vector<Light>& RayScene::lights() const {
+    return impl_->lights;
+}
+
+glm::vec3 RayScene::directIrradiance(const Light& light, const glm::vec3& position,
+                                     const glm::vec3& geometricNormal, const glm::vec3& normal) const {
+    const LightArrival arrival = arrivalOf(light, position);
+    const float cosine = glm::dot(normal, arrival.toLight);
+    if (cosine <= 0.0f || glm::dot(geometricNormal, arrival.toLight) <= 0.0f) return glm::vec3(0.0f);
+    if (arrival.irradiance == glm::vec3(0.0f)) return glm::vec3(0.0f);
+    const glm::vec3 origin = offset(position, geometricNormal);
+    const float reach = light.kind == LightKind::Sun
+                            ? arrival.distance
+                            : glm::length(light.position - origin) * (1.0f - kLightGap);
+    if (occluded(origin, arrival.toLight, 0.0f, reach)) return glm::vec3(0.0f);
+    return arrival.irradiance * cosine;
+}
+
 glm::vec3 RayScene::directIrradiance(const glm::vec3& position, const glm::vec3& geometricNormal,
                                      const glm::vec3& normal) const {
     glm::vec3 sum(0.0f);
-    const glm::vec3 origin = offset(position, geometricNormal);
-    for (const Light& light : impl_->lights) {
-        glm::vec3 toLight = -light.direction;
-        float reach = std::numeric_limits<float>::infinity();
-        glm::vec3 facing = light.emitted;  // irradiance on a surface facing the light
-        if (light.kind != LightKind::Sun) {
-            const glm::vec3 way = light.position - position;
-            const float squared = glm::dot(way, way);
-            if (squared <= 0.0f) continue;
-            toLight = way / std::sqrt(squared);
-            facing *= coneFalloff(light, -toLight) / squared;
-            reach = glm::length(light.position - origin) * (1.0f - kLightGap);
-        }
-        const float cosine = glm::dot(normal, toLight);
-        if (cosine <= 0.0f || glm::dot(geometricNormal, toLight) <= 0.0f) continue;
-        if (facing == glm::vec3(0.0f) || occluded(origin, toLight, 0.0f, reach)) continue;
-        sum += facing * cosine;
-    }
+    for (const Light& light : impl_->lights)
+        sum += directIrradiance(light, position, geometricNormal, normal);
     return sum;
 }
 

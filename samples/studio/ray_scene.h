@@ -40,8 +40,12 @@ public:
     // Origin moved off a surface along its geometric normal, by a bias relative to its coordinates.
     glm::vec3 offset(const glm::vec3& position, const glm::vec3& geometricNormal) const;
 
-    // Direct irradiance at a surface from the scene's punctual lights at this time, with shadow rays.
-    // A surface facing away (by geometric or shading normal) gets 0.
+    // The scene's punctual lights at this time.
+    const std::vector<Light>& lights() const;
+    // Direct irradiance at a surface from one of them, and from all, with shadow rays. A surface facing
+    // away (by geometric or shading normal) gets 0.
+    glm::vec3 directIrradiance(const Light& light, const glm::vec3& position,
+                               const glm::vec3& geometricNormal, const glm::vec3& normal) const;
     glm::vec3 directIrradiance(const glm::vec3& position, const glm::vec3& geometricNormal,
                                const glm::vec3& normal) const;
     // World position of the same surface point (mesh, triangle, u, v) at another time.

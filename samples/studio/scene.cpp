@@ -132,6 +132,17 @@ float coneFalloff(const Light& light, const glm::vec3& toSurface) {
     return ramp * ramp;
 }
 
+LightArrival arrivalOf(const Light& light, const glm::vec3& position) {
+    if (light.kind == LightKind::Sun)
+        return {-light.direction, light.emitted, std::numeric_limits<float>::infinity()};
+    const glm::vec3 way = light.position - position;
+    const float squared = glm::dot(way, way);
+    if (squared <= 0.0f) return {};
+    const float distance = std::sqrt(squared);
+    const glm::vec3 toLight = way / distance;
+    return {toLight, light.emitted * (coneFalloff(light, -toLight) / squared), distance};
+}
+
 Camera Scene::cameraAt(int index, float time) const {
     return trackAt(cameraTracks, index, checked(cameras, index, "camera"), time);
 }

@@ -74,6 +74,14 @@ struct Light {
 // the linear ramp in the cosine between. 1 for other lights. `toSurface`: unit, light to surface.
 float coneFalloff(const Light& light, const glm::vec3& toSurface);
 
+// What a light would bring to a position with nothing between: where it comes from, how far that is
+// (infinity for a sun), and the irradiance of a surface that faces it. Zero at a light's very place.
+struct LightArrival {
+    glm::vec3 toLight{0.0f}, irradiance{0.0f};
+    float distance = 0.0f;
+};
+LightArrival arrivalOf(const Light& light, const glm::vec3& position);
+
 template <class T> struct Track {  // keyframes of a camera or light; linear in every field
     int target = 0;
     std::vector<std::pair<float, T>> keys;
