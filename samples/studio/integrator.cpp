@@ -44,6 +44,13 @@ float rayShare(float byRay, float byLamp) {
     return byRay > 0.0f ? 1.0f / (1.0f + byLamp / byRay) : 0.0f;
 }
 
+// The normal a shadow map's texel has, on the lit side of its surface: the shading normal, unless that
+// leans away from the lamp although the surface faces it.
+glm::vec3 lobeNormal(const glm::vec3& litSide, const glm::vec3& shading, const glm::vec3& toLamp) {
+    const glm::vec3 turned = glm::dot(shading, litSide) > 0.0f ? shading : -shading;
+    return glm::dot(turned, toLamp) > 0.0f ? turned : litSide;
+}
+
 // The connection's two ends, off their surfaces, and what lies between.
 struct Link {
     glm::vec3 origin, direction;
@@ -113,8 +120,8 @@ glm::vec3 Integrator::punctualOfRay(const Surface& at, const glm::vec3& directio
                    hit.distance * hit.distance);
     glm::vec3 irradiance(0.0f);
     for (std::size_t l = 0; l < scene_.lights().size(); ++l) {
-        const glm::vec3 fromLamp = scene_.directIrradiance(scene_.lights()[l], hit.position,
-                                                           hit.geometricNormal, hit.normal);
+        const glm::vec3 fromLamp =
+            scene_.directIrradiance(scene_.lights()[l], hit.position, hit.geometricNormal, hit.normal);
         if (largest(fromLamp) <= 0.0f) continue;
         const float byLamp = litPoints_.density(l, hit.position, hit.geometricNormal);
         irradiance += fromLamp * rayShare(byRay, byLamp);
@@ -155,51 +162,64 @@ glm::vec3 Integrator::extendedIrradiance(const Surface& at, Sampler& sampler) co
 
 // The limit of a gather from virtual point lights without visibility, in that gather's own measure.
 //
-// A VPL that stands for the area dA of a surface (geometric normal g, shading normal n) carries the flux
-// rho E_g dA, E_g the irradiance on the geometric surface, and sends (1/pi) max(0, n.w) of it towards
-// the pixel; seen from the pixel dA = d^2 dw / |g.w|. A ray's radiance is therefore
+// A VPL that stands for the area dA of a surface (geometric normal g on the lit side, lobe's normal n,
+// see lobeNormal) carries the flux rho E_g dA, E_g the irradiance on the geometric surface, and sends
+// (1/pi) max(0, n.w) of it towards the pixel; seen from the pixel dA = d^2 dw / |g.w|. A ray's radiance
+// is therefore
 //     rho/pi E_g max(0, n.w) / |g.w|,
-// which is the usual rho/pi E wherever n = g. The lobe stands about n, so the side that counts is the
-// one n turns to the pixel, and the pixel's whole hemisphere about its shading normal receives, the part
-// under its own surface too: nothing blocks. Rays and lit points share it as above, p_ray = c |g.w| /
-// (pi d^2), so that the quotient's pole does no harm.
+// which is the usual rho/pi E wherever n = g. The pixel's whole hemisphere about its shading normal
+// receives, the part under its own surface too: nothing blocks. Rays and lit points share the light as
+// above, p_ray = c |g.w| / (pi d^2), so that the quotient's pole does no harm.
 glm::vec3 Integrator::traceUnshadowed(const Surface& pixel, Sampler& sampler) const {
     glm::vec3 irradiance = connectUnshadowed(pixel, sampler);
     const glm::vec3 direction = sampleCosine(pixel.normal, sampler.next());
-    const float cosine = glm::dot(pixel.normal, direction);
     const bool above = glm::dot(pixel.geometricNormal, direction) > 0.0f;
     const glm::vec3 origin =
         scene_.offset(pixel.position, above ? pixel.geometricNormal : -pixel.geometricNormal);
-
     Hit hit;
     for (float from = 0.0f; scene_.trace(origin, direction, from, kInfinity, hit);
-         from = hit.distance * (1.0f + kStepThrough) + kTiny) {
-        const float facing = -glm::dot(hit.normal, direction);
-        const float projected = -glm::dot(hit.geometricNormal, direction);
-        if (projected <= 0.0f || largest(hit.albedo) <= 0.0f) continue;
-        const glm::vec3 side = facing > 0.0f ? hit.geometricNormal : -hit.geometricNormal;
-        const float byRay = rayDensity(cosine, projected, hit.distance * hit.distance);
-        glm::vec3 onSide = extendedIrradiance({hit.position, side, side}, sampler);
-        for (std::size_t l = 0; l < scene_.lights().size(); ++l) {
-            const glm::vec3 fromLamp =
-                scene_.directIrradiance(scene_.lights()[l], hit.position, side, side);
-            if (largest(fromLamp) <= 0.0f) continue;
-            onSide += fromLamp * rayShare(byRay, litPoints_.density(l, hit.position, side));
-        }
-        irradiance += hit.albedo * onSide * (std::abs(facing) / projected);
-    }
+         from = hit.distance * (1.0f + kStepThrough) + kTiny)
+        if (largest(hit.albedo) > 0.0f)
+            irradiance += hit.albedo * lightThrough(pixel, direction, hit, sampler);
     return irradiance;
+}
+
+// Light on `hit`, of albedo 1, as a ray through everything finds it.
+glm::vec3 Integrator::lightThrough(const Surface& pixel, const glm::vec3& direction, const Hit& hit,
+                                   Sampler& sampler) const {
+    const float projected = -glm::dot(hit.geometricNormal, direction);
+    if (projected <= 0.0f) return glm::vec3(0.0f);
+    const float byRay =
+        rayDensity(glm::dot(pixel.normal, direction), projected, hit.distance * hit.distance);
+
+    // Sky and emission come from everywhere: the side whose lobe meets the pixel is the one that counts.
+    const float facing = -glm::dot(hit.normal, direction);
+    const glm::vec3 lobeSide = facing > 0.0f ? hit.geometricNormal : -hit.geometricNormal;
+    glm::vec3 light =
+        extendedIrradiance({hit.position, lobeSide, lobeSide}, sampler) * (std::abs(facing) / projected);
+    for (std::size_t l = 0; l < scene_.lights().size(); ++l) {
+        const Light& lamp = scene_.lights()[l];
+        const glm::vec3 toLamp = arrivalOf(lamp, hit.position).toLight;
+        const glm::vec3 side =
+            glm::dot(hit.geometricNormal, toLamp) > 0.0f ? hit.geometricNormal : -hit.geometricNormal;
+        const float lobe = -glm::dot(lobeNormal(side, hit.normal, toLamp), direction);
+        if (lobe <= 0.0f) continue;
+        const float share = rayShare(byRay, litPoints_.density(l, hit.position, side));
+        light += scene_.directIrradiance(lamp, hit.position, side, side) * (share * lobe / projected);
+    }
+    return light;
 }
 
 glm::vec3 Integrator::connectUnshadowed(const Surface& at, Sampler& sampler) const {
     LitPoints::Point point;
     if (litPoints_.empty() || !litPoints_.sample(sampler, point)) return glm::vec3(0.0f);
     const Surface& lit = point.surface;
+    const LightArrival lamp = arrivalOf(scene_.lights()[point.light], lit.position);
     const Link link(at.position, lit.position);
     const float cosine = glm::dot(at.normal, link.direction);
-    const float lobe = -glm::dot(lit.normal, link.direction);
+    const float lobe =
+        -glm::dot(lobeNormal(lit.geometricNormal, lit.normal, lamp.toLight), link.direction);
     if (cosine <= 0.0f || lobe <= 0.0f) return glm::vec3(0.0f);
-    const LightArrival lamp = arrivalOf(scene_.lights()[point.light], lit.position);
     const float lampCosine = glm::dot(lit.geometricNormal, lamp.toLight);
     const float projected = std::abs(glm::dot(lit.geometricNormal, link.direction));
     const float transfer = cosine * lobe / (kPi * link.squared);

@@ -16,7 +16,9 @@ public:
     // `receivers`: what the picture shows, to find the light that matters there.
     Integrator(const RayScene& scene, const std::vector<Surface>& receivers, int maxBounces,
                bool unshadowed)
-        : scene_(scene), areaLights_(scene), litPoints_(scene, receivers, !unshadowed),
+        : scene_(scene),
+          areaLights_(scene),
+          litPoints_(scene, receivers, !unshadowed),
           maxBounces_(maxBounces) {}
 
     // Irradiance by a path from `pixel`; `punctual`: what scene.directIrradiance gives there.
@@ -30,6 +32,8 @@ private:
     glm::vec3 punctualOfRay(const Surface& at, const glm::vec3& direction, const Hit& hit) const;
     // Irradiance of `at` by one lit point, less the share of rays.
     glm::vec3 connect(const Surface& at, Sampler& sampler) const;
+    glm::vec3 lightThrough(const Surface& pixel, const glm::vec3& direction, const Hit& hit,
+                           Sampler& sampler) const;
     glm::vec3 connectUnshadowed(const Surface& at, Sampler& sampler) const;
     // Emissive surfaces and sky.
     glm::vec3 extendedIrradiance(const Surface& at, Sampler& sampler) const;

@@ -31,10 +31,13 @@ constexpr double kTwoPi = 6.283185307179586;
 // small part of the picture are found too rarely.
 constexpr std::size_t kJudges = 48;
 
-// Share of the samples given out by flux alone.
-constexpr double kByFlux = 0.2;
+// Shares of the samples given out by flux alone, and to all cells alike: the one ray of a cell may miss
+// what is lit in it.
+constexpr double kByFlux = 0.2, kAlike = 0.02;
 
-float largest(const glm::vec3& c) { return std::max(c.x, std::max(c.y, c.z)); }
+float largest(const glm::vec3& c) {
+    return std::max(c.x, std::max(c.y, c.z));
+}
 
 // A place in a cell's part of the unit square.
 glm::dvec2 inCell(std::size_t cell, glm::dvec2 place) {
@@ -92,7 +95,8 @@ glm::dvec2 LitPoints::Chart::squareOf(const glm::vec3& position) const {
     return {turn < 0.0 ? turn + 1.0 : turn, (1.0 + glm::dot(w, back)) / cap};
 }
 
-double LitPoints::Chart::measurePerArea(const glm::vec3& position, const glm::vec3& geometricNormal) const {
+double LitPoints::Chart::measurePerArea(const glm::vec3& position,
+                                        const glm::vec3& geometricNormal) const {
     if (light.kind == LightKind::Sun)
         return std::abs(double(glm::dot(geometricNormal, light.direction)));
     const glm::dvec3 way = glm::dvec3(position) - glm::dvec3(light.position);
@@ -143,11 +147,11 @@ void LitPoints::chooseCells(const std::vector<double>& flux, const std::vector<d
     const double allFlux = std::accumulate(flux.begin(), flux.end(), 0.0);
     const double allUseful = std::accumulate(useful.begin(), useful.end(), 0.0);
     if (allFlux <= 0.0) return;
-    const double byFlux = allUseful > 0.0 ? kByFlux : 1.0;
+    const double byFlux = allUseful > 0.0 ? kByFlux : 1.0 - kAlike;
     double sum = 0.0;
     for (std::size_t i = 0; i < flux.size(); ++i) {
-        double share = byFlux * flux[i] / allFlux;
-        if (allUseful > 0.0) share += (1.0 - byFlux) * useful[i] / allUseful;
+        double share = kAlike / double(flux.size()) + byFlux * flux[i] / allFlux;
+        if (allUseful > 0.0) share += (1.0 - byFlux - kAlike) * useful[i] / allUseful;
         probability_.push_back(share);
         upTo_.push_back(sum += share);
     }

@@ -45,7 +45,8 @@ private:
         double measurePerArea(const glm::vec3& position, const glm::vec3& geometricNormal) const;
     };
     // Light that `hit`, which stands for an area, sends to the judges, per flux.
-    double transfer(const Hit& hit, double area, const std::vector<Surface>& judges, bool occlusion) const;
+    double transfer(const Hit& hit, double area, const std::vector<Surface>& judges,
+                    bool occlusion) const;
     void chooseCells(const std::vector<double>& flux, const std::vector<double>& useful);
 
     const RayScene& scene_;

@@ -75,7 +75,7 @@ struct Interrupted {};
 
 TEST_CASE("the error falls with the samples, and the halves tell how large it is") {
     const studio::RayScene scene = litBox();
-    const Receivers view = litBoxView(16);
+    const Receivers view = litBoxView(12);
     PathTracerOptions options = samples(1 << 13);
     options.seed = 99;
     const Image truth = tracePaths(scene, view.view, options);  // squared error 1/100 of the best below
@@ -87,13 +87,12 @@ TEST_CASE("the error falls with the samples, and the halves tell how large it is
             const double error = relMse(image, truth, layer);
             const double x = std::log(spp), y = 0.5 * std::log(error);
             sx += x, sy += y, sxx += x * x, sxy += x * y, n += 1;
-            // 768 values estimate the variance to 5 %; the denominators, with R for the truth, bring the
-            // rest where few paths find light.
-            CAPTURE(layer, spp);
-            if (spp >= 16)
-                CHECK(std::stod(image.metadata.at("noise." + layer)) == Approx(error).epsilon(0.3));
-            CHECK(estimateNoise(image, {layer}) ==
-                  Approx(std::stod(image.metadata.at("noise." + layer))).epsilon(1e-4));
+            // 432 values estimate a variance to 7 %, rare bright paths and R in the denominator make it
+            // worse where few paths find light: within a factor of 1.5 from 16 samples on.
+            CAPTURE(layer, spp, error);
+            const double estimate = std::stod(image.metadata.at("noise." + layer));
+            if (spp >= 16) CHECK(std::abs(std::log(estimate / error)) < std::log(1.5));
+            CHECK(estimateNoise(image, {layer}) == Approx(estimate).epsilon(1e-4));
         }
         CAPTURE(layer);
         CHECK((n * sxy - sx * sy) / (n * sxx - sx * sx) <= -0.45);
@@ -104,7 +103,7 @@ TEST_CASE("the halves are independent") {
     const Image image = tracePaths(litBox(), litBoxView(32).view, samples(16));
     const auto& a = image.plane("a.all.G");
     const auto& b = image.plane("b.all.G");
-    const Image truth = tracePaths(litBox(), litBoxView(32).view, samples(1024));
+    const Image truth = tracePaths(litBox(), litBoxView(32).view, samples(512));
     double ab = 0, aa = 0, bb = 0;
     for (std::size_t i = 0; i < a.size(); ++i) {
         const double r = double(truth.plane("all.G")[i]), da = double(a[i]) - r, db = double(b[i]) - r;
@@ -133,7 +132,7 @@ TEST_CASE("interrupted and resumed equals uninterrupted, bit for bit") {
     const studio::RayScene scene = litBox();
     const Receivers view = litBoxView(32);
     const TemporaryFile file("resume_test");
-    PathTracerOptions options = samples(640);  // passes of 256, 256 and 128
+    PathTracerOptions options = samples(640);  // passes of 256, 256, 128
     const Image whole = tracePaths(scene, view.view, options);
 
     options.checkpoint = file.path;
@@ -153,7 +152,7 @@ TEST_CASE("interrupted and resumed equals uninterrupted, bit for bit") {
         options.progress = [](double fraction, double) { CHECK(fraction == 1.0); };
         CHECK(tracePaths(scene, view.view, options).channels == whole.channels);
         options.progress = nullptr;
-        options.samplesPerPixel = 900;
+        options.samplesPerPixel = 700;
         const Image further = tracePaths(scene, view.view, options);
         options.checkpoint = "";
         CHECK(tracePaths(scene, view.view, options).channels == further.channels);
