@@ -89,12 +89,12 @@ inline Image gather(const Image& position, const Image& normal, const std::vecto
     return out;
 }
 
-// Neighbour q on the tangent plane of s (slope 1/4), weight linear in the cosine from 0.8 on.
+// Neighbour q on the tangent plane of s (slope 0.7), weight linear in the cosine from 0.8 on.
 inline double edgeWeight(const Surface& s, const Surface& q) {
     if (!q.valid) return 0.0;
     const Vec d = q.position - s.position;
     const double off = dot(d, s.normal);
-    if (off * off > 0.25 * 0.25 * dot(d, d)) return 0.0;
+    if (off * off > 0.7 * 0.7 * dot(d, d)) return 0.0;
     return std::clamp((dot(q.normal, s.normal) - 0.8) / 0.2, 0.0, 1.0);
 }
 
