@@ -111,7 +111,8 @@ __kernel void interleaved_gather_gather(__global const float* position, int4 pos
 
     real e[3][LW_INTERLEAVE];
     int rejectedHere = 0;
-    LW_UNROLL for (int j = 0; j < LW_INTERLEAVE; ++j) {
+    // Not unrolled: at interleave 8 eight copies of the loop over VPLs cost seconds of compilation.
+    for (int j = 0; j < LW_INTERLEAVE; ++j) {
         const lw_surface s = make_surface(p[0][j], p[1][j], p[2][j], n[0][j], n[1][j], n[2][j]);
         rgb sum = {(real)0.0f, (real)0.0f, (real)0.0f};
         if (any_(s.valid)) {

@@ -88,7 +88,8 @@ LW_FN void add_sample(lw_sum* sum, lw_sum* rest, const lw_surface s, const lw_su
 }
 
 // One work-item = 2 * LW_WIDTH pixels of one row: the even ones and the odd ones of LW_WIDTH blocks.
-// half*: 3 planes each of the half-resolution image. counts[1]: pixels lit without edge test.
+// half*: 3 planes each of the half-resolution image. counts[0]: pixels that are
+// neither surface nor background; counts[1]: pixels lit without edge test.
 __kernel void joint_bilateral_upsample(__global const float* position, int4 positionLayout,
                                        __global const float* normal, int4 normalLayout, int width, int height,
                                        __global const float* halfPosition, int4 halfPositionLayout,
@@ -157,4 +158,6 @@ __kernel void joint_bilateral_upsample(__global const float* position, int4 posi
     const lanei at = lanei_iota() * 2 + (lanei)x;
     const mask lostEven = and_(evenLost, at < (lanei)width), lostOdd = and_(oddLost, at + 1 < (lanei)width);
     if (any_(or_(lostEven, lostOdd))) atomic_add(counts + 1, count_(lostEven) + count_(lostOdd));
+    const mask badEven = and_(even.rejected, at < (lanei)width), badOdd = and_(odd.rejected, at + 1 < (lanei)width);
+    if (any_(or_(badEven, badOdd))) atomic_add(counts, count_(badEven) + count_(badOdd));
 }

@@ -16,8 +16,8 @@ public:
     // Pass "joint_bilateral.downsample": one surface of each 2x2 block of pixels.
     void recordDownsample(Executor& executor, const Planes& position, const Planes& normal,
                           const Planes& halfPosition, const Planes& halfNormal);
-    // Pass "joint_bilateral.upsample". counts[1] grows by the pixels without a sample on their own
-    // surface.
+    // Pass "joint_bilateral.upsample". counts[0] grows by the pixels with neither a surface nor a
+    // zero normal, counts[1] by those without a sample on their own surface.
     void recordUpsample(Executor& executor, const Planes& position, const Planes& normal,
                         const Planes& halfPosition, const Planes& halfNormal, const Planes& halfIrradiance,
                         const Planes& irradiance, const Buffer& counts);

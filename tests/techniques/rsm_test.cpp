@@ -1,0 +1,265 @@
+// Technique rsm through the C API: its limit, its convergence, what must not change it, and what a host
+// relies on (several views, sizes and lights; nothing built after lwPrewarm).
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstring>
+#include <string>
+
+#include "support/lit_room.h"
+#include "support/scoped_api.h"
+
+using namespace lightwell::test;
+using lightwell::reference::Vec;
+
+namespace {
+
+double uniformProfile(double, double) { return 1.0; }
+// A spot's pool of light with a hard rim on a floor of light and dark tiles. Off the middle of the map: a
+// symmetric one puts sample points exactly on the borders between texels, where rounding decides.
+double spotProfile(double x, double z) {
+    const double dx = x - 0.037, dz = z - 0.521, r2 = dx * dx + dz * dz;
+    const bool isDark = (int(std::floor(x * 9.1)) + int(std::floor(z * 9.1))) % 2 != 0;
+    return r2 > 0.06 ? 0.0 : (isDark ? 0.15 : 0.8) * (1.0 - 6.0 * r2);
+}
+
+LWRsmDesc descOf(std::uint32_t vpls, std::uint32_t interleave) {
+    LWRsmDesc desc;
+    lwDefaultRsm(&desc);
+    desc.vpls = vpls;
+    desc.interleave = interleave;
+    return desc;
+}
+
+// One frame on a fresh technique.
+std::vector<float> render(LWDevice device, const LWRsmDesc& desc, const std::vector<LWLight>& lights,
+                          const WallAndCeiling& scene, std::uint32_t width, std::uint32_t height) {
+    TestTechnique technique(device, desc);
+    TestView view(device, width, height);
+    technique.update(lights);
+    return technique.render(view, scene.gbuffer);
+}
+
+double rootMeanSquare(const std::vector<float>& a, const std::vector<float>& b) {
+    double sum = 0.0, mean = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        sum += std::pow(double(a[i]) - double(b[i]), 2.0);
+        mean += double(b[i]);
+    }
+    return std::sqrt(sum / double(a.size())) / (mean / double(a.size()));
+}
+
+double meanOf(const std::vector<float>& values) {
+    double sum = 0.0;
+    for (const float v : values) sum += double(v);
+    return sum / double(values.size());
+}
+
+constexpr std::uint32_t kWidth = 96, kHeight = 64;
+
+}  // namespace
+
+TEST_CASE("all texels reach the polygon's irradiance", "[rsm]") {
+    TestDevice device(GENERATE(1u, 16u));
+    LitFloor floor(96, uniformProfile);
+    WallAndCeiling scene(33, 32);
+    const auto e = render(device, descOf(0, 1), {floor.light}, scene, 33, 32);
+    const std::vector<Vec> corners = {{-0.5, 0, 0}, {0.5, 0, 0}, {0.5, 0, 1}, {-0.5, 0, 1}};
+    double worst = 0.0;
+    for (std::uint32_t y = 0; y < 32; ++y)
+        for (std::uint32_t x = 0; x < 33; ++x) {
+            const double got = double(e[y * 33 + x]);
+            if (x == 0) {
+                CHECK(got == 0.0);
+                continue;
+            }
+            const Vec p = scene.position.get(x, y), n = scene.normal.get(x, y);
+            worst = std::max(worst, std::abs(got / polygonIrradiance(corners, p, n, 1.0) - 1.0));
+        }
+    // Midpoint quadrature of 1/96 cells from 1/10 away, and the bounding of each texel's own area.
+    CHECK(worst < 0.01);
+}
+
+TEST_CASE("the error falls with the number of VPLs, faster by flux than uniformly", "[rsm]") {
+    TestDevice device(16);
+    LitFloor floor(128, spotProfile);
+    WallAndCeiling scene(kWidth, kHeight);
+    const auto limit = render(device, descOf(0, 1), {floor.light}, scene, kWidth, kHeight);
+    auto error = [&](std::uint32_t vpls, LWVplSampling sampling) {
+        double sum = 0.0;  // over seeds: one low-discrepancy set may be lucky
+        for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+            LWRsmDesc desc = descOf(vpls, 1);
+            desc.sampling = sampling;
+            desc.seed = seed;
+            sum += std::pow(rootMeanSquare(render(device, desc, {floor.light}, scene, kWidth, kHeight), limit), 2.0);
+        }
+        return std::sqrt(sum / 4.0);
+    };
+    const double few = error(64, LW_SAMPLING_FLUX), many = error(4096, LW_SAMPLING_FLUX);
+    CAPTURE(few, many);
+    CHECK(std::log(many / few) / std::log(64.0) < -0.4);
+    for (const std::uint32_t vpls : {64u, 256u, 1024u}) {
+        CAPTURE(vpls);
+        CHECK(error(vpls, LW_SAMPLING_FLUX) < error(vpls, LW_SAMPLING_UNIFORM));
+    }
+}
+
+TEST_CASE("interleaving, filter and half resolution keep the light", "[rsm]") {
+    TestDevice device(GENERATE(1u, 16u));
+    LitFloor floor(64, spotProfile);
+    WallAndCeiling scene(kWidth, kHeight);
+    const auto full = render(device, descOf(256, 1), {floor.light}, scene, kWidth, kHeight);
+    const double mean = meanOf(full);
+    for (const std::uint32_t n : {2u, 4u, 8u}) {
+        CAPTURE(n);
+        LWRsmDesc desc = descOf(256, n);
+        const auto filtered = render(device, desc, {floor.light}, scene, kWidth, kHeight);
+        CHECK(meanOf(filtered) == Approx(mean).epsilon(0.01));
+        // Rows beside the edge between wall and ceiling find only half of the subsets in their window,
+        // and a wider window meets more of them.
+        CHECK(rootMeanSquare(filtered, full) < 0.02 + 0.01 * n);
+        desc.filter = 0;
+        CHECK(meanOf(render(device, desc, {floor.light}, scene, kWidth, kHeight)) == Approx(mean).epsilon(0.02));
+    }
+    LWRsmDesc half = descOf(256, 1);
+    half.resolution = LW_RESOLUTION_HALF;
+    const auto halved = render(device, half, {floor.light}, scene, kWidth, kHeight);
+    CHECK(meanOf(halved) == Approx(mean).epsilon(0.01));
+    CHECK(rootMeanSquare(halved, full) < 0.05);
+}
+
+TEST_CASE("same input, same bits: runs and widths", "[rsm]") {
+    LitFloor floor(64, spotProfile);
+    WallAndCeiling scene(kWidth, kHeight);
+    LWRsmDesc desc = descOf(256, 4);
+    desc.resolution = GENERATE(LW_RESOLUTION_FULL, LW_RESOLUTION_HALF);
+    TestDevice wide(16), scalar(1);
+    const auto first = render(wide, desc, {floor.light}, scene, kWidth, kHeight);
+    for (int run = 0; run < 10; ++run) CHECK(render(wide, desc, {floor.light}, scene, kWidth, kHeight) == first);
+    CHECK(render(scalar, desc, {floor.light}, scene, kWidth, kHeight) == first);
+}
+
+TEST_CASE("scale changes nothing but rounding", "[rsm]") {
+    TestDevice device(16);
+    auto at = [&](double scale) {
+        LitFloor floor(64, spotProfile, scale);
+        WallAndCeiling scene(kWidth, kHeight, scale);
+        return render(device, descOf(256, 4), {floor.light}, scene, kWidth, kHeight);
+    };
+    const auto metres = at(1.0);
+    for (const double scale : {10.0, 0.1, 1000.0}) {
+        CAPTURE(scale);
+        CHECK(rootMeanSquare(at(scale), metres) < 1e-5);
+    }
+}
+
+TEST_CASE("lights of different kinds add up", "[rsm]") {
+    TestDevice device(16);
+    LitFloor sun(32, uniformProfile), spot(48, spotProfile);
+    spot.light.kind = LW_LIGHT_SPOT;
+    // The spot's map is seen in perspective from y = 1.
+    const float projection[16] = {2, 0, 0, 0, 0, 2, 0, 0, 0, 0, -1.001f, -0.01f, 0, 0, -1, 0};
+    std::memcpy(spot.rsm.camera.projection, projection, sizeof projection);
+    WallAndCeiling scene(kWidth, kHeight);
+    const auto both = render(device, descOf(0, 1), {sun.light, spot.light}, scene, kWidth, kHeight);
+    const auto one = render(device, descOf(0, 1), {sun.light}, scene, kWidth, kHeight);
+    const auto other = render(device, descOf(0, 1), {spot.light}, scene, kWidth, kHeight);
+    std::vector<float> sum(one.size());
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] = one[i] + other[i];
+    CHECK(rootMeanSquare(both, sum) < 1e-5);
+    // Drawn together, they share the VPLs.
+    CHECK(meanOf(render(device, descOf(1024, 1), {sun.light, spot.light}, scene, kWidth, kHeight)) ==
+          Approx(meanOf(both)).epsilon(0.02));
+}
+
+TEST_CASE("one update serves several views; sizes change without allocation", "[rsm]") {
+    TestDevice device(16);
+    LitFloor floor(64, spotProfile);
+    WallAndCeiling left(kWidth, kHeight), right(61, 40);
+    const LWRsmDesc desc = descOf(256, 4);
+    const auto leftAlone = render(device, desc, {floor.light}, left, kWidth, kHeight);
+    const auto rightAlone = render(device, desc, {floor.light}, right, 61, 40);
+
+    TestTechnique technique(device, desc);
+    TestView leftView(device, kWidth, kHeight), rightView(device, 128, 128);
+    technique.update({floor.light});
+    CHECK(technique.render(leftView, left.gbuffer) == leftAlone);
+    rightView.resize(61, 40);
+    CHECK(technique.render(rightView, right.gbuffer) == rightAlone);
+    const std::uint64_t bytes = technique.stats().deviceBytes;
+    rightView.resize(kWidth, kHeight);
+    CHECK(technique.render(rightView, left.gbuffer) == leftAlone);
+    rightView.resize(61, 40);
+    CHECK(technique.render(rightView, right.gbuffer) == rightAlone);
+    CHECK(technique.stats().deviceBytes == bytes);
+}
+
+TEST_CASE("after lwPrewarm 500 frames with resizes build nothing", "[rsm]") {
+    TestDevice device(16);
+    LitFloor floor(32, spotProfile);
+    LWRsmDesc desc = descOf(64, 4);
+    desc.resolution = GENERATE(LW_RESOLUTION_FULL, LW_RESOLUTION_HALF);
+    TestTechnique technique(device, desc);
+    TestView view(device, 64, 64);
+    REQUIRE(lwPrewarm(technique, view) == LW_SUCCESS);
+    const LWDeviceInfo before = device.info();
+    WallAndCeiling scene(64, 64), small(40, 24);
+    for (int frame = 0; frame < 500; ++frame) {
+        const bool isSmall = frame % 5 == 4;
+        view.resize(isSmall ? 40 : 64, isSmall ? 24 : 64);
+        technique.update({floor.light});
+        technique.render(view, isSmall ? small.gbuffer : scene.gbuffer);
+    }
+    const LWDeviceInfo after = device.info();
+    CHECK(after.programsBuilt == before.programsBuilt);
+    CHECK(after.programsLoaded == before.programsLoaded);
+    CHECK(after.kernelsSpecialised == before.kernelsSpecialised);
+}
+
+TEST_CASE("stats name the passes, count what was refused, and memory is as estimated", "[rsm]") {
+    TestDevice device(16);
+    LitFloor floor(64, spotProfile);
+    WallAndCeiling scene(kWidth, kHeight);
+    scene.position.at(7, 7, 0) = std::nanf("");
+    LWRsmDesc desc = descOf(256, 4);
+    desc.resolution = GENERATE(LW_RESOLUTION_FULL, LW_RESOLUTION_HALF);
+    TestTechnique technique(device, desc);
+    TestView view(device, kWidth, kHeight);
+    technique.update({floor.light});
+    technique.render(view, scene.gbuffer);
+    const LWStats stats = technique.stats();
+    bool gathered = false;
+    for (std::uint32_t i = 0; i < stats.passCount; ++i)
+        gathered = gathered || std::string(stats.passes[i].name) == "interleaved_gather.gather";
+    CHECK(gathered);
+    CHECK(technique.count("vpls") == 256);
+    CHECK(technique.count("rejected_pixels") == 1);
+
+    LWViewDesc viewDesc{};
+    viewDesc.structSize = sizeof viewDesc;
+    viewDesc.maxWidth = kWidth;
+    viewDesc.maxHeight = kHeight;
+    std::uint64_t estimate = 0;
+    REQUIRE(lwEstimateMemory(device, "rsm", &desc, &viewDesc, 64 * 64, &estimate) == LW_SUCCESS);
+    // The estimate holds room for inputs that have to be unpacked; here all are used in place.
+    CHECK(stats.deviceBytes <= estimate);
+    CHECK(stats.deviceBytes > estimate / 4);
+}
+
+TEST_CASE("rsm refuses what it cannot make", "[rsm]") {
+    TestDevice device(16);
+    LitFloor floor(32, spotProfile);
+    WallAndCeiling scene(kWidth, kHeight);
+    TestTechnique technique(device, descOf(64, 4));
+    TestView view(device, kWidth, kHeight);
+    technique.update({floor.light});
+    PlanarPixels scalar(kWidth, kHeight, 1);
+    LWOutput output{};
+    output.structSize = sizeof output;
+    output.ambientOcclusion = scalar.image();
+    CHECK(lwRender(technique, view, &scene.gbuffer, &output) == LW_ERROR_UNSUPPORTED);
+    CHECK(lastError(device).find("ambientOcclusion") != std::string::npos);
+    LWRsmDesc bad = descOf(64, 3);
+    LWTechnique none = nullptr;
+    CHECK(lwCreateRsm(device, &bad, &none) == LW_ERROR_INVALID_ARGUMENT);
+    CHECK(lastError(device).find("interleave") != std::string::npos);
+}
