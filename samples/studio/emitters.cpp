@@ -56,7 +56,7 @@ glm::vec3 cosineDirection(const glm::vec3& n, float u, float v) {
 
 }  // namespace
 
-EmitterSet::EmitterSet(const RayScene& rayScene) : scene_(rayScene) {
+EmitterSet::EmitterSet(const RayScene& rayScene) : scene_(rayScene), sky_(rayScene.scene().sky) {
     const Scene& scene = rayScene.scene();
     if (!scene.emissiveSurfaces) return;
     for (const Mesh& mesh : scene.meshes) {
@@ -103,9 +103,8 @@ float EmitterSet::areaDensity(const glm::vec3& emission) const {
     return float(double(largest(emission)) / total_);
 }
 
-glm::vec3 EmitterSet::irradiance(const glm::vec3& position, const glm::vec3& geometricNormal,
+glm::vec3 EmitterSet::fromPoints(const glm::vec3& origin, const glm::vec3& geometricNormal,
                                  const glm::vec3& normal, std::uint32_t pixel) const {
-    const glm::vec3 origin = scene_.offset(position, geometricNormal);
     glm::vec3 sum(0.0f);
     for (int i = 0; i < kSamples; ++i) {
         const Sample s = sample(stratified(i, pixel, 0));
@@ -113,36 +112,46 @@ glm::vec3 EmitterSet::irradiance(const glm::vec3& position, const glm::vec3& geo
         const float squared = glm::dot(way, way), distance = std::sqrt(squared);
         if (distance <= 0.0f) continue;
         const glm::vec3 direction = way / distance;
-        const float cosine = glm::dot(normal, direction),
-                    cosEmitter = std::abs(glm::dot(s.normal, direction));
-        if (cosine <= 0.0f || cosEmitter <= 0.0f || glm::dot(geometricNormal, direction) <= 0.0f)
-            continue;
+        const float cosine = glm::dot(normal, direction), side = glm::dot(s.normal, direction);
+        if (cosine <= 0.0f || side == 0.0f || glm::dot(geometricNormal, direction) <= 0.0f) continue;
         // Ends just before the emitter; the gap is that of ray origins.
-        const glm::vec3 end =
-            scene_.offset(s.position, glm::dot(s.normal, direction) > 0.0f ? -s.normal : s.normal);
-        const glm::vec3 toEnd = end - origin;
+        const glm::vec3 toEnd = scene_.offset(s.position, side > 0.0f ? -s.normal : s.normal) - origin;
         const float reach = glm::length(toEnd);
         if (reach <= 0.0f || scene_.occluded(origin, toEnd / reach, 0.0f, reach)) continue;
-        const float density = s.areaDensity * squared / cosEmitter, other = cosine / kPi;
+        const float density = s.areaDensity * squared / std::abs(side), other = cosine / kPi;
         sum += s.emission * (cosine * density / (density * density + other * other));
     }
+    return sum / float(kSamples);
+}
+
+glm::vec3 EmitterSet::fromRays(const glm::vec3& origin, const glm::vec3& geometricNormal,
+                               const glm::vec3& normal, std::uint32_t pixel) const {
+    glm::vec3 sum(0.0f);
     for (int i = 0; i < kSamples; ++i) {
         const glm::vec2 u = stratified(i, pixel, 1);
         const glm::vec3 direction = cosineDirection(normal, u.x, u.y);
+        const float cosine = glm::dot(normal, direction);
+        if (cosine <= 0.0f || glm::dot(geometricNormal, direction) <= 0.0f) continue;
         Hit hit;
-        if (glm::dot(geometricNormal, direction) <= 0.0f ||
-            !scene_.trace(origin, direction, 0.0f, std::numeric_limits<float>::infinity(), hit) ||
-            largest(hit.emission) <= 0.0f)
+        if (!scene_.trace(origin, direction, 0.0f, std::numeric_limits<float>::infinity(), hit)) {
+            sum += sky_ * kPi;
             continue;
-        const float cosine = glm::dot(normal, direction),
-                    cosEmitter = -glm::dot(hit.geometricNormal, direction);
-        if (cosine <= 0.0f) continue;
+        }
+        if (largest(hit.emission) <= 0.0f) continue;
+        const float cosEmitter = std::max(-glm::dot(hit.geometricNormal, direction), 1e-6f);
         const float density = cosine / kPi;
-        const float other =
-            areaDensity(hit.emission) * hit.distance * hit.distance / std::max(cosEmitter, 1e-6f);
+        const float other = areaDensity(hit.emission) * hit.distance * hit.distance / cosEmitter;
         sum += hit.emission * (cosine * density / (density * density + other * other));
     }
     return sum / float(kSamples);
+}
+
+glm::vec3 EmitterSet::irradiance(const glm::vec3& position, const glm::vec3& geometricNormal,
+                                 const glm::vec3& normal, std::uint32_t pixel) const {
+    const glm::vec3 origin = scene_.offset(position, geometricNormal);
+    glm::vec3 sum = fromRays(origin, geometricNormal, normal, pixel);
+    if (!triangles_.empty()) sum += fromPoints(origin, geometricNormal, normal, pixel);
+    return sum;
 }
 
 }  // namespace studio

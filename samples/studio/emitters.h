@@ -1,4 +1,4 @@
-// Direct light of glowing surfaces: which triangles emit, and the irradiance they give a point.
+// Direct light that is not punctual: of glowing surfaces and of the sky.
 #pragma once
 
 #include <cstdint>
@@ -8,12 +8,13 @@
 
 namespace studio {
 
-// The emissive triangles of a scene at its time; empty unless Scene::emissiveSurfaces.
+// The emissive triangles of a scene at its time (none unless Scene::emissiveSurfaces) and its sky.
 class EmitterSet {
 public:
     explicit EmitterSet(const RayScene& scene);
-    bool empty() const { return triangles_.empty(); }
-    double power() const { return total_; }  // W, of the largest colour channel; both sides emit
+    bool empty() const { return triangles_.empty() && sky_ == glm::vec3(0.0f); }
+    // Area times radiance, summed over the triangles, of the largest colour channel.
+    double weight() const { return total_; }
 
     struct Sample {
         glm::vec3 position{0.0f}, normal{0.0f}, emission{0.0f};
@@ -24,8 +25,9 @@ public:
     // Density per area with which sample() picks a point of this emission.
     float areaDensity(const glm::vec3& emission) const;
 
-    // Irradiance from the emitters straight to a surface, shadow rays included: deterministic, from
-    // kSamples points on emitters and kSamples cosine-distributed rays, joined by the power heuristic.
+    // Irradiance from emitters and sky straight to a surface, shadow rays included: deterministic, from
+    // kSamples points on emitters and kSamples cosine-distributed rays, joined by the power heuristic
+    // (the sky by the rays alone).
     glm::vec3 irradiance(const glm::vec3& position, const glm::vec3& geometricNormal,
                          const glm::vec3& normal, std::uint32_t pixel) const;
     static constexpr int kSamples = 64;
@@ -35,7 +37,13 @@ private:
         glm::vec3 a, ab, ac, normal, emission;
         double upTo = 0.0;  // running sum of weights
     };
+    glm::vec3 fromPoints(const glm::vec3& origin, const glm::vec3& geometricNormal,
+                         const glm::vec3& normal, std::uint32_t pixel) const;
+    glm::vec3 fromRays(const glm::vec3& origin, const glm::vec3& geometricNormal,
+                       const glm::vec3& normal, std::uint32_t pixel) const;
+
     const RayScene& scene_;
+    glm::vec3 sky_;
     std::vector<Triangle> triangles_;
     double total_ = 0.0;
 };

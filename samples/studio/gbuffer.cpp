@@ -1,7 +1,7 @@
 // G-buffers by casting one ray through each pixel's centre.
 //
 // L_d = albedo / pi * E_direct with shadow rays to the punctual lights, and with the estimator of
-// emitters.h where surfaces light the scene. Motion is exact for the camera and for rigid objects.
+// emitters.h where surfaces or a sky light the scene. Motion is exact for the camera and for rigid objects.
 #include "gbuffer.h"
 
 #include <cmath>

@@ -254,8 +254,8 @@ void finishMesh(Mesh& mesh) {
                 fmt::format("positions: expected finite numbers, got ({}, {}, {})", p.x, p.y, p.z));
     for (const glm::vec2& uv : mesh.uvs)
         if (!std::isfinite(uv.x + uv.y))
-            throw std::runtime_error(fmt::format(
-                "texture coordinates: expected finite numbers, got ({}, {})", uv.x, uv.y));
+            throw std::runtime_error(
+                fmt::format("texture coordinates: expected finite numbers, got ({}, {})", uv.x, uv.y));
     std::vector<glm::uvec3> kept;
     for (const glm::uvec3& t : mesh.triangles) {
         if (std::max({t.x, t.y, t.z}) >= mesh.positions.size())

@@ -303,7 +303,7 @@ TEST_CASE("emissive surfaces light pixels directly: furnace and lamp against clo
     add(scene, floorQuad(0.5f, 1), lamp);
     const RayScene rays(shared(scene), 0.0f);
     const EmitterSet emitters(rays);
-    CHECK(emitters.power() == Approx(4.0).epsilon(1e-6));  // area 1 times radiance 4
+    CHECK(emitters.weight() == Approx(4.0).epsilon(1e-6));  // area 1 times radiance 4
     const double s = std::sqrt(1.25), expected = 4 * 4.0 / 2 * 2 * (0.5 / s) * std::atan(0.5 / s);
     double mean = 0.0;
     for (std::uint32_t pixel = 0; pixel < 64; ++pixel) {
@@ -313,4 +313,25 @@ TEST_CASE("emissive surfaces light pixels directly: furnace and lamp against clo
     }
     CHECK(mean == Approx(expected).epsilon(5e-3));
     CHECK(EmitterSet(RayScene(shared(loadScene("cornell")), 0.0f)).empty());
+}
+
+TEST_CASE("the sky is direct light: open plane, foot of a wall, closed room", "[gbuffer][emitters]") {
+    Scene scene;
+    const int grey = addMaterial(scene, glm::vec3(0.5f));
+    scene.sky = glm::vec3(0.3f);
+    add(scene, floorQuad(10, 0), grey);
+    const auto irradiance = [&](const glm::vec3& at) {
+        const RayScene rays(shared(scene), 0.0f);
+        double mean = 0.0;
+        for (std::uint32_t pixel = 0; pixel < 64; ++pixel)
+            mean += double(EmitterSet(rays).irradiance(at, {0, 1, 0}, {0, 1, 0}, pixel).x) / 64;
+        return mean;
+    };
+    const double open = 3.14159265 * 0.3;
+    CHECK(irradiance({0, 0, 0}) == Approx(open).epsilon(1e-5));
+    // A wall of height H at distance t, long against both: (1 + cos atan(H / t)) / 2 of it stays.
+    add(scene, makeBox({1, 0, -1000}, {2, 1, 1000}), grey);
+    CHECK(irradiance({0, 0, 0}) == Approx(open * (1 + std::sqrt(0.5)) / 2).epsilon(3e-3));
+    add(scene, makeBox({-20, -1, -1200}, {20, 5, 1200}), grey);
+    CHECK(irradiance({0, 0, 0}) == 0.0);
 }
