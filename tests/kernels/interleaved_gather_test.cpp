@@ -118,7 +118,7 @@ TEST_CASE("a disc on its axis: E = pi L R^2 / (r^2 + R^2)", "[interleaved_gather
     }
 }
 
-TEST_CASE("form factors of unit squares", "[interleaved_gather]") {
+TEST_CASE("form factors of unit squares", "[interleaved_gather][large]") {
     const auto width = GENERATE(1u, 16u);
     KernelRig rig(width);
     // Emitter: z = 1, facing down, exitance 1, 64^2 VPLs. Receivers: midpoints of 32^2 cells of the square
@@ -149,7 +149,7 @@ TEST_CASE("form factors of unit squares", "[interleaved_gather]") {
         CHECK(mean == Approx(0.2000438).epsilon(1e-2));
 }
 
-TEST_CASE("the mean over all assignments of subsets is the full gather", "[interleaved_gather]") {
+TEST_CASE("the mean over all assignments of subsets is the full gather", "[interleaved_gather][large]") {
     const auto width = GENERATE(1u, 16u);
     const auto n = GENERATE(2u, 4u, 8u);
     KernelRig rig(width);
@@ -241,7 +241,7 @@ TEST_CASE("the filter equals its serial twin", "[interleaved_gather]") {
     CHECK(disagreement(filterOn(rig, position, normal, light, n).planes, twin.planes, kTwinTolerance, 1e-3) == "");
 }
 
-TEST_CASE("a constant image passes the filter unchanged, and nothing crosses an edge", "[interleaved_gather]") {
+TEST_CASE("a constant image passes the filter unchanged, and nothing crosses an edge", "[interleaved_gather][large]") {
     const auto width = GENERATE(1u, 16u);
     KernelRig rig(width);
     Image position(96, 64), normal(96, 64), light(96, 64);

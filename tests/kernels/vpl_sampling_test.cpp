@@ -226,7 +226,7 @@ TEST_CASE("maps without flux give VPLs without flux; seeds move the set; same se
     CHECK(texels(0) != texels(5));
 }
 
-TEST_CASE("a drawn set's light converges to that of all texels", "[vpl_sampling]") {
+TEST_CASE("a drawn set's light converges to that of all texels", "[vpl_sampling][large]") {
     // A lit strip seen from above it: the sampled sum against the sum over every texel, in double.
     KernelRig rig(16);
     Maps maps({{64, 64}}, spotFlux);
