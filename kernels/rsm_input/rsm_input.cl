@@ -2,13 +2,17 @@
 #include "shared/rsm_types.h"
 #include "shared/wide.h"
 
-// One work-item = one row of one map: its entry (first texel, width, map, 0) in the table of rows. The
-// first map's launch also clears the counters.
-__kernel void rsm_input_rows(__global int4* rows, __global uint* counters, const LwRsmSpan span) {
+// One work-item = one row of one map: its entry (first texel, width, map, 0) in the table of rows,
+// four ints. The first map's launch also clears the counters.
+__kernel void rsm_input_rows(__global int* rows, __global uint* counters, const LwRsmSpan span) {
     const int y = (int)get_global_id(0);
     if (y >= span.height) return;
     const int padded = (span.width + 15) & ~15;
-    rows[span.firstRow + y] = (int4)(span.firstTexel + y * padded, span.width, span.index, 0);
+    __global int* row = rows + 4 * (span.firstRow + y);
+    row[0] = span.firstTexel + y * padded;
+    row[1] = span.width;
+    row[2] = span.index;
+    row[3] = 0;
     if (span.index == 0 && y < LW_RSM_COUNTERS) counters[y] = 0;
     if (span.index == 0 && y == 0)
         for (int c = span.height; c < LW_RSM_COUNTERS; ++c) counters[c] = 0;

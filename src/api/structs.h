@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <string>
 #include <vector>
 
 #include "compute/error.h"
@@ -23,7 +24,8 @@ std::uint32_t checkedStructSize(const T* from, const std::string& name) {
     std::uint32_t size = 0;
     std::memcpy(&size, from, sizeof size);
     if (size < kFirstSize<T> || size > sizeof(T))
-        fail(LW_ERROR_INVALID_ARGUMENT, name, ".structSize: expected ", kFirstSize<T>, " .. ", sizeof(T),
+        fail(LW_ERROR_INVALID_ARGUMENT, name, ".structSize: expected ",
+             kFirstSize<T> == sizeof(T) ? std::string() : std::to_string(kFirstSize<T>) + " .. ", sizeof(T),
              " (set it with LW_INIT; larger: the header is newer than the library), got ", size);
     return size;
 }

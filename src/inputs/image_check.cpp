@@ -6,6 +6,7 @@
 #include "compute/cl.h"
 #include "compute/device.h"
 #include "compute/error.h"
+#include "inputs/host_memory.h"
 
 namespace lightwell {
 namespace {
@@ -145,6 +146,12 @@ void checkHostMemory(Device& device, const CheckedImage& checked, const std::str
     if (checked.endByte > UINTPTR_MAX - address || span > device.maxAllocation())
         fail(LW_ERROR_INVALID_ARGUMENT, name, ": expected offsets and strides that span at most ",
              device.maxAllocation(), " bytes, the device's largest buffer, got ", span);
+    // First and last byte: enough for garbage in offsets and strides, and cheap enough for every frame.
+    const char* memory = static_cast<const char*>(checked.image.host);
+    for (const std::uint64_t byte : {checked.firstByte, checked.endByte - 1})
+        if (!maybeMapped(memory + byte))
+            fail(LW_ERROR_INVALID_ARGUMENT, name, ": expected offsets and strides inside the memory at host, got byte ",
+                 byte, " which this process does not have");
 }
 
 }  // namespace

@@ -1,0 +1,422 @@
+// Frames through the API: what is refused and leaves everything as it was, statistics, debug views,
+// events, threads, log callbacks.
+#define CL_TARGET_OPENCL_VERSION 120
+#define CL_USE_DEPRECATED_OPENCL_1_2_APIS
+#include <CL/cl.h>
+
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <thread>
+
+#include "api/api_scene.h"
+#include "lightwell/lightwell.hpp"
+
+using namespace lightwell::test;
+using Catch::Matchers::Contains;
+
+namespace {
+
+// A device with a view and a technique for one scene.
+struct Rig {
+    explicit Rig(const ApiScene& scene, std::uint32_t width = 16) : device(makeDevice(width)) {
+        const LWViewDesc desc = scene.viewDesc();
+        REQUIRE(lwCreateView(device, &desc, &view) == LW_SUCCESS);
+        REQUIRE(lwCreateRsm(device, nullptr, &technique) == LW_SUCCESS);
+    }
+    ~Rig() {
+        lwReleaseTechnique(technique);
+        lwReleaseView(view);
+        lwReleaseDevice(device);
+    }
+    LWStats stats() {
+        LWStats result{};
+        result.structSize = sizeof result;
+        CHECK(lwGetStats(technique, &result) == LW_SUCCESS);
+        return result;
+    }
+    LWDevice device;
+    LWView view = nullptr;
+    LWTechnique technique = nullptr;
+};
+
+}  // namespace
+
+TEST_CASE("a frame is lit, at both widths, whatever the layout", "[api]") {
+    const auto width = GENERATE(1u, 16u);
+    const bool small = GENERATE(false, true);
+    ApiScene scene(small ? 1 : 257, small ? 1 : 89);
+    Rig rig(scene, width);
+    CHECK(lwRender(rig.technique, rig.view, &scene.gbuffer, &scene.output) == LW_ERROR_NOT_UPDATED);
+    lastError(rig.device);
+    REQUIRE(lwUpdate(rig.technique, &scene.frame) == LW_SUCCESS);
+    REQUIRE(lwRender(rig.technique, rig.view, &scene.gbuffer, &scene.output) == LW_SUCCESS);
+    REQUIRE(lwFinish(rig.device) == LW_SUCCESS);
+    CHECK(scene.lit());
+    CHECK(scene.irradiance.damagedBytes() == 0);
+    CHECK(scene.validity.damagedBytes() == 0);
+    const LWStats stats = rig.stats();
+    CHECK(stats.frameIndex == 12345);
+    CHECK(stats.deviceBytes > 0);
+    std::string names;
+    for (std::uint32_t i = 0; i < stats.passCount; ++i) {
+        names += std::string(stats.passes[i].name) + " ";
+        CHECK(stats.passes[i].milliseconds >= 0.0);
+    }
+    CHECK_THAT(names, Contains("rsm_input.unpack") && Contains("gbuffer_input.unpack_normal") && Contains("output.pack"));
+    std::uint64_t texels = 0;
+    for (std::uint32_t i = 0; i < stats.countCount; ++i)
+        if (std::string(stats.counts[i].name) == "rsm_texels") texels = stats.counts[i].value;
+    CHECK(texels == ApiScene::kRsm * ApiScene::kRsm);
+}
+
+TEST_CASE("refused frames name the argument and change nothing", "[api]") {
+    ApiScene scene;
+    Rig rig(scene);
+    REQUIRE(lwUpdate(rig.technique, &scene.frame) == LW_SUCCESS);
+    const auto refusal = [&](const LWFrame* frame) {
+        CHECK(lwUpdate(rig.technique, frame) == LW_ERROR_INVALID_ARGUMENT);
+        return lastError(rig.device);
+    };
+    CHECK_THAT(refusal(nullptr), Contains("frame: expected a struct, got null"));
+    LWFrame frame = scene.frame;
+    frame.lights = nullptr;
+    CHECK_THAT(refusal(&frame), Contains("frame.lights"));
+    frame = scene.frame;
+    frame.lightCount = 0xffffffffu;
+    CHECK_THAT(refusal(&frame), Contains("frame.lightCount") && Contains("4294967295"));
+    frame = scene.frame;
+    frame.vplCount = 3;
+    CHECK_THAT(refusal(&frame), Contains("frame.vpls"));
+    frame = scene.frame;
+    frame.environment[1] = std::nanf("");
+    CHECK_THAT(refusal(&frame), Contains("frame.environment") && Contains("nan"));
+    LWVpl vpl{};
+    vpl.flux[0] = -1;
+    frame = scene.frame;
+    frame.vplCount = 1;
+    frame.vpls = &vpl;
+    CHECK_THAT(refusal(&frame), Contains("frame.vpls[0]"));
+    frame = scene.frame;
+    LWSourceView source{};
+    frame.sourceViewCount = 1;
+    frame.sourceViews = &source;
+    CHECK(lwUpdate(rig.technique, &frame) == LW_ERROR_INVALID_HANDLE);
+    CHECK_THAT(lastError(rig.device), Contains("frame.sourceViews[0].view"));
+
+    const auto withLight = [&](auto change) {
+        LWLight light = scene.light;
+        change(light);
+        LWFrame changed = scene.frame;
+        changed.lights = &light;
+        return refusal(&changed);
+    };
+    CHECK_THAT(withLight([](LWLight& l) { l.structSize = 0; }), Contains("frame.lights[0].structSize"));
+    CHECK_THAT(withLight([](LWLight& l) { l.rsms = nullptr; }), Contains("frame.lights[0].rsms"));
+    CHECK_THAT(withLight([](LWLight& l) { l.rsmCount = 1000; }), Contains("frame.lights[0].rsmCount"));
+    CHECK_THAT(withLight([](LWLight& l) { l.irradiance[2] = HUGE_VALF; }), Contains("frame.lights[0].irradiance"));
+    CHECK_THAT(withLight([](LWLight& l) { l.outerConeAngle = 2; }), Contains("frame.lights[0].outerConeAngle"));
+    CHECK_THAT(withLight([](LWLight& l) { setEnum(l.kind, 99); }), Contains("frame.lights[0].kind"));
+    LWRsm rsm = scene.rsm;
+    rsm.structSize = 7;
+    CHECK_THAT(withLight([&](LWLight& l) { l.rsms = &rsm; }), Contains("frame.lights[0].rsms[0].structSize"));
+    rsm = scene.rsm;
+    rsm.camera.view[3] = HUGE_VALF;
+    CHECK_THAT(withLight([&](LWLight& l) { l.rsms = &rsm; }), Contains("frame.lights[0].rsms[0].camera.view"));
+
+    LWGBuffer gbuffer = scene.gbuffer;
+    gbuffer.normal.format = LW_FORMAT_UINT8;
+    CHECK(lwRender(rig.technique, rig.view, &gbuffer, &scene.output) == LW_ERROR_INVALID_ARGUMENT);
+    CHECK_THAT(lastError(rig.device), Contains("gbuffer.normal.format"));
+    CHECK(lwRender(rig.technique, rig.view, nullptr, &scene.output) == LW_ERROR_INVALID_ARGUMENT);
+    CHECK(lwRender(rig.technique, rig.view, &scene.gbuffer, nullptr) == LW_ERROR_INVALID_ARGUMENT);
+    CHECK(lwRender(rig.technique, nullptr, &scene.gbuffer, &scene.output) == LW_ERROR_INVALID_HANDLE);
+    LWOutput output = scene.output;
+    output.irradiance = output.validity = LWImage{};
+    CHECK(lwRender(rig.technique, rig.view, &scene.gbuffer, &output) == LW_ERROR_INVALID_ARGUMENT);
+    output = scene.output;
+    output.irradiance.format = LW_FORMAT_UNORM8X4;
+    CHECK(lwRender(rig.technique, rig.view, &scene.gbuffer, &output) == LW_ERROR_INVALID_ARGUMENT);
+    REQUIRE(lwSetViewSize(rig.view, 20, 10) == LW_SUCCESS);
+    CHECK(lwRender(rig.technique, rig.view, &scene.gbuffer, &scene.output) == LW_ERROR_INVALID_ARGUMENT);
+    REQUIRE(lwSetViewSize(rig.view, 24, 10) == LW_SUCCESS);
+    LWSync sync{};
+    sync.structSize = sizeof sync;
+    sync.waitEventCount = 2;
+    output = scene.output;
+    output.sync = &sync;
+    CHECK(lwRender(rig.technique, rig.view, &scene.gbuffer, &output) == LW_ERROR_INVALID_ARGUMENT);
+    void* const none[2] = {};
+    sync.waitEvents = none;
+    CHECK(lwRender(rig.technique, rig.view, &scene.gbuffer, &output) == LW_ERROR_INVALID_ARGUMENT);
+    lastError(rig.device);
+
+    // The last good frame is still in force.
+    CHECK(rig.stats().frameIndex == 12345);
+    REQUIRE(lwRender(rig.technique, rig.view, &scene.gbuffer, &scene.output) == LW_SUCCESS);
+    REQUIRE(lwFinish(rig.device) == LW_SUCCESS);
+    CHECK(scene.lit());
+    CHECK(lastError(rig.device) == "");
+}
+
+TEST_CASE("handles of another device are refused", "[api]") {
+    ApiScene scene;
+    Rig rig(scene), other(scene);
+    REQUIRE(lwUpdate(rig.technique, &scene.frame) == LW_SUCCESS);
+    CHECK(lwRender(rig.technique, other.view, &scene.gbuffer, &scene.output) == LW_ERROR_INVALID_HANDLE);
+    CHECK_THAT(lastError(rig.device), Contains("another device"));
+    CHECK(lwPrewarm(rig.technique, other.view) == LW_ERROR_INVALID_HANDLE);
+    lwFinish(rig.device);
+}
+
+TEST_CASE("pixels without a surface, or with garbage, get exactly nothing", "[api]") {
+    ApiScene scene;
+    const double nan = std::nan("");
+    scene.normal.set(3, 3, 0, 0, 0);
+    scene.normal.set(4, 3, nan, 0, 0);
+    scene.position.set(5, 3, nan, 0, 0);
+    scene.position.set(6, 3, 0, HUGE_VAL, 0);
+    Rig rig(scene, GENERATE(1u, 16u));
+    REQUIRE(lwUpdate(rig.technique, &scene.frame) == LW_SUCCESS);
+    REQUIRE(lwRender(rig.technique, rig.view, &scene.gbuffer, &scene.output) == LW_SUCCESS);
+    REQUIRE(lwFinish(rig.device) == LW_SUCCESS);
+    for (std::uint32_t x = 3; x < 7; ++x) {
+        CHECK(scene.irradiance.value(x, 3, 0) == 0.0);
+        CHECK(scene.validity.value(x, 3, 0) == 0.0);
+    }
+    CHECK(scene.irradiance.value(7, 3, 0) > 0.0);
+    CHECK(std::isfinite(scene.irradiance.value(2, 3, 0)));
+}
+
+TEST_CASE("prewarmed techniques compile nothing more, through resizes", "[api]") {
+    ApiScene scene(48, 32);
+    Rig rig(scene);
+    REQUIRE(lwPrewarm(rig.technique, rig.view) == LW_SUCCESS);
+    LWDeviceInfo before{}, after{};
+    before.structSize = after.structSize = sizeof before;
+    REQUIRE(lwGetDeviceInfo(rig.device, &before) == LW_SUCCESS);
+    for (std::uint32_t i = 0; i < 40; ++i) {
+        ApiScene current(1 + i % 48, 1 + i % 32);
+        REQUIRE(lwSetViewSize(rig.view, 1 + i % 48, 1 + i % 32) == LW_SUCCESS);
+        REQUIRE(lwUpdate(rig.technique, &current.frame) == LW_SUCCESS);
+        REQUIRE(lwRender(rig.technique, rig.view, &current.gbuffer, &current.output) == LW_SUCCESS);
+        REQUIRE(lwFinish(rig.device) == LW_SUCCESS);
+        REQUIRE(current.lit());
+    }
+    REQUIRE(lwGetDeviceInfo(rig.device, &after) == LW_SUCCESS);
+    CHECK(before.programsBuilt == after.programsBuilt);
+    CHECK(before.programsLoaded == after.programsLoaded);
+    CHECK(before.kernelsSpecialised == after.kernelsSpecialised);
+}
+
+TEST_CASE("debug views are listed, described and read", "[api]") {
+    ApiScene scene;
+    Rig rig(scene);
+    std::uint32_t count = 0;
+    REQUIRE(lwUpdate(rig.technique, &scene.frame) == LW_SUCCESS);
+    REQUIRE(lwRender(rig.technique, rig.view, &scene.gbuffer, &scene.output) == LW_SUCCESS);
+    REQUIRE(lwCountDebugViews(rig.technique, rig.view, &count) == LW_SUCCESS);
+    REQUIRE(count > 0);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        LWDebugView info{};
+        info.structSize = sizeof info;
+        REQUIRE(lwDescribeDebugView(rig.technique, rig.view, i, &info) == LW_SUCCESS);
+        CHECK(info.description != nullptr);
+        const std::uint64_t size = std::uint64_t(info.width) * info.height * info.channels;
+        std::vector<float> pixels(size + 1, -1000.0f);
+        CHECK(lwReadDebugView(rig.technique, rig.view, info.name, pixels.data(), size - 1) == LW_ERROR_INVALID_ARGUMENT);
+        REQUIRE(lwReadDebugView(rig.technique, rig.view, info.name, pixels.data(), size) == LW_SUCCESS);
+        CHECK(pixels[size] == -1000.0f);
+        if (std::string(info.name) == "position") CHECK(pixels[24 * 10] == 0.5f);
+    }
+    float pixel = 0;
+    lastError(rig.device);
+    CHECK(lwReadDebugView(rig.technique, rig.view, "fog", &pixel, 1) == LW_ERROR_INVALID_ARGUMENT);
+    CHECK_THAT(lastError(rig.device), Contains("vpls") && Contains("fog"));
+    CHECK(lwReadDebugView(rig.technique, rig.view, nullptr, &pixel, 1) == LW_ERROR_INVALID_ARGUMENT);
+    CHECK(lwReadDebugView(rig.technique, rig.view, "vpls", nullptr, 1) == LW_ERROR_INVALID_ARGUMENT);
+    LWDebugView info{};
+    info.structSize = sizeof info;
+    CHECK(lwDescribeDebugView(rig.technique, rig.view, count, &info) == LW_ERROR_INVALID_ARGUMENT);
+}
+
+TEST_CASE("a host's context, memory and events work together", "[api]") {
+    ApiScene scene;
+    cl_platform_id platform = nullptr;
+    cl_device_id id = nullptr;
+    REQUIRE(clGetPlatformIDs(1, &platform, nullptr) == CL_SUCCESS);
+    REQUIRE(clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 1, &id, nullptr) == CL_SUCCESS);
+    cl_int status = 0;
+    const cl_context context = clCreateContext(nullptr, 1, &id, nullptr, nullptr, &status);
+    REQUIRE(status == CL_SUCCESS);
+    const cl_command_queue_properties properties = GENERATE(0, CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE);
+    const cl_command_queue queue = clCreateCommandQueue(context, id, properties, &status);
+    REQUIRE(status == CL_SUCCESS);
+    const cl_mem result = clCreateBuffer(context, CL_MEM_READ_WRITE, 24 * 10 * 16, nullptr, &status);
+    REQUIRE(status == CL_SUCCESS);
+
+    LWDeviceDesc desc;
+    lwDefaultDevice(&desc);
+    desc.clContext = context;
+    desc.clQueue = queue;
+    desc.width = 16;
+    lightwell::Device device(desc);
+    lightwell::View view(device, 24, 10);
+    lightwell::Technique technique(device, "rsm");
+    // The frame waits until the host opens the gate.
+    cl_event gate = clCreateUserEvent(context, &status);
+    void* const waits[1] = {gate};
+    void* signal = nullptr;
+    auto sync = lightwell::make<LWSync>();
+    sync.waitEventCount = 1;
+    sync.waitEvents = waits;
+    sync.signalEvent = &signal;
+    scene.frame.sync = &sync;
+    technique.update(scene.frame);
+    REQUIRE(signal != nullptr);
+    cl_int state = 0;
+    clGetEventInfo(static_cast<cl_event>(signal), CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof state, &state, nullptr);
+    CHECK(state > CL_COMPLETE);
+    clReleaseEvent(static_cast<cl_event>(signal));
+    scene.output.irradiance = LWImage{};
+    scene.output.irradiance.clMem = result;
+    scene.output.irradiance.format = LW_FORMAT_FLOAT4;
+    scene.output.irradiance.width = 24;
+    scene.output.irradiance.height = 10;
+    sync.waitEventCount = 0;
+    scene.output.sync = &sync;
+    technique.render(view, scene.gbuffer, scene.output);
+    clSetUserEventStatus(gate, CL_COMPLETE);
+    cl_event done = static_cast<cl_event>(signal);
+    REQUIRE(clWaitForEvents(1, &done) == CL_SUCCESS);
+    std::vector<float> pixels(24 * 10 * 4);
+    REQUIRE(clEnqueueReadBuffer(queue, result, CL_TRUE, 0, pixels.size() * 4, pixels.data(), 0, nullptr, nullptr) == CL_SUCCESS);
+    for (std::size_t i = 0; i < pixels.size(); i += 4) {
+        REQUIRE(pixels[i] > 0.0f);
+        REQUIRE(pixels[i + 3] == 1.0f);
+    }
+    device.finish();
+    clReleaseEvent(done);
+    clReleaseEvent(gate);
+    clReleaseMemObject(result);
+    clReleaseCommandQueue(queue);
+    clReleaseContext(context);
+}
+
+TEST_CASE("many threads use one device, and devices of their own", "[api]") {
+    ApiScene first;
+    Rig shared(first);
+    std::atomic<int> failures{0};
+    const auto work = [&](LWDevice device) {
+        ApiScene scene;
+        LWView view = nullptr;
+        LWTechnique technique = nullptr;
+        const LWViewDesc desc = scene.viewDesc();
+        if (lwCreateView(device, &desc, &view) || lwCreateRsm(device, nullptr, &technique)) ++failures;
+        for (int i = 0; i < 10; ++i) {
+            if (lwUpdate(technique, &scene.frame) || lwRender(technique, view, &scene.gbuffer, &scene.output)) ++failures;
+            if (lwFinish(device) || !scene.lit()) ++failures;
+            if (lwFinish(nullptr) != LW_ERROR_INVALID_HANDLE) ++failures;
+            if (lastError().find("lwFinish") != 0) ++failures;  // each thread its own
+        }
+        if (lwReleaseView(view) || lwReleaseTechnique(technique)) ++failures;
+    };
+    std::vector<std::thread> threads;
+    for (int i = 0; i < 3; ++i) threads.emplace_back(work, shared.device);
+    threads.emplace_back([&] {
+        const LWDevice own = makeDevice(1);
+        work(own);
+        lwReleaseDevice(own);
+    });
+    for (std::thread& thread : threads) thread.join();
+    CHECK(failures == 0);
+}
+
+TEST_CASE("one thread releases what another uses", "[api]") {
+    for (int round = 0; round < 10; ++round) {
+        ApiScene scene;
+        const LWDevice device = makeDevice(16);
+        LWTechnique technique = nullptr;
+        REQUIRE(lwCreateRsm(device, nullptr, &technique) == LW_SUCCESS);
+        std::thread user([&] {
+            for (int i = 0; i < 20; ++i) {
+                const LWStatus status = lwUpdate(technique, &scene.frame);
+                if (status != LW_SUCCESS && status != LW_ERROR_INVALID_HANDLE) FAIL("unexpected " << lwStatusName(status));
+            }
+        });
+        CHECK(lwReleaseTechnique(technique) == LW_SUCCESS);
+        user.join();
+        CHECK(lwFinish(device) == LW_SUCCESS);
+        lwReleaseDevice(device);
+    }
+}
+
+namespace {
+
+struct LogState {
+    int calls = 0;
+    LWStatus inside = LW_SUCCESS, create = LW_SUCCESS, error = LW_SUCCESS;
+};
+
+void logAndCall(void* user, LWLogLevel, const char*) {
+    auto& state = *static_cast<LogState*>(user);
+    ++state.calls;
+    std::uint32_t count = 0;
+    state.inside = lwCountDevices(&count);
+    LWDevice device = nullptr;
+    state.create = lwCreateDevice(nullptr, &device);
+    state.error = lwGetLastError(nullptr, nullptr);
+}
+
+}  // namespace
+
+TEST_CASE("log callbacks can't call back", "[api]") {
+    LogState state;
+    LWDeviceDesc desc;
+    lwDefaultDevice(&desc);
+    desc.width = 16;
+    desc.log = logAndCall;
+    desc.logUser = &state;
+    desc.cacheDirectory = "/dev/null/no/such/directory";  // unwritable: the device warns
+    LWDevice device = nullptr;
+    REQUIRE(lwCreateDevice(&desc, &device) == LW_SUCCESS);
+    ApiScene scene;
+    LWTechnique technique = nullptr;
+    REQUIRE(lwCreateRsm(device, nullptr, &technique) == LW_SUCCESS);
+    REQUIRE(lwUpdate(technique, &scene.frame) == LW_SUCCESS);
+    REQUIRE(lwFinish(device) == LW_SUCCESS);
+    REQUIRE(state.calls > 0);
+    CHECK(state.inside == LW_ERROR_REENTRANT);
+    CHECK(state.create == LW_ERROR_REENTRANT);
+    CHECK(state.error == LW_ERROR_REENTRANT);
+    lwReleaseTechnique(technique);
+    lwReleaseDevice(device);
+}
+
+TEST_CASE("lightwell.hpp owns, shares and throws", "[api]") {
+    ApiScene scene;
+    auto desc = lightwell::Device::defaults();
+    desc.width = 16;
+    lightwell::Device device(desc);
+    auto technique = std::make_unique<lightwell::Technique>(device, "rsm");
+    lightwell::Technique copy = *technique;
+    technique.reset();
+    lightwell::View view(device, 24, 10);
+    copy.prewarm(view);
+    copy.update(scene.frame);
+    copy.render(view, scene.gbuffer, scene.output);
+    device.finish();
+    CHECK(scene.lit());
+    CHECK(copy.stats().frameIndex == 12345);
+    CHECK(copy.debugViews(&view).size() > 0);
+    CHECK(view.size() == std::pair<std::uint32_t, std::uint32_t>(24, 10));
+    CHECK(device.estimateMemory("rsm", nullptr, 24, 10, 256) > 0);
+    try {
+        view.setSize(25, 10);
+        FAIL("expected an exception");
+    } catch (const lightwell::Error& error) {
+        CHECK(error.status() == LW_ERROR_INVALID_ARGUMENT);
+        CHECK_THAT(error.what(), Contains("lwSetViewSize") && Contains("25"));
+    }
+    CHECK_THROWS_WITH(lightwell::Technique(device, "fog"), Contains("fog"));
+}
