@@ -10,19 +10,29 @@
 
 #define LW_BACK (LW_INTERLEAVE / 2 - 1)  // the window is [x - LW_BACK, x - LW_BACK + LW_INTERLEAVE)
 
-typedef struct { int inside; int start; lanei lanes; } lw_window;
+// Weighted sum of irradiance over the window; `weight` is the sum of the weights.
+typedef struct { real r, g, b, weight; } lw_window_sum;
 
-// Column of the window's first tap, per lane; `inside`: the same shift for all lanes.
-LW_FN lw_window window_at(int x, int width) {
-    lw_window w;
-    w.inside = x - LW_BACK >= 0 && x - LW_BACK + LW_INTERLEAVE - 1 + LW_WIDTH <= width;
-    w.start = x - LW_BACK;
-    w.lanes = clamp(lanei_iota() + (lanei)(x - LW_BACK), (lanei)0, (lanei)max(width - LW_INTERLEAVE, 0));
-    return w;
-}
+// Where the window's rows begin in each image, and the distances between planes.
+typedef struct { int position, normal, irradiance, positionPlane, normalPlane, irradiancePlane; } lw_window_row;
 
-LW_FN real tap(__global const float* image, int row, const lw_window w, int i) {
-    return w.inside ? load(image, row + w.start + i) : gather(image, (lanei)(row + i) + w.lanes);
+// One row of the window. `inside`, a constant: all lanes have the same shift, so that taps are contiguous;
+// otherwise `first` holds each lane's first column.
+LW_FN void add_row(lw_window_sum* sum, const lw_surface s, __global const float* position,
+                   __global const float* normal, __global const float* irradiance, const lw_window_row row,
+                   const int inside, lanei first, int columns) {
+#define LW_TAP(image, at) (inside ? load(image, (at) + i) : gather(image, first + (lanei)((at) + i)))
+    for (int i = 0; i < columns; ++i) {
+        const real w = edge_weight(s, LW_TAP(position, row.position), LW_TAP(position, row.position + row.positionPlane),
+                                   LW_TAP(position, row.position + 2 * row.positionPlane), LW_TAP(normal, row.normal),
+                                   LW_TAP(normal, row.normal + row.normalPlane),
+                                   LW_TAP(normal, row.normal + 2 * row.normalPlane));
+        sum->r = fma_(w, LW_TAP(irradiance, row.irradiance), sum->r);
+        sum->g = fma_(w, LW_TAP(irradiance, row.irradiance + row.irradiancePlane), sum->g);
+        sum->b = fma_(w, LW_TAP(irradiance, row.irradiance + 2 * row.irradiancePlane), sum->b);
+        sum->weight += w;
+    }
+#undef LW_TAP
 }
 
 // One work-item = LW_WIDTH adjacent pixels of one row. irradiance -> filtered: 3 planes, W/m^2.
@@ -33,34 +43,30 @@ __kernel void interleaved_gather_filter(__global const float* position, int4 pos
     const int x = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);
     if (x >= width || y >= height) return;
     const int p = positionLayout.x + y * positionLayout.y + x, n = normalLayout.x + y * normalLayout.y + x;
-    const int pz = positionLayout.z, nz = normalLayout.z, ez = irradianceLayout.z;
+    const int pz = positionLayout.z, nz = normalLayout.z;
     const lw_surface s = make_surface(load(position, p), load(position, p + pz), load(position, p + 2 * pz),
                                       load(normal, n), load(normal, n + nz), load(normal, n + 2 * nz));
-    const lw_window window = window_at(x, width);
-    const int firstRow = clamp(y - LW_BACK, 0, max(height - LW_INTERLEAVE, 0));
+    const int start = x - LW_BACK, firstRow = clamp(y - LW_BACK, 0, max(height - LW_INTERLEAVE, 0));
     const int rows = min(LW_INTERLEAVE, height), columns = min(LW_INTERLEAVE, width);
+    const int inside = start >= 0 && start + LW_INTERLEAVE - 1 + LW_WIDTH <= width;
+    const lanei first = clamp(lanei_iota() + (lanei)start, (lanei)0, (lanei)max(width - LW_INTERLEAVE, 0));
 
-    real r = (real)0.0f, g = (real)0.0f, b = (real)0.0f, sum = (real)0.0f;
+    lw_window_sum sum = {(real)0.0f, (real)0.0f, (real)0.0f, (real)0.0f};
     if (any_(s.valid)) {
         for (int j = 0; j < rows; ++j) {
-            const int q = positionLayout.x + (firstRow + j) * positionLayout.y;
-            const int m = normalLayout.x + (firstRow + j) * normalLayout.y;
-            const int e = irradianceLayout.x + (firstRow + j) * irradianceLayout.y;
-            for (int i = 0; i < columns; ++i) {
-                const real w = edge_weight(s, tap(position, q, window, i), tap(position, q + pz, window, i),
-                                           tap(position, q + 2 * pz, window, i), tap(normal, m, window, i),
-                                           tap(normal, m + nz, window, i), tap(normal, m + 2 * nz, window, i));
-                r = fma_(w, tap(irradiance, e, window, i), r);
-                g = fma_(w, tap(irradiance, e + ez, window, i), g);
-                b = fma_(w, tap(irradiance, e + 2 * ez, window, i), b);
-                sum += w;
-            }
+            const int shift = inside ? start : 0;
+            const lw_window_row row = {positionLayout.x + (firstRow + j) * positionLayout.y + shift,
+                                       normalLayout.x + (firstRow + j) * normalLayout.y + shift,
+                                       irradianceLayout.x + (firstRow + j) * irradianceLayout.y + shift,
+                                       pz, nz, irradianceLayout.z};
+            if (inside) add_row(&sum, s, position, normal, irradiance, row, 1, first, LW_INTERLEAVE);
+            else add_row(&sum, s, position, normal, irradiance, row, 0, first, columns);
         }
     }
-    // The pixel itself has weight 1 up to rounding of its normal's length, so `sum` is never small.
-    const real scale = select_((real)0.0f, 1.0f / sum, and_(s.valid, sum > 0.0f));
+    // The pixel itself has weight 1 up to rounding of its normal's length, so the sum is never small.
+    const real scale = select_((real)0.0f, 1.0f / sum.weight, and_(s.valid, sum.weight > 0.0f));
     const int o = filteredLayout.x + y * filteredLayout.y + x;
-    store(r * scale, filtered, o);
-    store(g * scale, filtered, o + filteredLayout.z);
-    store(b * scale, filtered, o + 2 * filteredLayout.z);
+    store(sum.r * scale, filtered, o);
+    store(sum.g * scale, filtered, o + filteredLayout.z);
+    store(sum.b * scale, filtered, o + 2 * filteredLayout.z);
 }

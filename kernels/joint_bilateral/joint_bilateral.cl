@@ -87,6 +87,38 @@ LW_FN void add_sample(lw_sum* sum, lw_sum* rest, const lw_surface s, const lw_su
     accumulate(rest, t * likeness, r, g, b);
 }
 
+// Where a row of the half-resolution images begins, and the distances between planes.
+typedef struct { int position, normal, irradiance, positionPlane, normalPlane, irradiancePlane; } lw_half_row;
+
+// The samples left of, in and right of LW_WIDTH blocks, of one half-resolution row. `inside`, a constant:
+// all of them exist, so that every tap is contiguous.
+LW_FN void add_half_row(lw_sum* evenSum, lw_sum* oddSum, lw_sum* evenRest, lw_sum* oddRest, const lw_surface even,
+                        const lw_surface odd, __global const float* halfPosition, __global const float* halfNormal,
+                        __global const float* halfIrradiance, const lw_half_row row, int hx, int halfWidth, float rowTent,
+                        const int inside) {
+#define LW_TAP(image, at) (inside ? load(image, (at) + hx + i) : load_shifted(image, (at), hx, i, halfWidth))
+    for (int i = -1; i <= 1; ++i) {
+        lw_surface q;
+        q.px = LW_TAP(halfPosition, row.position);
+        q.py = LW_TAP(halfPosition, row.position + row.positionPlane);
+        q.pz = LW_TAP(halfPosition, row.position + 2 * row.positionPlane);
+        q.nx = LW_TAP(halfNormal, row.normal);  // unit or zero: down-sampling saw to it
+        q.ny = LW_TAP(halfNormal, row.normal + row.normalPlane);
+        q.nz = LW_TAP(halfNormal, row.normal + 2 * row.normalPlane);
+        q.valid = fma_(q.nx, q.nx, fma_(q.ny, q.ny, q.nz * q.nz)) > 0.5f;
+        if (!inside) {
+            const lanei column = lanei_iota() + (lanei)(hx + i);
+            q.valid = and_(q.valid, and_(column >= (lanei)0, column < (lanei)halfWidth));
+        }
+        const real r = LW_TAP(halfIrradiance, row.irradiance);
+        const real g = LW_TAP(halfIrradiance, row.irradiance + row.irradiancePlane);
+        const real b = LW_TAP(halfIrradiance, row.irradiance + 2 * row.irradiancePlane);
+        add_sample(evenSum, evenRest, even, q, (real)(rowTent * (i == 0 ? 1.0f : 1.0f / 3.0f)), r, g, b);
+        if (i >= 0) add_sample(oddSum, oddRest, odd, q, (real)(rowTent * (2.0f / 3.0f)), r, g, b);
+    }
+#undef LW_TAP
+}
+
 // One work-item = 2 * LW_WIDTH pixels of one row: the even ones and the odd ones of LW_WIDTH blocks.
 // half*: 3 planes each of the half-resolution image. counts[0]: pixels that are
 // neither surface nor background; counts[1]: pixels lit without edge test.
@@ -115,27 +147,21 @@ __kernel void joint_bilateral_upsample(__global const float* position, int4 posi
     // A tent over three pixels: a sample stands two pixels from the next, so that an even pixel sees
     // three of them at distances 2, 0, 2 and an odd one two at distances 1, 1.
     const int oddRow = y & 1;
+    const int inside = shift_inside(hx, -1, halfWidth) && shift_inside(hx, 1, halfWidth);
     for (int j = oddRow ? 0 : -1; j <= 1; ++j) {
         const int hy = y / 2 + j;
         if (hy < 0 || hy >= halfHeight) continue;
         const float rowTent = 1.0f - (float)abs(2 * j - oddRow) * (1.0f / 3.0f);
-        const int pr = halfPositionLayout.x + hy * halfPositionLayout.y;
-        const int nr = halfNormalLayout.x + hy * halfNormalLayout.y;
-        const int er = halfIrradianceLayout.x + hy * halfIrradianceLayout.y;
-        for (int i = -1; i <= 1; ++i) {
-            const int pz = halfPositionLayout.z, nz = halfNormalLayout.z, ez = halfIrradianceLayout.z;
-            lw_surface q = make_surface(
-                load_shifted(halfPosition, pr, hx, i, halfWidth), load_shifted(halfPosition, pr + pz, hx, i, halfWidth),
-                load_shifted(halfPosition, pr + 2 * pz, hx, i, halfWidth), load_shifted(halfNormal, nr, hx, i, halfWidth),
-                load_shifted(halfNormal, nr + nz, hx, i, halfWidth), load_shifted(halfNormal, nr + 2 * nz, hx, i, halfWidth));
-            const lanei column = lanei_iota() + (lanei)(hx + i);
-            q.valid = and_(q.valid, and_(column >= (lanei)0, column < (lanei)halfWidth));
-            const real r = load_shifted(halfIrradiance, er, hx, i, halfWidth);
-            const real g = load_shifted(halfIrradiance, er + ez, hx, i, halfWidth);
-            const real b = load_shifted(halfIrradiance, er + 2 * ez, hx, i, halfWidth);
-            add_sample(&evenSum, &evenRest, even, q, (real)(rowTent * (i == 0 ? 1.0f : 1.0f / 3.0f)), r, g, b);
-            if (i >= 0) add_sample(&oddSum, &oddRest, odd, q, (real)(rowTent * (2.0f / 3.0f)), r, g, b);
-        }
+        const lw_half_row row = {halfPositionLayout.x + hy * halfPositionLayout.y,
+                                 halfNormalLayout.x + hy * halfNormalLayout.y,
+                                 halfIrradianceLayout.x + hy * halfIrradianceLayout.y,
+                                 halfPositionLayout.z, halfNormalLayout.z, halfIrradianceLayout.z};
+        if (inside)
+            add_half_row(&evenSum, &oddSum, &evenRest, &oddRest, even, odd, halfPosition, halfNormal, halfIrradiance, row,
+                         hx, halfWidth, rowTent, 1);
+        else
+            add_half_row(&evenSum, &oddSum, &evenRest, &oddRest, even, odd, halfPosition, halfNormal, halfIrradiance, row,
+                         hx, halfWidth, rowTent, 0);
     }
 
     // A weight this far below a sample's own tent comes from rounding at the edge tests' borders.
