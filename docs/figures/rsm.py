@@ -1,0 +1,126 @@
+#!/usr/bin/env python3
+"""Makes the figures of docs/techniques/rsm.md: limit, convergence, invariance and time of technique rsm.
+
+    docs/figures/rsm.py [--lightwell build/release/bin/lightwell] [--work build/figures]
+                        [--size 1280x720] [--scenes cornell sibenik sponza_crytek] [--spp 16]
+
+Writes docs/techniques/rsm_figures.md. Images stay in --work and are made again only when missing.
+Scenes other than the shipped ones are looked for in LIGHTWELL_SCENES.
+"""
+import argparse
+import json
+import math
+import os
+import pathlib
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+COUNTS = [64, 256, 1024, 4096, 16384]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--lightwell", default=str(ROOT / "build/release/bin/lightwell"))
+    parser.add_argument("--work", default=str(ROOT / "build/figures"))
+    parser.add_argument("--size", default="1280x720")
+    parser.add_argument("--scenes", nargs="+", default=["cornell", "sibenik", "sponza_crytek"])
+    parser.add_argument("--spp", default="16")
+    options = parser.parse_args()
+    work = pathlib.Path(options.work)
+    work.mkdir(parents=True, exist_ok=True)
+
+    def call(*arguments):
+        result = subprocess.run([options.lightwell, *map(str, arguments)], capture_output=True, text=True)
+        if result.returncode:
+            sys.exit(result.stderr.strip() or f"lightwell {arguments[0]} failed")
+        return result.stdout
+
+    def render(scene, name, *settings, frames=1, warmup=0, extra=()):
+        """Renders once per name; returns (EXR, the report)."""
+        exr, report = work / f"{scene}_{name}.exr", work / f"{scene}_{name}.json"
+        if not (exr.exists() and report.exists()):
+            sets = [part for setting in settings for part in ("--set", setting)]
+            text = call("render", scene, "--technique", "rsm", *sets, "--size", options.size, "--frames", frames,
+                        "--warmup", warmup, "--out", exr, "--json", *extra)
+            report.write_text(text)
+        return exr, json.loads(report.read_text())
+
+    def compare(image, reference):
+        return json.loads(call("compare", image, reference, "--json"))
+
+    lines = [f"<!-- Made by docs/figures/rsm.py; do not edit. -->", ""]
+    lines += limit_tables(options, work, call, render, compare)
+    lines += invariance_table(options, render)
+    lines += time_table(options, call, render)
+    out = ROOT / "docs/techniques/rsm_figures.md"
+    out.write_text("\n".join(lines) + "\n")
+    print(out)
+
+
+def limit_tables(options, work, call, render, compare):
+    """nRMSE against all texels by number of VPLs; bias against the path-traced limit without visibility."""
+    lines = [f"### Error against the number of VPLs ({options.size}, one RSM of 512^2, interleave 1)", "",
+             "nRMSE against the picture of all texels; bias against the unshadowed one-bounce path-traced "
+             f"reference ({options.spp} paths per pixel).", "",
+             "| scene | sampling | " + " | ".join(map(str, COUNTS)) + " | slope | bias at 4,096 | bias of all texels |",
+             "| --- | --- | " + "---: | " * (len(COUNTS) + 3)]
+    for scene in options.scenes:
+        reference = work / f"{scene}_unshadowed.exr"
+        if not reference.exists():
+            call("reference", scene, "--bounces", 1, "--unshadowed", "--spp", options.spp, "--size", options.size,
+                 "--out", reference)
+        limit, _ = render(scene, "all", "vpls=0", "interleave=1")
+        limit_bias = compare(limit, reference)["bias"]
+        for sampling in ("flux", "uniform"):
+            images = {n: render(scene, f"{sampling}{n}", f"vpls={n}", "interleave=1", f"sampling={sampling}")[0]
+                      for n in COUNTS}
+            errors = [compare(images[n], limit)["nrmse"] for n in COUNTS]
+            slope = fitted_slope(COUNTS, errors)
+            bias = compare(images[4096], reference)["bias"]
+            lines.append(f"| {scene} | {sampling} | " + " | ".join(f"{e:.4f}" for e in errors) +
+                         f" | {slope:+.2f} | {100 * bias:+.2f} % | {100 * limit_bias:+.2f} % |")
+    return lines + [""]
+
+
+def fitted_slope(counts, errors):
+    x, y = [math.log(c) for c in counts], [math.log(e) for e in errors]
+    mx, my = sum(x) / len(x), sum(y) / len(y)
+    return sum((a - mx) * (b - my) for a, b in zip(x, y)) / sum((a - mx) ** 2 for a in x)
+
+
+def invariance_table(options, render):
+    """Ten runs give one hash; scales change the picture by rounding only."""
+    scene = options.scenes[-1]
+    hashes = {render(scene, f"run{i}")[1]["hash"] for i in range(10)}
+    return ["### Same input, same bits", "",
+            f"{scene}, defaults, ten processes: {len(hashes)} hash{'es' if len(hashes) > 1 else ''} "
+            f"({', '.join(sorted(hashes))}).", ""]
+
+
+def time_table(options, call, render):
+    """Milliseconds of every pass, medians; share of the probed multiply-add rate for the gather."""
+    scene = options.scenes[-1]
+    variants = [("256 VPLs, 4x4, filter (default)", []), ("256 VPLs per pixel", ["interleave=1"]),
+                ("256 VPLs, 4x4, half resolution", ["resolution=half"]),
+                ("1,024 VPLs, 4x4, filter", ["vpls=1024"])]
+    reports = [render(scene, "time" + "".join(s).replace("=", ""), *s, frames=31, warmup=5)[1] for _, s in variants]
+    names = list(dict.fromkeys(p["name"] for r in reports for p in r["passes"]))
+    width, height = map(int, options.size.split("x"))
+    lines = [f"### Time ({scene}, {options.size}, one RSM of 512^2; median of 31 frames, ms)", "",
+             f"{reports[0]['device']}, {reports[0]['platform']} {reports[0]['driver']}, {reports[0]['width']} lanes; "
+             f"load average {os.getloadavg()[0]:.1f} when the table was made.", "",
+             "| pass | " + " | ".join(title for title, _ in variants) + " |", "| --- | " + "---: | " * len(variants)]
+    for name in names:
+        cells = [next((f"{p['ms']:.2f}" for p in r["passes"] if p["name"] == name), "") for r in reports]
+        lines.append(f"| `{name}` | " + " | ".join(cells) + " |")
+    lines.append("| **total** | " + " | ".join(f"**{r['total_ms']:.2f}**" for r in reports) + " |")
+    gather = next(p["ms"] for p in reports[1]["passes"] if p["name"] == "interleaved_gather.gather")
+    rate = width * height * 256 * 33 / gather / 1e6
+    probe = json.loads(call("devices", "--probe", "--json"))[0].get("multiply_add_gflops")
+    share = f", {100 * rate / probe:.0f} % of the {probe:.0f} GF/s that the device's probe reaches" if probe else ""
+    return lines + ["", f"The 256-VPL gather runs at {rate:.0f} GF/s, counting 33 operations per pair of pixel and VPL{share}.", ""]
+
+
+if __name__ == "__main__":
+    main()
