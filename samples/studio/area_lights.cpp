@@ -8,12 +8,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace studio {
 namespace {
 
+constexpr float kFar = std::numeric_limits<float>::infinity();
+
 float meanOf(const glm::vec3& c) {
     return (c.x + c.y + c.z) / 3.0f;
+}
+
+// Square to the triangle (0,0) (1,0) (0,1), areas kept and without a fold: E. Heitz, "A Low-Distortion
+// Map Between Triangle and Square" (2019).
+glm::vec2 onTriangle(glm::vec2 p) {
+    if (p.y > p.x) return glm::vec2(0.5f * p.x, p.y - 0.5f * p.x);
+    return glm::vec2(p.x - 0.5f * p.y, 0.5f * p.y);
 }
 
 }  // namespace
@@ -40,7 +50,7 @@ AreaLights::AreaLights(const RayScene& rayScene) {
         }
     }
     if (power <= 0.0) triangles_.clear();
-    for (std::size_t i = 0; i < triangles_.size(); ++i) triangles_[i].upTo = float(upTo[i] / power);
+    for (std::size_t i = 0; i < triangles_.size(); ++i) triangles_[i].upTo = upTo[i] / power;
     if (power > 0.0) perRadiance_ = float(1.0 / power);
 }
 
@@ -61,11 +71,13 @@ glm::vec3 AreaLights::emissionOfRay(const Surface& at, const glm::vec3& directio
 glm::vec3 AreaLights::sampleIrradiance(const RayScene& scene, const Surface& at,
                                        Sampler& sampler) const {
     if (triangles_.empty()) return glm::vec3(0.0f);
-    const float choice = sampler.next().x;
-    const auto chosen = std::upper_bound(triangles_.begin(), triangles_.end() - 1, choice,
-                                         [](float x, const Triangle& t) { return x < t.upTo; });
-    glm::vec2 point = sampler.next();  // folded square: uniform on the triangle
-    if (point.x + point.y > 1.0f) point = 1.0f - point;
+    // One pair chooses the triangle and, with what is left of it, the point: it stays stratified.
+    const glm::dvec2 fine = sampler.nextFine();
+    const auto chosen = std::upper_bound(triangles_.begin(), triangles_.end() - 1, fine.x,
+                                         [](double x, const Triangle& t) { return x < t.upTo; });
+    const double before = chosen == triangles_.begin() ? 0.0 : (chosen - 1)->upTo;
+    const glm::vec2 point =
+        onTriangle(glm::vec2(glm::dvec2((fine.x - before) / (chosen->upTo - before), fine.y)));
 
     const glm::vec3 target = chosen->corner + point.x * chosen->edge1 + point.y * chosen->edge2;
     const glm::vec3 origin = scene.offset(at.position, at.geometricNormal);
@@ -79,7 +91,6 @@ glm::vec3 AreaLights::sampleIrradiance(const RayScene& scene, const Surface& at,
     // The triangle counts when it is what the ray meets first: no tolerance at the light's end, and
     // an alpha mask's holes are holes.
     Hit hit;
-    constexpr float kFar = std::numeric_limits<float>::infinity();
     if (!scene.trace(origin, direction, 0.0f, kFar, hit)) return glm::vec3(0.0f);
     if (hit.mesh != chosen->mesh || hit.triangle != chosen->triangle) return glm::vec3(0.0f);
     return weighted(at, direction, hit);

@@ -29,7 +29,7 @@ private:
     struct Triangle {
         int mesh, triangle;
         glm::vec3 corner, edge1, edge2;
-        float upTo;  // power of this and all triangles before it, of the whole
+        double upTo;  // power of this and all triangles before it, of the whole
     };
     // Irradiance integrand over the sum of both strategies' densities per solid angle.
     glm::vec3 weighted(const Surface& at, const glm::vec3& direction, const Hit& hit) const;

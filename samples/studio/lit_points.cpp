@@ -158,11 +158,14 @@ void LitPoints::chooseCells(const std::vector<double>& flux, const std::vector<d
 }
 
 bool LitPoints::sample(Sampler& sampler, Point& point) const {
-    const double choice = double(sampler.next().x) * upTo_.back();
+    // One pair chooses the cell and, with what is left of it, the place there: it stays stratified.
+    const glm::dvec2 fine = sampler.nextFine();
+    const double choice = fine.x * upTo_.back();
     const auto found = std::upper_bound(upTo_.begin(), upTo_.end() - 1, choice);
     const auto cell = std::size_t(found - upTo_.begin());
+    const double left = (choice - upTo_[cell] + probability_[cell]) / probability_[cell];
     const std::size_t light = cell / kCells;
-    const Ray ray = charts_[light].rayAt(inCell(cell % kCells, glm::dvec2(sampler.next())));
+    const Ray ray = charts_[light].rayAt(inCell(cell % kCells, {std::clamp(left, 0.0, 1.0), fine.y}));
     Hit hit;
     if (!scene_.trace(ray.origin, ray.direction, 0.0f, kFar, hit)) return false;
     point.surface = {hit.position, hit.geometricNormal, hit.normal};

@@ -54,15 +54,20 @@ public:
     Sampler(std::uint64_t seed, std::uint64_t stream, std::uint32_t index)
         : base_(mixBits(seed + mixBits(stream))), reversedIndex_(reverseBits(index)) {}
 
-    glm::vec2 next() {  // in [0,1)^2
+    glm::dvec2 nextFine() {  // in [0,1)^2, of 32 bits: enough to choose with and then use what is left
         const std::uint64_t a = mixBits(base_ + 2 * pair_), b = mixBits(base_ + 2 * pair_ + 1);
         ++pair_;
         const std::uint32_t index = reverseBits(permuteUpwards(reversedIndex_, std::uint32_t(a)));
         const std::uint32_t u = reverseBits(permuteUpwards(index, std::uint32_t(a >> 32)));
         const std::uint32_t v =
             reverseBits(permuteUpwards(sobolSecondReversed(index), std::uint32_t(b)));
-        constexpr float kScale = 1.0f / 16777216.0f;  // 24 bits: never rounds up to 1
-        return glm::vec2(float(u >> 8) * kScale, float(v >> 8) * kScale);
+        constexpr double kScale = 1.0 / 4294967296.0;
+        return glm::dvec2(double(u) * kScale, double(v) * kScale);
+    }
+
+    glm::vec2 next() {  // in [0,1)^2; cut to 24 bits, which never round up to 1
+        const glm::dvec2 point = glm::floor(nextFine() * 16777216.0);
+        return glm::vec2(point) * (1.0f / 16777216.0f);
     }
 
 private:
