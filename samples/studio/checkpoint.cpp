@@ -20,7 +20,7 @@ struct Header {
     std::uint64_t sums;
     std::uint32_t samples, halves;
 };
-constexpr char kMagic[8] = {'L', 'W', 'P', 'A', 'T', 'H', '0', '2'};
+constexpr char kMagic[8] = {'L', 'W', 'P', 'A', 'T', 'H', '0', '3'};
 
 template <class T>
 void hashValue(std::uint64_t& hash, const T& value) {
