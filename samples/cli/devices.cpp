@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "cli.h"
-#include "device_handles.h"
+#include "open_device.h"
 
 namespace cli {
 namespace {
@@ -21,10 +21,8 @@ struct Probe {
 // The index of lwDescribeDevice as a name that openDevice understands: its name is unique, or the
 // first of several alike is measured.
 Probe probeDevice(const LWDeviceInfo& described) {
-    const DeviceHandle device = openDevice(described.name, 0);
-    Probe probe{deviceInfo(device.get()), sized<LWRoofline>()};
-    check(device.get(), lwProbeDevice(device.get(), &probe.roofline));
-    return probe;
+    lightwell::Device device = openDevice(described.name, 0);
+    return {device.info(), device.probe()};
 }
 
 nlohmann::ordered_json toJson(const LWDeviceInfo& info, const std::optional<Probe>& probe) {
@@ -58,11 +56,11 @@ void printText(std::uint32_t index, const LWDeviceInfo& info, const std::optiona
 
 void listDevices(bool asJson, bool isProbed) {
     std::uint32_t count = 0;
-    check(nullptr, lwCountDevices(&count));
+    lightwell::check(lwCountDevices(&count));
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (std::uint32_t i = 0; i < count; ++i) {
-        LWDeviceInfo info = sized<LWDeviceInfo>();
-        check(nullptr, lwDescribeDevice(i, &info));
+        LWDeviceInfo info = lightwell::make<LWDeviceInfo>();
+        lightwell::check(lwDescribeDevice(i, &info));
         std::optional<Probe> probe;
         if (isProbed) probe = probeDevice(info);
         if (asJson)

@@ -6,15 +6,15 @@
 #include <cstring>
 
 #include "cli.h"
-#include "device_handles.h"
+#include "open_device.h"
 
 namespace cli {
 namespace {
 
 std::vector<LWTechniqueInfo> describeTechniques() {
-    std::vector<LWTechniqueInfo> infos(lwCountTechniques(), sized<LWTechniqueInfo>());
+    std::vector<LWTechniqueInfo> infos(lwCountTechniques(), lightwell::make<LWTechniqueInfo>());
     for (std::size_t i = 0; i < infos.size(); ++i)
-        check(nullptr, lwDescribeTechnique(std::uint32_t(i), &infos[i]));
+        lightwell::check(lwDescribeTechnique(std::uint32_t(i), &infos[i]));
     return infos;
 }
 

@@ -7,6 +7,7 @@
 
 #include "cli.h"
 #include "layers.h"
+#include "open_device.h"
 #include "path_tracer.h"
 #include "render_frames.h"
 #include "render_inputs.h"
@@ -142,12 +143,12 @@ void writeOutputs(const RenderOptions& options, const studio::Image& image, Rend
 studio::Image renderWithTechnique(const RenderOptions& options, const RenderInputs& inputs,
                                   RenderReport& report) {
     const Parameters parameters = parseParameters(options);
-    const DeviceHandle device = openDevice(options.device, std::uint32_t(options.width));
-    FrameRunner runner(device.get(), options.technique, parameters, inputs);
+    const lightwell::Device device = openDevice(options.device, std::uint32_t(options.width));
+    FrameRunner runner(device, options.technique, parameters, inputs);
     report.parameters = parameters.resolved();
     report.hasDevice = true;
     report.figures = runner.run(options.frames);
-    report.device = deviceInfo(device.get());
+    report.device = device.info();
     report.frames = options.frames;
     report.hash = hashBits(runner.irradiance());
     if (!options.vplsOut.empty()) {

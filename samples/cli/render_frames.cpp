@@ -56,29 +56,23 @@ void copyLast(FrameFigures& figures, const LWStats& stats) {
 
 }  // namespace
 
-FrameRunner::FrameRunner(LWDevice device, const std::string& technique, const Parameters& parameters,
-                         const RenderInputs& inputs)
-    : device_(device), inputs_(inputs) {
-    const int width = inputs.gbuffer().width, height = inputs.gbuffer().height;
-    LWViewDesc desc = sized<LWViewDesc>();
-    desc.maxWidth = std::uint32_t(width);
-    desc.maxHeight = std::uint32_t(height);
-    LWView view = nullptr;
-    check(device, lwCreateView(device, &desc, &view));
-    view_.reset(view);
-    check(device, lwEstimateMemory(device, technique.c_str(), parameters.descriptor(), &desc,
-                                   inputs.rsmTexelCount(), &estimatedBytes_));
-    LWTechnique handle = nullptr;
-    check(device, lwCreateTechnique(device, technique.c_str(), parameters.descriptor(), &handle));
-    technique_.reset(handle);
-    irradiance_ = studio::PlanarBuffer(width, height, 3);
-    validity_ = studio::PlanarBuffer(width, height, 1);
-    check(device, lwPrewarm(handle, view));
+FrameRunner::FrameRunner(const lightwell::Device& device, const std::string& technique,
+                         const Parameters& parameters, const RenderInputs& inputs)
+    : device_(device),
+      inputs_(inputs),
+      view_(device, std::uint32_t(inputs.gbuffer().width), std::uint32_t(inputs.gbuffer().height)),
+      technique_(device, technique.c_str(), parameters.descriptor()),
+      irradiance_(inputs.gbuffer().width, inputs.gbuffer().height, 3),
+      validity_(inputs.gbuffer().width, inputs.gbuffer().height, 1),
+      estimatedBytes_(device.estimateMemory(
+          technique.c_str(), parameters.descriptor(), std::uint32_t(inputs.gbuffer().width),
+          std::uint32_t(inputs.gbuffer().height), inputs.rsmTexelCount())) {
+    technique_.prewarm(view_);
 }
 
 void FrameRunner::renderFrame() {
     LWSourceView source{view_.get(), &inputs_.lwGBuffer()};
-    LWFrame frame = sized<LWFrame>();
+    LWFrame frame = lightwell::make<LWFrame>();
     frame.reset = frameIndex_ == 0 ? 1 : 0;
     frame.frameIndex = frameIndex_++;
     frame.lights = inputs_.lights().data();
@@ -86,12 +80,12 @@ void FrameRunner::renderFrame() {
     frame.sourceViews = &source;
     frame.sourceViewCount = 1;
     std::copy_n(inputs_.environment(), 3, frame.environment);
-    LWOutput output = sized<LWOutput>();
+    LWOutput output = lightwell::make<LWOutput>();
     output.irradiance = describePlanes(irradiance_);
     output.validity = describePlanes(validity_);
-    check(device_, lwUpdate(technique_.get(), &frame));
-    check(device_, lwRender(technique_.get(), view_.get(), &inputs_.lwGBuffer(), &output));
-    check(device_, lwFinish(device_));
+    technique_.update(frame);
+    technique_.render(view_, inputs_.lwGBuffer(), output);
+    device_.finish();
 }
 
 FrameFigures FrameRunner::run(int count) {
@@ -105,8 +99,7 @@ FrameFigures FrameRunner::run(int count) {
         renderFrame();
         walls.push_back(
             std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
-        LWStats stats = sized<LWStats>();
-        check(device_, lwGetStats(technique_.get(), &stats));
+        const LWStats stats = technique_.stats();
         totals.push_back(stats.totalMilliseconds);
         addFrame(passes, stats);
         if (i + 1 == count) copyLast(figures, stats);
@@ -118,25 +111,12 @@ FrameFigures FrameRunner::run(int count) {
     return figures;
 }
 
-std::vector<LWDebugView> FrameRunner::debugViews(LWView view) const {
-    std::uint32_t count = 0;
-    check(device_, lwCountDebugViews(technique_.get(), view, &count));
-    std::vector<LWDebugView> views(count, sized<LWDebugView>());
-    for (std::uint32_t i = 0; i < count; ++i)
-        check(device_, lwDescribeDebugView(technique_.get(), view, i, &views[i]));
-    return views;
-}
-
 DebugPlanes FrameRunner::readDebugView(const std::string& name) const {
     std::vector<std::string> names;
-    for (const LWDebugView& info : debugViews(view_.get())) {
+    for (const LWDebugView& info : technique_.debugViews(&view_)) {
+        if (name == info.name)
+            return {info.width, info.height, info.channels, technique_.readDebugView(info, &view_)};
         names.emplace_back(info.name);
-        if (name != info.name) continue;
-        DebugPlanes planes{info.width, info.height, info.channels, {}};
-        planes.values.resize(std::size_t(info.width) * info.height * info.channels);
-        check(device_, lwReadDebugView(technique_.get(), view_.get(), info.name, planes.values.data(),
-                                       planes.values.size()));
-        return planes;
     }
     throw UsageError("unknown debug view '" + name + "'; valid: " + joinNames(names));
 }

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "device_handles.h"
+#include "lightwell/lightwell.hpp"
 #include "parameters.h"
 #include "render_inputs.h"
 
@@ -37,8 +37,8 @@ struct DebugPlanes {
 
 class FrameRunner {
 public:
-    FrameRunner(LWDevice device, const std::string& technique, const Parameters& parameters,
-                const RenderInputs& inputs);
+    FrameRunner(const lightwell::Device& device, const std::string& technique,
+                const Parameters& parameters, const RenderInputs& inputs);
 
     // Unmeasured warm-up, then `count` measured frames.
     FrameFigures run(int count);
@@ -49,14 +49,13 @@ public:
 
 private:
     void renderFrame();
-    std::vector<LWDebugView> debugViews(LWView view) const;
 
-    LWDevice device_;
+    lightwell::Device device_;
     const RenderInputs& inputs_;
-    ViewHandle view_;
-    TechniqueHandle technique_;
+    lightwell::View view_;
+    lightwell::Technique technique_;
     studio::PlanarBuffer irradiance_, validity_;
-    std::uint64_t frameIndex_ = 0, estimatedBytes_ = 0;
+    std::uint64_t estimatedBytes_ = 0, frameIndex_ = 0;
 };
 
 }  // namespace cli

@@ -1,6 +1,6 @@
 #include "render_inputs.h"
 
-#include "device_handles.h"
+#include "lightwell/lightwell.hpp"
 
 namespace cli {
 namespace {
@@ -27,7 +27,7 @@ LWCamera describeCamera(const studio::Camera& camera, int width, int height) {
 }
 
 LWGBuffer describeGBuffer(const studio::GBuffer& from) {
-    LWGBuffer to = sized<LWGBuffer>();
+    LWGBuffer to = lightwell::make<LWGBuffer>();
     to.position = describePlanes(from.position);
     to.normal = describePlanes(from.normal);
     to.albedo = describePlanes(from.albedo);
@@ -39,7 +39,7 @@ LWGBuffer describeGBuffer(const studio::GBuffer& from) {
 }
 
 LWRsm describeRsm(const studio::Rsm& from) {
-    LWRsm to = sized<LWRsm>();
+    LWRsm to = lightwell::make<LWRsm>();
     to.position = describePlanes(from.position);
     to.normal = describePlanes(from.normal);
     to.flux = describePlanes(from.flux);
@@ -48,7 +48,7 @@ LWRsm describeRsm(const studio::Rsm& from) {
 }
 
 LWLight describeLight(const studio::Light& from, const std::vector<LWRsm>& rsms) {
-    LWLight to = sized<LWLight>();
+    LWLight to = lightwell::make<LWLight>();
     copyVector(from.position, to.position);
     copyVector(from.direction, to.direction);
     switch (from.kind) {
