@@ -151,6 +151,10 @@ void traceReference(const ReferenceOptions& options) {
     describe(image, options, camera, tracer.judgedLayers, noise);
     studio::writeExr(options.out, image, options.half);
     std::remove(tracer.checkpoint.c_str());
+    if (tracer.untilRelMse > 0.0 && noise > tracer.untilRelMse)
+        fmt::print(stderr,
+                   "note: {} samples per pixel are the most that are traced; the noise is above {}\n",
+                   image.metadata["spp"], options.until);
     const std::string effort = tracer.vpls == nullptr ? image.metadata["spp"] + " samples per pixel"
                                                       : fmt::format("{} VPLs", vpls.size());
     fmt::print("{}: {}x{}, {}, {}{}\n", options.out, size.width, size.height, image.metadata["layer"],
