@@ -16,6 +16,8 @@
 namespace cli {
 namespace {
 
+constexpr int kMostSamples = 1 << 20;  // per pixel; more only hides a mistake
+
 struct ReferenceOptions {
     ViewOptions view;
     std::string bounces, vpls, until, out, checkpoint;
@@ -46,11 +48,11 @@ double parseUntil(const std::string& text) {
 studio::PathTracerOptions tracerOptions(const ReferenceOptions& options) {
     studio::PathTracerOptions tracer;
     const std::uint64_t samples = parseUnsigned("--spp", options.samples);
-    if (samples < 2 || samples % 2 != 0 || samples > std::uint64_t(1) << 24)
+    if (samples < 2 || samples % 2 != 0 || samples > std::uint64_t(kMostSamples))
         throw UsageError(
             fmt::format("--spp '{}': expected an even number from 2 to {} (half of the samples to "
                         "each of two independent pictures)",
-                        options.samples, 1 << 24));
+                        options.samples, kMostSamples));
     tracer.samplesPerPixel = int(samples);
     tracer.seed = parseUnsigned("--seed", options.seed);
     tracer.unshadowed = options.unshadowed;
@@ -60,6 +62,7 @@ studio::PathTracerOptions tracerOptions(const ReferenceOptions& options) {
             throw UsageError("--until: --vpls sums without noise; leave --until out");
         tracer.untilRelMse = parseUntil(options.until);
         tracer.samplesPerPixel = 16;  // look at the halves early; the target decides
+        tracer.maxSamplesPerPixel = kMostSamples;
     }
     return tracer;
 }
