@@ -1,6 +1,6 @@
 // Path tracing of diffuse surfaces with next-event estimation, split by bounce.
 //
-// Source: J. Kajiya, "The Rendering Equation" (SIGGRAPH 1986); docs: "Reference" in accuracy.md. With
+// Source: J. Kajiya, "The Rendering Equation" (SIGGRAPH 1986); docs/accuracy.md, "The reference". With
 // cosine-distributed directions every factor cos / pi of the Lambertian surfaces cancels: a path whose
 // vertices y_1 ... y_k have albedos rho_1 ... rho_k brings rho_1 ... rho_k * E_direct(y_k) of irradiance
 // to bounce k. Sky and emission are light sources like the punctual ones (bounce 0).

@@ -2,6 +2,8 @@
 // stopping, layers, given VPLs, refusals. The light itself is in path_tracer_test.cpp.
 #include <catch2/catch.hpp>
 
+#include <unistd.h>
+
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -62,7 +64,9 @@ double relMse(const Image& image, const Image& truth, const std::string& layer) 
 
 struct TemporaryFile {
     explicit TemporaryFile(const std::string& name)
-        : path((std::filesystem::temp_directory_path() / ("lightwell_" + name)).string()) {
+        : path((std::filesystem::temp_directory_path() /
+                ("lightwell_" + name + "_" + std::to_string(getpid())))
+                   .string()) {
         std::filesystem::remove(path);
     }
     ~TemporaryFile() { std::filesystem::remove(path); }
