@@ -41,11 +41,16 @@ export LIGHTWELL_CACHE_DIR=$root/$build/cache/lightwell
 export POCL_CACHE_DIR=$root/$build/cache/pocl
 mkdir -p "$LIGHTWELL_CACHE_DIR" "$POCL_CACHE_DIR" || exit 2
 if [ -n "$scenes" ]; then
-    if [ ! -d "$scenes" ]; then
-        lightwell_complain "LIGHTWELL_SCENES: expected a folder, got '$scenes'"
-        exit 2
-    fi
-    LIGHTWELL_SCENES=$(cd "$scenes" && pwd) || exit 2
+    # Folders separated by ":", made absolute since suites run in the build folder.
+    LIGHTWELL_SCENES=
+    IFS=: read -r -a folders <<<"$scenes"
+    for folder in "${folders[@]}"; do
+        if [ ! -d "$folder" ]; then
+            lightwell_complain "LIGHTWELL_SCENES: expected folders separated by ':', got '$folder'"
+            exit 2
+        fi
+        LIGHTWELL_SCENES+=${LIGHTWELL_SCENES:+:}$(cd "$folder" && pwd)
+    done
     export LIGHTWELL_SCENES
     lightwell_say "large scenes from $LIGHTWELL_SCENES"
 else

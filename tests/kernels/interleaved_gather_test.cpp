@@ -77,7 +77,7 @@ void lookUp(Image& position, Image& normal) {
 TEST_CASE("the gather equals its serial twin", "[interleaved_gather]") {
     const auto width = GENERATE(1u, 16u);
     const auto n = GENERATE(1u, 2u, 4u, 8u);
-    const auto size = GENERATE(std::make_pair(1u, 1u), std::make_pair(67u, 23u), std::make_pair(130u, 9u));
+    const auto size = testSize(GENERATE(std::make_pair(1u, 1u), std::make_pair(67u, 23u), std::make_pair(130u, 9u)));
     CAPTURE(width, n, size.first, size.second);
     KernelRig rig(width);
     Image position(size.first, size.second), normal(size.first, size.second);
@@ -89,7 +89,7 @@ TEST_CASE("the gather equals its serial twin", "[interleaved_gather]") {
     CHECK(out.rejected == 0);
 }
 
-TEST_CASE("the gather has the same bits at every width", "[interleaved_gather]") {
+TEST_CASE("the gather has the same bits at every width", "[interleaved_gather][large]") {
     const auto n = GENERATE(1u, 4u);
     Image position(61, 13), normal(61, 13);
     reference::fillCorner(position, normal);
@@ -165,7 +165,7 @@ TEST_CASE("the mean over all assignments of subsets is the full gather", "[inter
     CHECK(mean.y == Approx(full.get(20, 4).y).epsilon(1e-5));
 }
 
-TEST_CASE("nothing depends on the unit of length", "[interleaved_gather]") {
+TEST_CASE("nothing depends on the unit of length", "[interleaved_gather][large]") {
     Image position(48, 20), normal(48, 20);
     reference::fillCorner(position, normal);
     auto vpls = reference::randomVpls(64, 5);
@@ -230,7 +230,7 @@ TEST_CASE("normals of compact formats are normalised", "[interleaved_gather]") {
 TEST_CASE("the filter equals its serial twin", "[interleaved_gather]") {
     const auto width = GENERATE(1u, 16u);
     const auto n = GENERATE(2u, 4u, 8u);
-    const auto size = GENERATE(std::make_pair(1u, 1u), std::make_pair(3u, 70u), std::make_pair(131u, 37u));
+    const auto size = testSize(GENERATE(std::make_pair(1u, 1u), std::make_pair(3u, 70u), std::make_pair(131u, 37u)));
     KernelRig rig(width);
     Image position(size.first, size.second), normal(size.first, size.second);
     reference::fillCorner(position, normal);

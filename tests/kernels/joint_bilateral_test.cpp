@@ -54,7 +54,7 @@ Image upsampleOn(KernelRig& rig, const Image& position, const Image& normal, con
 
 TEST_CASE("down- and up-sampling equal their serial twins", "[joint_bilateral]") {
     const auto width = GENERATE(1u, 16u);
-    const auto size = GENERATE(std::make_pair(1u, 1u), std::make_pair(2u, 31u), std::make_pair(33u, 8u), std::make_pair(131u, 57u));
+    const auto size = testSize(GENERATE(std::make_pair(1u, 1u), std::make_pair(2u, 31u), std::make_pair(33u, 8u), std::make_pair(131u, 57u)));
     CAPTURE(width, size.first, size.second);
     KernelRig rig(width);
     Image position(size.first, size.second), normal(size.first, size.second);
@@ -75,7 +75,7 @@ TEST_CASE("down- and up-sampling equal their serial twins", "[joint_bilateral]")
     CHECK(fallbacks == int(expectedFallbacks));
 }
 
-TEST_CASE("up-sampling has the same bits at every width", "[joint_bilateral]") {
+TEST_CASE("up-sampling has the same bits at every width", "[joint_bilateral][large]") {
     Image position(77, 33), normal(77, 33);
     reference::fillCorner(position, normal);
     const Image light = reference::randomImage(39, 17, 8);
@@ -91,7 +91,7 @@ TEST_CASE("up-sampling has the same bits at every width", "[joint_bilateral]") {
     }
 }
 
-TEST_CASE("a constant passes, nothing crosses an edge, no surface stays dark", "[joint_bilateral]") {
+TEST_CASE("a constant passes, nothing crosses an edge, no surface stays dark", "[joint_bilateral][large]") {
     const auto width = GENERATE(1u, 16u);
     KernelRig rig(width);
     Image position(90, 70), normal(90, 70);

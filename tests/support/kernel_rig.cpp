@@ -1,6 +1,7 @@
 // Devices shared by a test process, buffers with canaries, comparisons.
 #include "support/kernel_rig.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
@@ -14,6 +15,14 @@ namespace {
 
 constexpr unsigned char kPattern = 0xA5;
 constexpr std::size_t kCanaryBytes = 4096;  // several rows of the widest work-item
+
+constexpr std::uint32_t kSmallWidth = 35, kSmallHeight = 5;
+
+bool isSlow(const Device& device) {
+    LWDeviceInfo info{};
+    device.describe(info);
+    return std::strstr(info.name, "Oclgrind") || std::strstr(info.platform, "rusticl");
+}
 
 std::size_t canaryBytes(const Device& device) {
     LWDeviceInfo info{};
@@ -35,6 +44,11 @@ Device& sharedDevice(std::uint32_t width) {
         addTestPrograms(*device);
     }
     return *device;
+}
+
+std::pair<std::uint32_t, std::uint32_t> testSize(std::pair<std::uint32_t, std::uint32_t> size) {
+    if (!isSlow(sharedDevice(1))) return size;
+    return {std::min(size.first, kSmallWidth), std::min(size.second, kSmallHeight)};
 }
 
 KernelRig::KernelRig(std::uint32_t width) : device_(sharedDevice(width)), executor_(device_, profile_) {}

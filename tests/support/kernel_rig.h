@@ -11,6 +11,7 @@
 #include <cstring>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "compute/buffer.h"
@@ -34,6 +35,9 @@ private:
     Guarded(Buffer&& buffer, std::size_t dataBytes) : Buffer(std::move(buffer)), dataBytes_(dataBytes) {}
     std::size_t dataBytes_ = 0;
 };
+
+// An image's size, made small (still no multiple of a width) on slow drivers: Oclgrind, Rusticl.
+std::pair<std::uint32_t, std::uint32_t> testSize(std::pair<std::uint32_t, std::uint32_t> size);
 
 class KernelRig {
 public:

@@ -1,0 +1,38 @@
+# The library shows the C API and nothing else: every function that lightwell.h declares, no other symbol.
+#   cmake -DNM=... -DLIBRARY=... -DHEADER=... -P symbols_test.cmake
+cmake_minimum_required(VERSION 3.25)
+execute_process(COMMAND ${NM} -D --defined-only --format=posix ${LIBRARY} OUTPUT_VARIABLE table
+                COMMAND_ERROR_IS_FATAL ANY)
+string(REGEX MATCHALL "[^\n]+" lines "${table}")
+set(shown)
+foreach(line IN LISTS lines)
+  string(REGEX REPLACE " .*" "" symbol "${line}")
+  list(APPEND shown ${symbol})
+endforeach()
+
+file(READ ${HEADER} text)
+# "LW_API <type> lwName(": the declarations only.
+string(REGEX MATCHALL "LW_API [^;(]*[ *]lw[A-Za-z0-9]+\\(" declarations "${text}")
+set(declared)
+foreach(declaration IN LISTS declarations)
+  string(REGEX REPLACE ".*[ *](lw[A-Za-z0-9]+)\\($" "\\1" name "${declaration}")
+  list(APPEND declared ${name})
+endforeach()
+
+list(LENGTH declared count)
+if(count LESS 20)
+  message(FATAL_ERROR "only ${count} declarations found in ${HEADER}: this test reads it wrongly")
+endif()
+set(surplus ${shown})
+list(REMOVE_ITEM surplus ${declared})
+set(absent ${declared})
+list(REMOVE_ITEM absent ${shown})
+if(surplus)
+  message(SEND_ERROR "symbols that are not in the header: ${surplus}")
+endif()
+if(absent)
+  message(SEND_ERROR "declared in the header, but not in the library: ${absent}")
+endif()
+if(NOT surplus AND NOT absent)
+  message(STATUS "${count} functions, no other symbol")
+endif()

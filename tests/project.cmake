@@ -1,0 +1,69 @@
+# Suites about the project rather than one piece of code: packaging, documentation, foreign conventions,
+# kernels under other OpenCL implementations. Included by tests/CMakeLists.txt.
+
+# lightwell_tool_test(NAME TOOL program COMMAND ...): a suite that is skipped, and says so, without its tool.
+function(lightwell_tool_test name)
+  cmake_parse_arguments(TEST "" "TOOL" "COMMAND" ${ARGN})
+  find_program(LIGHTWELL_TOOL_${TEST_TOOL} ${TEST_TOOL})
+  if(LIGHTWELL_TOOL_${TEST_TOOL})
+    add_test(NAME ${name} COMMAND ${TEST_COMMAND} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+  else()
+    add_test(NAME ${name} COMMAND ${CMAKE_COMMAND} -E echo "SKIPPED: ${TEST_TOOL} is not installed")
+  endif()
+  set_tests_properties(${name} PROPERTIES SKIP_REGULAR_EXPRESSION "SKIPPED:")
+endfunction()
+
+# --- documentation
+add_test(NAME docs_test COMMAND ${CMAKE_COMMAND} -DSOURCE=${PROJECT_SOURCE_DIR}
+         -P ${CMAKE_CURRENT_SOURCE_DIR}/docs/docs_test.cmake)
+lightwell_tool_test(reference_docs_test TOOL doxygen COMMAND ${CMAKE_COMMAND} -E env
+  LIGHTWELL_VERSION=${PROJECT_VERSION} doxygen docs/Doxyfile)
+
+# The C and C++ compilers both take the public headers, with every warning an error.
+add_library(header_c_check OBJECT docs/header_check.c)
+target_include_directories(header_c_check PRIVATE ${PROJECT_SOURCE_DIR}/include)
+target_compile_options(header_c_check PRIVATE -std=c99 -pedantic -Wall -Wextra -Wconversion -Werror)
+
+# README's program, as it stands there.
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/README.md)
+file(READ ${PROJECT_SOURCE_DIR}/README.md readme)
+if(readme MATCHES "```c\n([^`]*)```")
+  file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/readme_program.c CONTENT "${CMAKE_MATCH_1}" @ONLY)
+  add_library(readme_program OBJECT ${CMAKE_CURRENT_BINARY_DIR}/readme_program.c)
+  target_include_directories(readme_program PRIVATE ${PROJECT_SOURCE_DIR}/include)
+  target_link_libraries(readme_program PRIVATE lightwell_warnings)
+else()
+  message(FATAL_ERROR "README.md: expected a program between ```c and ```")
+endif()
+
+# The skeleton that docs/adding-a-technique.md shows.
+lightwell_test(skeleton_test SOURCES skeleton/skeleton_test.cpp skeleton/ambient_sky.cpp LIBS kernel_rig
+  LABELS unit)
+
+# --- the library as its users get it
+lightwell_tool_test(symbols_test TOOL nm COMMAND ${CMAKE_COMMAND} -DNM=nm -DLIBRARY=$<TARGET_FILE:lightwell>
+  -DHEADER=${PROJECT_SOURCE_DIR}/include/lightwell/lightwell.h
+  -P ${CMAKE_CURRENT_SOURCE_DIR}/package/symbols_test.cmake)
+if(NOT LIGHTWELL_SANITIZE)  # a consumer without the sanitizers cannot load a library with them
+  add_test(NAME package_test COMMAND ${CMAKE_COMMAND} -DSOURCE=${PROJECT_SOURCE_DIR} -DBUILD=${PROJECT_BINARY_DIR}
+           -DWORK=${CMAKE_CURRENT_BINARY_DIR}/package -P ${CMAKE_CURRENT_SOURCE_DIR}/package/package_test.cmake)
+endif()
+
+# docs/getting-started.md's program: exit code 0 means that its answer is right.
+add_executable(minimal ${PROJECT_SOURCE_DIR}/samples/minimal.c)
+target_link_libraries(minimal PRIVATE lightwell lightwell_warnings)
+add_test(NAME getting_started_test COMMAND minimal)
+
+# --- a frame that shares no convention and no code with us
+lightwell_test(foreign_test SOURCES foreign/foreign_test.cpp LIBS lightwell LABELS images)
+target_compile_definitions(foreign_test PRIVATE
+  LIGHTWELL_FOREIGN_FRAME="${CMAKE_CURRENT_SOURCE_DIR}/foreign/frame")
+
+# --- benchmarks: each runs once here; docs/performance.md says how to measure
+if(LIGHTWELL_BUILD_BENCH)
+  find_package(benchmark REQUIRED)
+  add_executable(lightwell_bench bench/bench.cpp)
+  target_link_libraries(lightwell_bench PRIVATE lightwell lightwell_warnings benchmark::benchmark)
+  add_test(NAME bench_test COMMAND lightwell_bench --benchmark_min_time=0.001)
+  set_tests_properties(bench_test PROPERTIES FAIL_REGULAR_EXPRESSION "ERROR OCCURRED")
+endif()
