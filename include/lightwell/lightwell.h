@@ -87,7 +87,8 @@ typedef enum LWStatus {
     LW_ERROR_NO_DEVICE = 5,        /**< no OpenCL device matches the selector */
     LW_ERROR_BUILD_FAILED = 6,     /**< a kernel does not build; the message carries the log */
     LW_ERROR_DEVICE = 7,           /**< the OpenCL driver reported an error while executing */
-    LW_ERROR_NOT_UPDATED = 8,      /**< lwRender before any lwUpdate, or after a failed one */
+    LW_ERROR_NOT_UPDATED = 8,      /**< lwRender before any successful lwUpdate, or after one that memory
+                                        or the device failed; refused arguments leave the last in force */
     LW_ERROR_REENTRANT = 9,        /**< called from inside a log callback */
     LW_ERROR_INTERNAL = 10         /**< a defect of Lightwell; please report the message */
 } LWStatus;
@@ -183,7 +184,7 @@ typedef enum LWFormat {
     LW_FORMAT_HALF4 = 5,          /**< four float16, interleaved */
     LW_FORMAT_UNORM8X4 = 6,       /**< 0..255 -> 0..1; a normal is stored as n/2 + 1/2 */
     LW_FORMAT_UNORM8X4_SRGB = 7,  /**< the same with the sRGB curve, for albedo */
-    LW_FORMAT_OCT16X2 = 8,        /**< octahedral unit vector, two snorm16 */
+    LW_FORMAT_OCT16X2 = 8,        /**< octahedral unit vector, two snorm16; both -32768: no surface */
     LW_FORMAT_PLANAR_FLOAT2 = 9,  /**< float32 planes, bytePlaneStride apart */
     LW_FORMAT_PLANAR_FLOAT3 = 10, /**< float32 planes, bytePlaneStride apart */
     LW_FORMAT_UINT8 = 11          /**< one byte: masks; zero or not */
@@ -220,7 +221,8 @@ typedef enum LWDepthKind {
     LW_DEPTH_ZERO_TO_ONE = 0,     /**< clip z / w in [0,1]: Direct3D, Vulkan, Metal; reversed or not */
     LW_DEPTH_GL = 1,              /**< OpenGL's window depth in [0,1] = (clip z / w + 1) / 2 */
     LW_DEPTH_AXIAL = 2,           /**< distance along the camera axis, in world units */
-    LW_DEPTH_RADIAL = 3           /**< distance from the eye, in world units */
+    LW_DEPTH_RADIAL = 3           /**< distance from the eye, in world units (orthographic: as AXIAL, from
+                                       the plane through the origin of view space) */
 } LWDepthKind;
 
 typedef struct LWCamera {

@@ -175,7 +175,8 @@ public:
     }
     std::vector<float> readDebugView(const LWDebugView& info, const View* view = nullptr) const {
         std::vector<float> pixels(std::size_t(info.width) * info.height * info.channels);
-        check(lwReadDebugView(get(), view ? view->get() : nullptr, info.name, pixels.data(), pixels.size()),
+        check(lwReadDebugView(get(), view ? view->get() : nullptr, info.name, pixels.data(),
+                              pixels.size()),
               device_.get());
         return pixels;
     }

@@ -3,26 +3,38 @@
 #include "shared/pixel_formats.h"
 #include "shared/wide.h"
 
+// Lanes of v at `first`, `stride` bytes apart; only `count` of them.
+LW_FN void lw_scatter_floats(real v, __global uchar* first, long stride, int count) {
+    if (stride == 4 && count == LW_WIDTH) {
+        store(v, (__global float*)first, 0);
+        return;
+    }
 #if LW_WIDTH == 1
-#define LW_STORE_LANES(type, v, base) *(__global type*)(base) = (v)
-#define LW_STORE_HALF_LANES(v, base) vstore_half_rte((v), 0, (__global half*)(base))
+    *(__global float*)first = v;
 #else
-// Lanes past the last pixel are left out.
-#define LW_STORE_LANES(type, v, base)                                        \
-    do {                                                                     \
-        float lanes[LW_WIDTH];                                               \
-        LW_CAT(vstore, LW_WIDTH)((v), 0, lanes);                             \
-        for (int l = 0; l < count; ++l)                                      \
-            *(__global type*)((base) + l * stride) = lanes[l];               \
-    } while (0)
-#define LW_STORE_HALF_LANES(v, base)                                         \
-    do {                                                                     \
-        float lanes[LW_WIDTH];                                               \
-        LW_CAT(vstore, LW_WIDTH)((v), 0, lanes);                             \
-        for (int l = 0; l < count; ++l)                                      \
-            vstore_half_rte(lanes[l], 0, (__global half*)((base) + l * stride)); \
-    } while (0)
+    if (count == LW_WIDTH) {
+#define LW_PUT_LANE(l) *(__global float*)(first + 0x##l * stride) = v.s##l;
+        LW_EACH_LANE(LW_PUT_LANE)
+        return;
+    }
+    float lanes[LW_WIDTH];
+    store(v, lanes, 0);
+    for (int l = 0; l < count; ++l) *(__global float*)(first + l * stride) = lanes[l];
 #endif
+}
+
+// The same, rounded to half.
+LW_FN void lw_scatter_halves(real v, __global uchar* first, long stride, int count) {
+#if LW_WIDTH == 1
+    (void)stride;
+    (void)count;
+    vstore_half_rte(v, 0, (__global half*)first);
+#else
+    ushort lanes[LW_WIDTH];
+    LW_CAT(LW_CAT(vstore_half, LW_WIDTH), _rte)(v, 0, (half*)lanes);
+    for (int l = 0; l < count; ++l) *(__global ushort*)(first + l * stride) = lanes[l];
+#endif
+}
 
 // One work-item = LW_WIDTH pixels of a row; `planes` holds pixels.channels of them. The fourth channel,
 // where the format has one, is written 1. Half floats round to nearest even; beyond 65504 is infinity.
@@ -36,17 +48,11 @@ __kernel void output_pack(__global const float* planes, int4 layout, __global uc
     __global uchar* row = target + pixels.byteOffset + y * pixels.byteRowStride + x * stride;
     if (pixels.format == LW_PIXEL_HALF4) {
         for (int c = 0; c < pixels.channels; ++c)
-            LW_STORE_HALF_LANES(load(planes, at + c * layout.z), row + 2 * c);
-        LW_STORE_HALF_LANES((real)1.0f, row + 6);
+            lw_scatter_halves(load(planes, at + c * layout.z), row + 2 * c, stride, count);
+        lw_scatter_halves((real)1.0f, row + 6, stride, count);
     } else {
-        for (int c = 0; c < pixels.channels; ++c) {
-            __global uchar* first = row + c * pixels.bytePlaneStride;
-            const real v = load(planes, at + c * layout.z);
-            if (stride == 4 && count == LW_WIDTH)
-                store(v, (__global float*)first, 0);
-            else
-                LW_STORE_LANES(float, v, first);
-        }
-        if (pixels.format == LW_PIXEL_FLOAT4) LW_STORE_LANES(float, (real)1.0f, row + 12);
+        for (int c = 0; c < pixels.channels; ++c)
+            lw_scatter_floats(load(planes, at + c * layout.z), row + c * pixels.bytePlaneStride, stride, count);
+        if (pixels.format == LW_PIXEL_FLOAT4) lw_scatter_floats((real)1.0f, row + 12, stride, count);
     }
 }

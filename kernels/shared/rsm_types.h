@@ -9,8 +9,8 @@
 #define LW_MAX_CASCADES 8
 
 // Smallest cosine between normal and light that a texel's area is divided by: the area grows at most
-// 20 times beyond the texel's cross-section. Larger: VPLs on walls lit at grazing angles get too small an
-// area, and light close to them is bounded too late (spikes). Smaller: a texel whose normal is nearly
+// 20 times beyond the texel's cross-section. Larger: VPLs on walls lit at grazing angles get too small
+// an area, and light close to them is bounded too late (spikes). Smaller: a texel whose normal is nearly
 // across the light (a silhouette, an interpolated normal) stands for a huge disc and loses its light.
 #define LW_MIN_LIGHT_COSINE 0.05f
 
@@ -27,11 +27,12 @@
 #define LW_RSM_COUNTERS 4
 
 typedef struct LwRsmSpan {
-    // Perspective: the ray through a texel's centre, of length 1 along the camera's axis; coefficients of
-    // (i + 1/2, j + 1/2, -, 1). Orthographic: unused.
+    // Perspective: the ray through a texel's centre, of length 1 along the camera's axis; coefficients
+    // of (i + 1/2, j + 1/2, -, 1). Orthographic: unused.
     lw_float4 rayX, rayY, rayZ;
     lw_float4 light;  // perspective: the eye (xyz); orthographic: unit vector along the axis (xyz)
-    // Finer cascades: clip x, then clip y, of a texel's centre; coefficients of (i + 1/2, j + 1/2, -, 1).
+    // Finer cascades: clip x, then clip y, of a texel's centre; coefficients of (i + 1/2, j + 1/2, -,
+    // 1).
     lw_float4 finer[2 * (LW_MAX_CASCADES - 1)];
     lw_float texelArea;  // orthographic: A_texel across the axis; perspective: at distance 1 along it
     lw_int perspective, finerCount;

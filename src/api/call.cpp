@@ -18,8 +18,7 @@ struct ThreadErrors {
 thread_local ThreadErrors threadErrors;
 
 void refuseInsideLog() {
-    if (Device::insideAnyLog())
-        fail(LW_ERROR_REENTRANT, "a log callback must not call Lightwell");
+    if (Device::insideAnyLog()) fail(LW_ERROR_REENTRANT, "a log callback must not call Lightwell");
 }
 
 }  // namespace
@@ -50,7 +49,8 @@ std::shared_ptr<View> Call::viewOfDevice(LWView handle, const char* argument, bo
     if (!handle && optional) return nullptr;
     const auto object = findView(handle, argument);
     if (object->device != device_)
-        fail(LW_ERROR_INVALID_HANDLE, argument, ": expected a view of the technique's device, got another device's");
+        fail(LW_ERROR_INVALID_HANDLE, argument,
+             ": expected a view of the technique's device, got another device's");
     return object->view;
 }
 

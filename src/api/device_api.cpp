@@ -10,17 +10,28 @@ using namespace lightwell;
 
 const char* lwStatusName(LWStatus status) {
     switch (status) {
-        case LW_SUCCESS: return "LW_SUCCESS";
-        case LW_ERROR_INVALID_ARGUMENT: return "LW_ERROR_INVALID_ARGUMENT";
-        case LW_ERROR_INVALID_HANDLE: return "LW_ERROR_INVALID_HANDLE";
-        case LW_ERROR_OUT_OF_MEMORY: return "LW_ERROR_OUT_OF_MEMORY";
-        case LW_ERROR_UNSUPPORTED: return "LW_ERROR_UNSUPPORTED";
-        case LW_ERROR_NO_DEVICE: return "LW_ERROR_NO_DEVICE";
-        case LW_ERROR_BUILD_FAILED: return "LW_ERROR_BUILD_FAILED";
-        case LW_ERROR_DEVICE: return "LW_ERROR_DEVICE";
-        case LW_ERROR_NOT_UPDATED: return "LW_ERROR_NOT_UPDATED";
-        case LW_ERROR_REENTRANT: return "LW_ERROR_REENTRANT";
-        case LW_ERROR_INTERNAL: return "LW_ERROR_INTERNAL";
+        case LW_SUCCESS:
+            return "LW_SUCCESS";
+        case LW_ERROR_INVALID_ARGUMENT:
+            return "LW_ERROR_INVALID_ARGUMENT";
+        case LW_ERROR_INVALID_HANDLE:
+            return "LW_ERROR_INVALID_HANDLE";
+        case LW_ERROR_OUT_OF_MEMORY:
+            return "LW_ERROR_OUT_OF_MEMORY";
+        case LW_ERROR_UNSUPPORTED:
+            return "LW_ERROR_UNSUPPORTED";
+        case LW_ERROR_NO_DEVICE:
+            return "LW_ERROR_NO_DEVICE";
+        case LW_ERROR_BUILD_FAILED:
+            return "LW_ERROR_BUILD_FAILED";
+        case LW_ERROR_DEVICE:
+            return "LW_ERROR_DEVICE";
+        case LW_ERROR_NOT_UPDATED:
+            return "LW_ERROR_NOT_UPDATED";
+        case LW_ERROR_REENTRANT:
+            return "LW_ERROR_REENTRANT";
+        case LW_ERROR_INTERNAL:
+            return "LW_ERROR_INTERNAL";
     }
     return "unknown LWStatus";
 }
@@ -29,7 +40,9 @@ const char* lwVersion(void) {
     return LW_TEXT(LW_VERSION_MAJOR) "." LW_TEXT(LW_VERSION_MINOR) "." LW_TEXT(LW_VERSION_PATCH);
 }
 
-LWStatus lwGetLastError(LWDevice device, const char** message) { return takeError(device, message); }
+LWStatus lwGetLastError(LWDevice device, const char** message) {
+    return takeError(device, message);
+}
 
 void lwDefaultDevice(LWDeviceDesc* desc) {
     if (desc) LW_INIT(*desc);
@@ -37,14 +50,17 @@ void lwDefaultDevice(LWDeviceDesc* desc) {
 
 LWStatus lwCreateDevice(const LWDeviceDesc* desc, LWDevice* device) {
     return enter("lwCreateDevice", [&](Call&) {
-        if (!device) fail(LW_ERROR_INVALID_ARGUMENT, "device: expected an address for the handle, got null");
+        if (!device)
+            fail(LW_ERROR_INVALID_ARGUMENT, "device: expected an address for the handle, got null");
         *device = nullptr;
         LWDeviceDesc own{};
         lwDefaultDevice(&own);
         if (desc) own = readStruct(desc, "desc");
         if (!own.clContext != !own.clQueue)
-            fail(LW_ERROR_INVALID_ARGUMENT, "desc.clContext, desc.clQueue: expected both or neither, got one");
-        *device = static_cast<LWDevice>(addHandle(HandleKind::kDevice, std::make_shared<DeviceObject>(own)));
+            fail(LW_ERROR_INVALID_ARGUMENT,
+                 "desc.clContext, desc.clQueue: expected both or neither, got one");
+        *device =
+            static_cast<LWDevice>(addHandle(HandleKind::kDevice, std::make_shared<DeviceObject>(own)));
     });
 }
 
@@ -53,7 +69,8 @@ LWStatus lwRetainDevice(LWDevice device) {
 }
 
 LWStatus lwReleaseDevice(LWDevice device) {
-    return enter("lwReleaseDevice", [&](Call&) { releaseHandle(HandleKind::kDevice, device, "device"); });
+    return enter("lwReleaseDevice",
+                 [&](Call&) { releaseHandle(HandleKind::kDevice, device, "device"); });
 }
 
 LWStatus lwGetDeviceInfo(LWDevice device, LWDeviceInfo* info) {

@@ -20,16 +20,18 @@ constexpr std::uint32_t kMaxWaitEvents = 1024;
 void checkCount(std::uint32_t count, const void* array, std::uint32_t most, const std::string& name,
                 const char* countField, const char* arrayField) {
     if (count > most)
-        fail(LW_ERROR_INVALID_ARGUMENT, name, ".", countField, ": expected at most ", most, ", got ", count);
+        fail(LW_ERROR_INVALID_ARGUMENT, name, ".", countField, ": expected at most ", most, ", got ",
+             count);
     if (count > 0 && !array)
-        fail(LW_ERROR_INVALID_ARGUMENT, name, ".", arrayField, ": expected an array of ", count, ", got null");
+        fail(LW_ERROR_INVALID_ARGUMENT, name, ".", arrayField, ": expected an array of ", count,
+             ", got null");
 }
 
 void checkFinite(const float* values, int count, const std::string& name, bool notNegative = false) {
     for (int i = 0; i < count; ++i)
         if (!std::isfinite(values[i]) || (notNegative && values[i] < 0.0f))
-            fail(LW_ERROR_INVALID_ARGUMENT, name, ": expected finite numbers", notNegative ? " of 0 or more" : "",
-                 ", got ", values[i]);
+            fail(LW_ERROR_INVALID_ARGUMENT, name, ": expected finite numbers",
+                 notNegative ? " of 0 or more" : "", ", got ", values[i]);
 }
 
 void checkLight(const LWLight& light, const std::string& name) {
@@ -40,8 +42,8 @@ void checkLight(const LWLight& light, const std::string& name) {
     checkFinite(&light.innerConeAngle, 1, name + ".innerConeAngle", true);
     constexpr float kRightAngle = 1.5707964f;
     if (!(light.outerConeAngle >= light.innerConeAngle && light.outerConeAngle <= kRightAngle))
-        fail(LW_ERROR_INVALID_ARGUMENT, name, ".outerConeAngle: expected innerConeAngle (", light.innerConeAngle,
-             ") .. pi/2, got ", light.outerConeAngle);
+        fail(LW_ERROR_INVALID_ARGUMENT, name, ".outerConeAngle: expected innerConeAngle (",
+             light.innerConeAngle, ") .. pi/2, got ", light.outerConeAngle);
 }
 
 }  // namespace
@@ -50,14 +52,16 @@ SyncArgument::SyncArgument(const LWSync* from, void* clContext, const char* name
     if (!from) return;
     sync_ = readStruct(from, name);
     given_ = true;
-    checkCount(sync_.waitEventCount, sync_.waitEvents, kMaxWaitEvents, name, "waitEventCount", "waitEvents");
+    checkCount(sync_.waitEventCount, sync_.waitEvents, kMaxWaitEvents, name, "waitEventCount",
+               "waitEvents");
     for (std::uint32_t i = 0; i < sync_.waitEventCount; ++i) {
         cl_context context = nullptr;
         if (!sync_.waitEvents[i] ||
-            clGetEventInfo(static_cast<cl_event>(sync_.waitEvents[i]), CL_EVENT_CONTEXT, sizeof context, &context,
-                           nullptr) != CL_SUCCESS ||
+            clGetEventInfo(static_cast<cl_event>(sync_.waitEvents[i]), CL_EVENT_CONTEXT, sizeof context,
+                           &context, nullptr) != CL_SUCCESS ||
             context != clContext)
-            fail(LW_ERROR_INVALID_ARGUMENT, name, ".waitEvents[", i, "]: expected a cl_event of the device's context, got ",
+            fail(LW_ERROR_INVALID_ARGUMENT, name, ".waitEvents[", i,
+                 "]: expected a cl_event of the device's context, got ",
                  sync_.waitEvents[i] ? "another" : "null");
     }
 }
@@ -107,9 +111,10 @@ void FrameArgument::checkNumbers() const {
     checkFinite(frame_.environment, 3, "frame.environment", true);
     for (std::uint32_t i = 0; i < frame_.vplCount; ++i) {
         const LWVpl& vpl = frame_.vpls[i];
-        const bool good = std::isfinite(vpl.position[0] + vpl.position[1] + vpl.position[2] + vpl.normal[0] +
-                                        vpl.normal[1] + vpl.normal[2]);
-        const bool lit = vpl.area >= 0.0f && vpl.flux[0] >= 0.0f && vpl.flux[1] >= 0.0f && vpl.flux[2] >= 0.0f &&
+        const bool good = std::isfinite(vpl.position[0] + vpl.position[1] + vpl.position[2] +
+                                        vpl.normal[0] + vpl.normal[1] + vpl.normal[2]);
+        const bool lit = vpl.area >= 0.0f && vpl.flux[0] >= 0.0f && vpl.flux[1] >= 0.0f &&
+                         vpl.flux[2] >= 0.0f &&
                          std::isfinite(vpl.area + vpl.flux[0] + vpl.flux[1] + vpl.flux[2]);
         if (!good || !lit)
             fail(LW_ERROR_INVALID_ARGUMENT, "frame.vpls[", i,

@@ -1,4 +1,5 @@
-// Copies of what a host describes per frame, at our struct sizes and with every count and number checked.
+// Copies of what a host describes per frame, at our struct sizes and with every count and number
+// checked.
 #pragma once
 
 #include <vector>

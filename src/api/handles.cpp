@@ -28,9 +28,12 @@ Table& table() {
 
 const char* kindName(HandleKind kind) {
     switch (kind) {
-        case HandleKind::kDevice: return "device";
-        case HandleKind::kView: return "view";
-        default: return "technique";
+        case HandleKind::kDevice:
+            return "device";
+        case HandleKind::kView:
+            return "view";
+        default:
+            return "technique";
     }
 }
 

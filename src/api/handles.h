@@ -27,7 +27,8 @@ inline std::shared_ptr<ViewObject> findView(LWView handle, const char* argument)
     return std::static_pointer_cast<ViewObject>(findHandle(HandleKind::kView, handle, argument));
 }
 inline std::shared_ptr<TechniqueObject> findTechnique(LWTechnique handle, const char* argument) {
-    return std::static_pointer_cast<TechniqueObject>(findHandle(HandleKind::kTechnique, handle, argument));
+    return std::static_pointer_cast<TechniqueObject>(
+        findHandle(HandleKind::kTechnique, handle, argument));
 }
 
 }  // namespace lightwell

@@ -19,9 +19,12 @@ T fieldAs(const char* desc, const LWParameter& parameter) {
 
 double valueOf(const char* desc, const LWParameter& parameter) {
     switch (parameter.kind) {
-        case LW_PARAMETER_FLOAT: return double(fieldAs<float>(desc, parameter));
-        case LW_PARAMETER_ENUM: return double(fieldAs<std::int32_t>(desc, parameter));
-        default: return double(fieldAs<std::uint32_t>(desc, parameter));
+        case LW_PARAMETER_FLOAT:
+            return double(fieldAs<float>(desc, parameter));
+        case LW_PARAMETER_ENUM:
+            return double(fieldAs<std::int32_t>(desc, parameter));
+        default:
+            return double(fieldAs<std::uint32_t>(desc, parameter));
     }
 }
 
@@ -43,7 +46,8 @@ bool allows(const LWParameter& parameter, double value) {
     } else {
         expected << parameter.minimum << " .. " << parameter.maximum;
     }
-    fail(LW_ERROR_INVALID_ARGUMENT, "desc.", parameter.name, ": expected ", expected.str(), ", got ", value);
+    fail(LW_ERROR_INVALID_ARGUMENT, "desc.", parameter.name, ": expected ", expected.str(), ", got ",
+         value);
 }
 
 }  // namespace
@@ -55,7 +59,8 @@ const TechniqueEntry& findTechniqueEntry(const char* name) {
         if (std::strcmp(entry.info.name, name) == 0) return entry;
         names += (names.empty() ? "" : ", ") + std::string(entry.info.name);
     }
-    fail(LW_ERROR_INVALID_ARGUMENT, "name: expected one of ", names, ", got \"", std::string(name).substr(0, 64), "\"");
+    fail(LW_ERROR_INVALID_ARGUMENT, "name: expected one of ", names, ", got \"",
+         std::string(name).substr(0, 64), "\"");
 }
 
 std::vector<std::uint64_t> readDescriptor(const TechniqueEntry& entry, const void* desc) {

@@ -43,7 +43,8 @@ LWStatus lwCountDebugViews(LWTechnique technique, LWView view, std::uint32_t* co
     });
 }
 
-LWStatus lwDescribeDebugView(LWTechnique technique, LWView view, std::uint32_t index, LWDebugView* info) {
+LWStatus lwDescribeDebugView(LWTechnique technique, LWView view, std::uint32_t index,
+                             LWDebugView* info) {
     return enter("lwDescribeDebugView", [&](Call& call) {
         const auto object = call.technique(technique);
         const auto own = call.viewOfDevice(view, "view", true);
@@ -78,11 +79,12 @@ LWStatus lwReadDebugView(LWTechnique technique, LWView view, const char* name, f
             const std::uint64_t needed =
                 std::uint64_t(debug.planes.width) * debug.planes.height * debug.planes.count;
             if (capacity < needed)
-                fail(LW_ERROR_INVALID_ARGUMENT, "capacity: expected at least ", needed, " floats, got ", capacity);
+                fail(LW_ERROR_INVALID_ARGUMENT, "capacity: expected at least ", needed, " floats, got ",
+                     capacity);
             readPlanes(call.owner()->device, debug.planes, pixels);
             return;
         }
-        fail(LW_ERROR_INVALID_ARGUMENT, "name: expected one of ", names.empty() ? "(none yet)" : names, ", got \"",
-             std::string(name).substr(0, 64), "\"");
+        fail(LW_ERROR_INVALID_ARGUMENT, "name: expected one of ", names.empty() ? "(none yet)" : names,
+             ", got \"", std::string(name).substr(0, 64), "\"");
     });
 }

@@ -25,8 +25,9 @@ std::uint32_t checkedStructSize(const T* from, const std::string& name) {
     std::memcpy(&size, from, sizeof size);
     if (size < kFirstSize<T> || size > sizeof(T))
         fail(LW_ERROR_INVALID_ARGUMENT, name, ".structSize: expected ",
-             kFirstSize<T> == sizeof(T) ? std::string() : std::to_string(kFirstSize<T>) + " .. ", sizeof(T),
-             " (set it with LW_INIT; larger: the header is newer than the library), got ", size);
+             kFirstSize<T> == sizeof(T) ? std::string() : std::to_string(kFirstSize<T>) + " .. ",
+             sizeof(T), " (set it with LW_INIT; larger: the header is newer than the library), got ",
+             size);
     return size;
 }
 
@@ -51,7 +52,8 @@ std::vector<T> readStructs(const T* from, std::uint32_t count, const std::string
         const std::uint32_t size = checkedStructSize(reinterpret_cast<const T*>(at), element);
         if (i == 0) stride = size;
         if (size != stride)
-            fail(LW_ERROR_INVALID_ARGUMENT, element, ".structSize: expected ", stride, " as in the first, got ", size);
+            fail(LW_ERROR_INVALID_ARGUMENT, element, ".structSize: expected ", stride,
+                 " as in the first, got ", size);
         result.push_back(readStruct(reinterpret_cast<const T*>(at), element));
         at += stride;
     }

@@ -12,7 +12,8 @@ LWStatus createTechnique(const char* function, LWDevice device, const char* name
                          LWTechnique* technique) {
     return enter(function, [&](Call& call) {
         Device& own = call.device(device);
-        if (!technique) fail(LW_ERROR_INVALID_ARGUMENT, "technique: expected an address for the handle, got null");
+        if (!technique)
+            fail(LW_ERROR_INVALID_ARGUMENT, "technique: expected an address for the handle, got null");
         *technique = nullptr;
         const TechniqueEntry& entry = findTechniqueEntry(name);
         const auto descriptor = readDescriptor(entry, desc);
@@ -26,7 +27,8 @@ LWStatus createTechnique(const char* function, LWDevice device, const char* name
 // True when a failed update left the technique's world part as it was: techniques and inputs check their
 // arguments before they change anything.
 bool refusedUnchanged(LWStatus status) {
-    return status == LW_ERROR_INVALID_ARGUMENT || status == LW_ERROR_INVALID_HANDLE || status == LW_ERROR_UNSUPPORTED;
+    return status == LW_ERROR_INVALID_ARGUMENT || status == LW_ERROR_INVALID_HANDLE ||
+           status == LW_ERROR_UNSUPPORTED;
 }
 
 void checkOutput(const LWOutput& output) {
@@ -38,14 +40,17 @@ void checkOutput(const LWOutput& output) {
 
 }  // namespace
 
-std::uint32_t lwCountTechniques(void) { return std::uint32_t(techniqueEntries().size()); }
+std::uint32_t lwCountTechniques(void) {
+    return std::uint32_t(techniqueEntries().size());
+}
 
 LWStatus lwDescribeTechnique(std::uint32_t index, LWTechniqueInfo* info) {
     return enter("lwDescribeTechnique", [&](Call&) {
         const std::uint32_t size = checkedStructSize(info, "info");
         const auto& entries = techniqueEntries();
         if (index >= entries.size())
-            fail(LW_ERROR_INVALID_ARGUMENT, "index: expected less than ", entries.size(), ", got ", index);
+            fail(LW_ERROR_INVALID_ARGUMENT, "index: expected less than ", entries.size(), ", got ",
+                 index);
         writeStruct(info, size, entries[index].info);
     });
 }
@@ -80,12 +85,14 @@ LWStatus lwEstimateMemory(LWDevice device, const char* name, const void* desc, c
         const auto descriptor = readDescriptor(entry, desc);
         const LWViewDesc own = readStruct(view, "view");
         constexpr std::uint32_t kMaxSide = 16384;
-        if (own.maxWidth == 0 || own.maxHeight == 0 || own.maxWidth > kMaxSide || own.maxHeight > kMaxSide)
-            fail(LW_ERROR_INVALID_ARGUMENT, "view: expected 1 .. ", kMaxSide, " pixels a side, got ", own.maxWidth,
-                 " x ", own.maxHeight);
+        if (own.maxWidth == 0 || own.maxHeight == 0 || own.maxWidth > kMaxSide ||
+            own.maxHeight > kMaxSide)
+            fail(LW_ERROR_INVALID_ARGUMENT, "view: expected 1 .. ", kMaxSide, " pixels a side, got ",
+                 own.maxWidth, " x ", own.maxHeight);
         constexpr std::uint64_t kMaxTexels = std::uint64_t(1) << 40;  // products with it stay in 64 bits
         if (rsmTexels > kMaxTexels)
-            fail(LW_ERROR_INVALID_ARGUMENT, "rsmTexels: expected at most ", kMaxTexels, ", got ", rsmTexels);
+            fail(LW_ERROR_INVALID_ARGUMENT, "rsmTexels: expected at most ", kMaxTexels, ", got ",
+                 rsmTexels);
         *bytes = entry.estimateBytes(descriptor.data(), own, rsmTexels);
     });
 }

@@ -8,11 +8,11 @@ namespace {
 
 constexpr std::uint32_t kMaxViewSide = 16384;
 
-void checkSize(std::uint32_t width, std::uint32_t height, std::uint32_t maxWidth, std::uint32_t maxHeight,
-               const char* name) {
+void checkSize(std::uint32_t width, std::uint32_t height, std::uint32_t maxWidth,
+               std::uint32_t maxHeight, const char* name) {
     if (width == 0 || height == 0 || width > maxWidth || height > maxHeight)
-        fail(LW_ERROR_INVALID_ARGUMENT, name, ": expected 1 .. ", maxWidth, " x 1 .. ", maxHeight, ", got ", width,
-             " x ", height);
+        fail(LW_ERROR_INVALID_ARGUMENT, name, ": expected 1 .. ", maxWidth, " x 1 .. ", maxHeight,
+             ", got ", width, " x ", height);
 }
 
 }  // namespace
@@ -23,7 +23,8 @@ LWStatus lwCreateView(LWDevice device, const LWViewDesc* desc, LWView* view) {
         if (!view) fail(LW_ERROR_INVALID_ARGUMENT, "view: expected an address for the handle, got null");
         *view = nullptr;
         const LWViewDesc own = readStruct(desc, "desc");
-        checkSize(own.maxWidth, own.maxHeight, kMaxViewSide, kMaxViewSide, "desc.maxWidth, desc.maxHeight");
+        checkSize(own.maxWidth, own.maxHeight, kMaxViewSide, kMaxViewSide,
+                  "desc.maxWidth, desc.maxHeight");
         auto object = std::make_shared<ViewObject>(call.owner(), own.maxWidth, own.maxHeight);
         *view = static_cast<LWView>(addHandle(HandleKind::kView, std::move(object)));
     });
@@ -35,7 +36,8 @@ LWStatus lwRetainView(LWView view) {
 
 LWStatus lwReleaseView(LWView view) {
     return enter("lwReleaseView", [&](Call& call) {
-        auto object = std::static_pointer_cast<ViewObject>(releaseHandle(HandleKind::kView, view, "view"));
+        auto object =
+            std::static_pointer_cast<ViewObject>(releaseHandle(HandleKind::kView, view, "view"));
         if (object) call.dispose(std::move(object));
     });
 }

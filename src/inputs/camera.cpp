@@ -1,10 +1,12 @@
 // With P the projection, V the view matrix, and q = P^-1 (x, y, z, 1) for clip coordinates x, y, z:
-//  - the view-space point is q.xyz / q.w, and q.w = 1 / (clip w) is positive exactly in front of the eye;
+//  - the view-space point is q.xyz / q.w, and q.w = 1 / (clip w) is positive exactly in front of the
+//  eye;
 //  - q is linear in x, y and z, hence in the pixel's coordinates and the depth;
 //  - the eye of a perspective camera is the point that projects to x = y = w = 0: P^-1 (0, 0, 1, 0).
 //    n = q.xyz - eye q.w does not depend on z, so it is the direction of the pixel's ray. Row 3 of P, r,
 //    gives clip w: r.q = 1 and r.(eye, 1) = 0, so r.xyz.n = 1: n |r.xyz| has length 1 along the axis
-//    r.xyz / |r.xyz|. Nothing here depends on handedness, a reversed depth range or an off-centre frustum.
+//    r.xyz / |r.xyz|. Nothing here depends on handedness, a reversed depth range or an off-centre
+//    frustum.
 //  - an orthographic camera (r.xyz = 0) has parallel rays along P^-1 (0, 0, 1, 0).
 #include "inputs/camera.h"
 
@@ -26,8 +28,8 @@ glm::dmat4 fromRowMajor(const float* m, const std::string& name) {
         for (int column = 0; column < 4; ++column) {
             const float value = m[4 * row + column];
             if (!std::isfinite(value))
-                fail(LW_ERROR_INVALID_ARGUMENT, name, ": expected finite numbers, got ", value, " in row ", row,
-                     ", column ", column);
+                fail(LW_ERROR_INVALID_ARGUMENT, name, ": expected finite numbers, got ", value,
+                     " in row ", row, ", column ", column);
             result[column][row] = double(value);
         }
     return result;
@@ -65,13 +67,14 @@ ImageLinear<T> overImage(const T& perX, const T& perY, const T& constant, double
 
 }  // namespace
 
-Camera::Camera(const LWCamera& camera, std::uint32_t width, std::uint32_t height, const std::string& name)
+Camera::Camera(const LWCamera& camera, std::uint32_t width, std::uint32_t height,
+               const std::string& name)
     : width_(width), height_(height), name_(name) {
     const glm::dmat4 view = fromRowMajor(camera.view, name + ".view");
     const glm::dmat4 projection = fromRowMajor(camera.projection, name + ".projection");
     if (view[0][3] != 0.0 || view[1][3] != 0.0 || view[2][3] != 0.0 || view[3][3] != 1.0)
-        fail(LW_ERROR_INVALID_ARGUMENT, name, ".view: expected the last row 0 0 0 1, got ", view[0][3], " ",
-             view[1][3], " ", view[2][3], " ", view[3][3]);
+        fail(LW_ERROR_INVALID_ARGUMENT, name, ".view: expected the last row 0 0 0 1, got ", view[0][3],
+             " ", view[1][3], " ", view[2][3], " ", view[3][3]);
     const glm::dmat4 viewInverse = invert(view, name + ".view");
     clipToView_ = invert(projection, name + ".projection");
     worldToClip_ = projection * view;
@@ -83,7 +86,8 @@ Camera::Camera(const LWCamera& camera, std::uint32_t width, std::uint32_t height
     const glm::dvec4 alongZ = clipToView_[2];
     if (perspective_) {
         if (alongZ.w == 0.0)
-            fail(LW_ERROR_INVALID_ARGUMENT, name, ".projection: expected perspective or orthographic, got neither");
+            fail(LW_ERROR_INVALID_ARGUMENT, name,
+                 ".projection: expected perspective or orthographic, got neither");
         const glm::dvec3 eyeView = glm::dvec3(alongZ) / alongZ.w;
         eye_ = origin_ + viewToWorld_ * eyeView;
         // Distances are the world's: the axis is a plane's normal, carried over by the transpose of V.
@@ -98,7 +102,8 @@ Camera::Camera(const LWCamera& camera, std::uint32_t width, std::uint32_t height
         eye_ = origin_;
         const double w = clipToView_[3].w;
         if (!(w > 0.0))
-            fail(LW_ERROR_INVALID_ARGUMENT, name, ".projection: expected a positive clip w, got ", 1.0 / w);
+            fail(LW_ERROR_INVALID_ARGUMENT, name, ".projection: expected a positive clip w, got ",
+                 1.0 / w);
         const glm::dvec3 along = viewToWorld_ * glm::dvec3(alongZ);
         axis_ = glm::normalize(along);
         // The side on which the visible volume lies; clip z = 1/2 is inside it in every convention.
@@ -138,13 +143,14 @@ LwUnprojection Camera::unprojection(LWDepthKind kind) const {
     if (distance && perspective_) {
         result.mode = kind == LW_DEPTH_AXIAL ? LW_UNPROJECT_AXIAL : LW_UNPROJECT_RADIAL;
     } else if (distance) {
-        // Parallel rays: distance along the ray from the plane through the origin of view space, for both
-        // kinds. Which way is forward must be plain from the visible volume.
+        // Parallel rays: distance along the ray from the plane through the origin of view space, for
+        // both kinds. Which way is forward must be plain from the visible volume.
         const glm::dvec3 middle = viewToWorld_ * glm::dvec3(clipToView_[3] + 0.5 * clipToView_[2]);
         const double extent = glm::length(viewToWorld_ * glm::dvec3(clipToView_[2]));
         if (!(glm::dot(middle, axis_) > 1e-6 * extent))
             fail(LW_ERROR_INVALID_ARGUMENT, name_,
-                 ".projection: expected a visible volume in front of the camera for depth as a distance, got an "
+                 ".projection: expected a visible volume in front of the camera for depth as a "
+                 "distance, got an "
                  "orthographic volume around it");
         perDepth = axis_;
     } else {
@@ -155,8 +161,8 @@ LwUnprojection Camera::unprojection(LWDepthKind kind) const {
         perDepth = column(2) * scale;
         wPerDepth = clipToView_[2].w * scale;
         xyz = overImage(column(0), column(1), column(3) + column(2) * shift, width_, height_);
-        w = overImage(clipToView_[0].w, clipToView_[1].w, clipToView_[3].w + clipToView_[2].w * shift, width_,
-                      height_);
+        w = overImage(clipToView_[0].w, clipToView_[1].w, clipToView_[3].w + clipToView_[2].w * shift,
+                      width_, height_);
     }
     result.x = float4(xyz.perI.x, xyz.perJ.x, perDepth.x, xyz.constant.x);
     result.y = float4(xyz.perI.y, xyz.perJ.y, perDepth.y, xyz.constant.y);

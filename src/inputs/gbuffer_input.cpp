@@ -1,6 +1,6 @@
-// Checks a G-buffer, then opens each image: in place, or unpacked into planes of ours. With depth instead
-// of positions the normals are always copied too: a pixel whose depth is background must end up with a
-// zero normal, and the host's own normals are not ours to change.
+// Checks a G-buffer, then opens each image: in place, or unpacked into planes of ours. With depth
+// instead of positions the normals are always copied too: a pixel whose depth is background must end up
+// with a zero normal, and the host's own normals are not ours to change.
 #include "inputs/gbuffer_input.h"
 
 #include <array>
@@ -15,7 +15,16 @@
 namespace lightwell {
 namespace {
 
-enum Field { kPosition, kNormal, kAlbedo, kDirectRadiance, kRoughness, kMotion, kReceiveMask, kFieldCount };
+enum Field {
+    kPosition,
+    kNormal,
+    kAlbedo,
+    kDirectRadiance,
+    kRoughness,
+    kMotion,
+    kReceiveMask,
+    kFieldCount
+};
 
 struct FieldFacts {
     const char* name;
@@ -39,12 +48,14 @@ constexpr FieldFacts kFields[kFieldCount] = {
      "gbuffer_input.unpack_roughness"},
     {"motion", &kMotionRole, &LWGBuffer::motion, &GBufferInput::motion, kNeedsMotion, false,
      "gbuffer_input.unpack_motion"},
-    {"receiveMask", &kMaskRole, &LWGBuffer::receiveMask, &GBufferInput::receiveMask, kNeedsReceiveMask, false,
-     "gbuffer_input.unpack_receive_mask"},
+    {"receiveMask", &kMaskRole, &LWGBuffer::receiveMask, &GBufferInput::receiveMask, kNeedsReceiveMask,
+     false, "gbuffer_input.unpack_receive_mask"},
 };
 constexpr char kUploadPass[] = "gbuffer_input.upload";
 
-bool wanted(const FieldFacts& field, std::uint32_t needs) { return field.need == 0 || (needs & field.need); }
+bool wanted(const FieldFacts& field, std::uint32_t needs) {
+    return field.need == 0 || (needs & field.need);
+}
 
 // Everything that can be wrong with a G-buffer, before anything is enqueued.
 struct CheckedGBuffer {
@@ -53,28 +64,32 @@ struct CheckedGBuffer {
     LwUnprojection unprojection{};
 };
 
-CheckedGBuffer checkGBuffer(Device& device, const View& view, const LWGBuffer& gbuffer, std::uint32_t needs,
-                            const std::string& name) {
+CheckedGBuffer checkGBuffer(Device& device, const View& view, const LWGBuffer& gbuffer,
+                            std::uint32_t needs, const std::string& name) {
     CheckedGBuffer checked;
     const bool fromDepth = !imageAbsent(gbuffer.depth);
     if (fromDepth == !imageAbsent(gbuffer.position))
-        fail(LW_ERROR_INVALID_ARGUMENT, name, ": expected position or depth, got ", fromDepth ? "both" : "neither");
+        fail(LW_ERROR_INVALID_ARGUMENT, name, ": expected position or depth, got ",
+             fromDepth ? "both" : "neither");
     for (int f = 0; f < kFieldCount; ++f) {
         const FieldFacts& field = kFields[f];
         const LWImage& image = gbuffer.*field.image;
         if (!wanted(field, needs) || (f == kPosition && fromDepth)) continue;
         if (imageAbsent(image)) {
             if (!field.required) continue;
-            fail(LW_ERROR_INVALID_ARGUMENT, name, ".", field.name, ": expected an image, which this technique needs, got none");
+            fail(LW_ERROR_INVALID_ARGUMENT, name, ".", field.name,
+                 ": expected an image, which this technique needs, got none");
         }
         checked.images[std::size_t(f)] =
             checkImage(device, image, *field.role, view.width, view.height, name + "." + field.name);
     }
     if (!fromDepth) return checked;
-    checked.depth = checkImage(device, gbuffer.depth, kDepthRole, view.width, view.height, name + ".depth");
+    checked.depth =
+        checkImage(device, gbuffer.depth, kDepthRole, view.width, view.height, name + ".depth");
     const auto kind = static_cast<std::uint32_t>(gbuffer.depthKind);
     if (kind > LW_DEPTH_RADIAL)
-        fail(LW_ERROR_INVALID_ARGUMENT, name, ".depthKind: expected an LWDepthKind (0 .. 3), got ", kind);
+        fail(LW_ERROR_INVALID_ARGUMENT, name, ".depthKind: expected an LWDepthKind (0 .. 3), got ",
+             kind);
     const Camera camera(gbuffer.camera, view.width, view.height, name + ".camera");
     checked.unprojection = camera.unprojection(gbuffer.depthKind);
     return checked;
@@ -98,7 +113,8 @@ struct GBufferInput::Impl {
         }
         PlanarImage& image = own[field];
         if (!image)
-            image = PlanarImage(device, maxWidth, maxHeight, kFields[field].role->channels, kFields[field].name);
+            image = PlanarImage(device, maxWidth, maxHeight, kFields[field].role->channels,
+                                kFields[field].name);
         return image.planes(view.width, view.height);
     }
 };
@@ -108,8 +124,8 @@ GBufferInput::~GBufferInput() = default;
 GBufferInput::GBufferInput(GBufferInput&&) noexcept = default;
 GBufferInput& GBufferInput::operator=(GBufferInput&&) noexcept = default;
 
-void GBufferInput::import(Executor& executor, const View& view, const LWGBuffer& gbuffer, std::uint32_t needs,
-                          const char* name) {
+void GBufferInput::import(Executor& executor, const View& view, const LWGBuffer& gbuffer,
+                          std::uint32_t needs, const char* name) {
     Device& device = executor.device();
     const CheckedGBuffer checked = checkGBuffer(device, view, gbuffer, needs, name);
     for (int f = 0; f < kFieldCount; ++f) {
@@ -132,8 +148,8 @@ void GBufferInput::import(Executor& executor, const View& view, const LWGBuffer&
     impl_->depth = openForReading(executor, *checked.depth, kDepthRole, kUploadPass);
     position = impl_->ownPlanes(device, view, kPosition);
     normal = impl_->ownPlanes(device, view, kNormal);
-    unproject(executor, "gbuffer_input.unproject", impl_->depth, impl_->opened[kNormal], checked.unprojection, position,
-              normal);
+    unproject(executor, "gbuffer_input.unproject", impl_->depth, impl_->opened[kNormal],
+              checked.unprojection, position, normal);
     impl_->choices[kPosition] = "from depth";
     impl_->choices[kNormal] = "unpacked beside the depth, which may have no surface";
 }

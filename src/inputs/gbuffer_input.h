@@ -12,9 +12,14 @@
 namespace lightwell {
 
 // Which images a technique reads; others are neither checked nor touched. Position and normal always.
-// Albedo, direct radiance and roughness must then be given; motion and mask may be absent (empty planes).
+// Albedo, direct radiance and roughness must then be given; motion and mask may be absent (empty
+// planes).
 enum GBufferNeeds : std::uint32_t {
-    kNeedsAlbedo = 1, kNeedsDirectRadiance = 2, kNeedsRoughness = 4, kNeedsMotion = 8, kNeedsReceiveMask = 16
+    kNeedsAlbedo = 1,
+    kNeedsDirectRadiance = 2,
+    kNeedsRoughness = 4,
+    kNeedsMotion = 8,
+    kNeedsReceiveMask = 16
 };
 
 class GBufferInput {

@@ -11,22 +11,34 @@ constexpr char kProgram[] = "gbuffer_input/gbuffer_input";
 // What the report says about an image that is not used as it stands.
 const char* unpackedChoice(const LWImage& image) {
     switch (image.format) {
-        case LW_FORMAT_FLOAT1: return "float1, copied: its rows are not on 64-byte borders";
-        case LW_FORMAT_FLOAT2: return "float2, unpacked";
-        case LW_FORMAT_FLOAT3: return "float3, unpacked";
-        case LW_FORMAT_FLOAT4: return "float4, unpacked";
-        case LW_FORMAT_HALF4: return "half4, unpacked";
-        case LW_FORMAT_UNORM8X4: return "unorm8x4, unpacked";
-        case LW_FORMAT_UNORM8X4_SRGB: return "unorm8x4 sRGB, unpacked";
-        case LW_FORMAT_OCT16X2: return "octahedral, unpacked";
-        case LW_FORMAT_UINT8: return "uint8, unpacked";
-        default: return "planar, copied: its rows are not on 64-byte borders";
+        case LW_FORMAT_FLOAT1:
+            return "float1, copied: its rows are not on 64-byte borders";
+        case LW_FORMAT_FLOAT2:
+            return "float2, unpacked";
+        case LW_FORMAT_FLOAT3:
+            return "float3, unpacked";
+        case LW_FORMAT_FLOAT4:
+            return "float4, unpacked";
+        case LW_FORMAT_HALF4:
+            return "half4, unpacked";
+        case LW_FORMAT_UNORM8X4:
+            return "unorm8x4, unpacked";
+        case LW_FORMAT_UNORM8X4_SRGB:
+            return "unorm8x4 sRGB, unpacked";
+        case LW_FORMAT_OCT16X2:
+            return "octahedral, unpacked";
+        case LW_FORMAT_UINT8:
+            return "uint8, unpacked";
+        default:
+            return "planar, copied: its rows are not on 64-byte borders";
     }
 }
 
 }  // namespace
 
-Range rowGroup(const Device& device) { return {device.width() == 1 ? std::size_t(64) : std::size_t(16), 1}; }
+Range rowGroup(const Device& device) {
+    return {device.width() == 1 ? std::size_t(64) : std::size_t(16), 1};
+}
 
 Range rowGrid(const Device& device, std::uint32_t width, std::uint32_t height) {
     return {paddedWidth(width) / device.width(), height};
@@ -52,7 +64,8 @@ DeviceImage openForReading(Executor& executor, const CheckedImage& checked, cons
         planes = planes && checked.paddedEndByte <= result.memory.bytes();
         result.choice = "device memory, used in place";
     } else {
-        // The host's memory from its first byte on; with the last row's padding when it serves as planes.
+        // The host's memory from its first byte on; with the last row's padding when it serves as
+        // planes.
         const std::uint64_t end = planes ? checked.paddedEndByte : checked.endByte;
         const std::size_t bytes = std::size_t(end - checked.firstByte);
         const char* start = static_cast<const char*>(image.host) + checked.firstByte;
@@ -84,16 +97,17 @@ DeviceImage openForReading(Executor& executor, const CheckedImage& checked, cons
 void unpack(Executor& executor, const char* pass, const DeviceImage& image, const Planes& to) {
     Device& device = executor.device();
     Kernel& kernel = device.programs().kernel(kProgram, "gbuffer_input_unpack");
-    executor.run(pass, kernel, rowGrid(device, to.width, to.height), rowGroup(device), image.memory, image.pixels,
-                 cl_int(image.decode), to);
+    executor.run(pass, kernel, rowGrid(device, to.width, to.height), rowGroup(device), image.memory,
+                 image.pixels, cl_int(image.decode), to);
 }
 
 void unproject(Executor& executor, const char* pass, const DeviceImage& depth, const DeviceImage& normal,
                const LwUnprojection& unprojection, const Planes& position, const Planes& normals) {
     Device& device = executor.device();
     Kernel& kernel = device.programs().kernel(kProgram, "gbuffer_input_unproject");
-    executor.run(pass, kernel, rowGrid(device, position.width, position.height), rowGroup(device), depth.memory,
-                 depth.pixels, normal.memory, normal.pixels, unprojection, position, normals);
+    executor.run(pass, kernel, rowGrid(device, position.width, position.height), rowGroup(device),
+                 depth.memory, depth.pixels, normal.memory, normal.pixels, unprojection, position,
+                 normals);
 }
 
 }  // namespace lightwell

@@ -18,9 +18,9 @@ Range rowGrid(const Device& device, std::uint32_t width, std::uint32_t height);
 // A host's image in device memory, as bytes; as planes too where its layout allows.
 struct DeviceImage {
     Buffer memory;
-    LwPixels pixels{};         // offsets from the start of `memory`
-    Planes planes;             // set when usable without unpacking
-    const char* choice = "";   // for the report: what was done and why
+    LwPixels pixels{};        // offsets from the start of `memory`
+    Planes planes;            // set when usable without unpacking
+    const char* choice = "";  // for the report: what was done and why
     int decode = LW_ROLE_VALUE;
 };
 

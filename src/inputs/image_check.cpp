@@ -46,7 +46,8 @@ constexpr unsigned kFormatCount = sizeof kFormats / sizeof kFormats[0];
 std::string listFormats(FormatSet set) {
     std::string list;
     for (unsigned format = 0; format < kFormatCount; ++format)
-        if (set & (1u << format)) list += (list.empty() ? "" : ", ") + std::string(kFormats[format].name);
+        if (set & (1u << format))
+            list += (list.empty() ? "" : ", ") + std::string(kFormats[format].name);
     return list;
 }
 
@@ -55,10 +56,12 @@ void checkFormat(const LWImage& image, const ImageRole& role, const std::string&
     const auto format = static_cast<std::uint32_t>(image.format);
     if (format < kFormatCount && (role.formats & (1u << format))) return;
     const std::string got = format < kFormatCount ? kFormats[format].name : std::to_string(format);
-    fail(LW_ERROR_INVALID_ARGUMENT, name, ".format: expected one of ", listFormats(role.formats), ", got ", got);
+    fail(LW_ERROR_INVALID_ARGUMENT, name, ".format: expected one of ", listFormats(role.formats),
+         ", got ", got);
 }
 
-void checkAligned(std::int64_t value, std::uint32_t alignment, const std::string& name, const char* field) {
+void checkAligned(std::int64_t value, std::uint32_t alignment, const std::string& name,
+                  const char* field) {
     if (value % std::int64_t(alignment) != 0)
         fail(LW_ERROR_INVALID_ARGUMENT, name, ".", field, ": expected a multiple of ", alignment,
              " bytes for this format, got ", value);
@@ -79,25 +82,27 @@ LwPixels resolveLayout(const LWImage& image, const ImageRole& role, const std::s
              image.byteOffset);
     LwPixels pixels{};
     pixels.byteOffset = std::int64_t(image.byteOffset);
-    pixels.bytePixelStride = image.bytePixelStride ? image.bytePixelStride : std::int64_t(facts.pixelBytes);
+    pixels.bytePixelStride =
+        image.bytePixelStride ? image.bytePixelStride : std::int64_t(facts.pixelBytes);
     checkStride(pixels.bytePixelStride, facts.pixelBytes, name, "bytePixelStride");
     const std::int64_t rowBytes = (width - 1) * pixels.bytePixelStride + facts.pixelBytes;
     pixels.byteRowStride = image.byteRowStride ? image.byteRowStride : width * pixels.bytePixelStride;
     if (pixels.byteRowStride < -kLargestStride)
-        fail(LW_ERROR_INVALID_ARGUMENT, name, ".byteRowStride: expected at least ", -kLargestStride, ", got ",
-             pixels.byteRowStride);
-    const std::int64_t rowStride = pixels.byteRowStride < 0 ? -pixels.byteRowStride : pixels.byteRowStride;
+        fail(LW_ERROR_INVALID_ARGUMENT, name, ".byteRowStride: expected at least ", -kLargestStride,
+             ", got ", pixels.byteRowStride);
+    const std::int64_t rowStride =
+        pixels.byteRowStride < 0 ? -pixels.byteRowStride : pixels.byteRowStride;
     if (height > 1 && rowStride < rowBytes)
-        fail(LW_ERROR_INVALID_ARGUMENT, name, ".byteRowStride: expected a magnitude of at least ", rowBytes,
-             " bytes for ", width, " pixels, got ", pixels.byteRowStride);
+        fail(LW_ERROR_INVALID_ARGUMENT, name, ".byteRowStride: expected a magnitude of at least ",
+             rowBytes, " bytes for ", width, " pixels, got ", pixels.byteRowStride);
     checkStride(rowStride, 1, name, "byteRowStride");
     if (facts.planes > 1) {
         pixels.bytePlaneStride = image.bytePlaneStride ? image.bytePlaneStride : height * rowStride;
         // Planes one after the other, or the planes' rows side by side.
         const std::int64_t planeBytes = (height - 1) * rowStride + rowBytes;
-        const bool sideBySide = pixels.bytePlaneStride >= rowBytes &&
-                                pixels.bytePlaneStride <= kLargestStride &&
-                                (std::int64_t(facts.planes) - 1) * pixels.bytePlaneStride + rowBytes <= rowStride;
+        const bool sideBySide =
+            pixels.bytePlaneStride >= rowBytes && pixels.bytePlaneStride <= kLargestStride &&
+            (std::int64_t(facts.planes) - 1) * pixels.bytePlaneStride + rowBytes <= rowStride;
         if (!sideBySide) checkStride(pixels.bytePlaneStride, planeBytes, name, "bytePlaneStride");
     } else {
         pixels.bytePlaneStride = facts.elementBytes;  // from channel to channel
@@ -113,7 +118,8 @@ LwPixels resolveLayout(const LWImage& image, const ImageRole& role, const std::s
     return pixels;
 }
 
-void checkMemoryObject(Device& device, const CheckedImage& checked, bool written, const std::string& name) {
+void checkMemoryObject(Device& device, const CheckedImage& checked, bool written,
+                       const std::string& name) {
     cl_mem memory = static_cast<cl_mem>(checked.image.clMem);
     cl_context context = nullptr;
     cl_mem_object_type type = 0;
@@ -125,9 +131,11 @@ void checkMemoryObject(Device& device, const CheckedImage& checked, bool written
         clGetMemObjectInfo(memory, CL_MEM_SIZE, sizeof bytes, &bytes, nullptr) != CL_SUCCESS)
         fail(LW_ERROR_INVALID_ARGUMENT, name, ".clMem: expected a cl_mem, got something OpenCL refuses");
     if (context != device.context())
-        fail(LW_ERROR_INVALID_ARGUMENT, name, ".clMem: expected memory of the device's cl_context, got another's");
+        fail(LW_ERROR_INVALID_ARGUMENT, name,
+             ".clMem: expected memory of the device's cl_context, got another's");
     if (type != CL_MEM_OBJECT_BUFFER)
-        fail(LW_ERROR_INVALID_ARGUMENT, name, ".clMem: expected a buffer, got an object of OpenCL type ", type);
+        fail(LW_ERROR_INVALID_ARGUMENT, name, ".clMem: expected a buffer, got an object of OpenCL type ",
+             type);
     if (flags & (written ? CL_MEM_READ_ONLY : CL_MEM_WRITE_ONLY))
         fail(LW_ERROR_INVALID_ARGUMENT, name, ".clMem: expected memory that kernels may ",
              written ? "write, got CL_MEM_READ_ONLY" : "read, got CL_MEM_WRITE_ONLY");
@@ -140,8 +148,8 @@ void checkHostMemory(Device& device, const CheckedImage& checked, const std::str
     const auto address = reinterpret_cast<std::uintptr_t>(checked.image.host);
     const std::uint32_t alignment = kFormats[checked.image.format].elementBytes;
     if (address % alignment != 0)
-        fail(LW_ERROR_INVALID_ARGUMENT, name, ".host: expected an address that is a multiple of ", alignment,
-             " bytes for this format, got ", checked.image.host);
+        fail(LW_ERROR_INVALID_ARGUMENT, name, ".host: expected an address that is a multiple of ",
+             alignment, " bytes for this format, got ", checked.image.host);
     const std::uint64_t span = checked.endByte - checked.firstByte;
     if (checked.endByte > UINTPTR_MAX - address || span > device.maxAllocation())
         fail(LW_ERROR_INVALID_ARGUMENT, name, ": expected offsets and strides that span at most ",
@@ -150,8 +158,9 @@ void checkHostMemory(Device& device, const CheckedImage& checked, const std::str
     const char* memory = static_cast<const char*>(checked.image.host);
     for (const std::uint64_t byte : {checked.firstByte, checked.endByte - 1})
         if (!maybeMapped(memory + byte))
-            fail(LW_ERROR_INVALID_ARGUMENT, name, ": expected offsets and strides inside the memory at host, got byte ",
-                 byte, " which this process does not have");
+            fail(LW_ERROR_INVALID_ARGUMENT, name,
+                 ": expected offsets and strides inside the memory at host, got byte ", byte,
+                 " which this process does not have");
 }
 
 }  // namespace
@@ -159,8 +168,10 @@ void checkHostMemory(Device& device, const CheckedImage& checked, const std::str
 #define LW_COLOUR_FLOATS LW_FORMAT_FLOAT3, LW_FORMAT_FLOAT4, LW_FORMAT_HALF4, LW_FORMAT_PLANAR_FLOAT3
 const ImageRole kPositionRole{3, formatSet({LW_COLOUR_FLOATS})};
 const ImageRole kDepthRole{1, formatSet({LW_FORMAT_FLOAT1})};
-const ImageRole kNormalRole{3, formatSet({LW_COLOUR_FLOATS, LW_FORMAT_UNORM8X4, LW_FORMAT_OCT16X2}), LW_ROLE_NORMAL};
-const ImageRole kAlbedoRole{3, formatSet({LW_COLOUR_FLOATS, LW_FORMAT_UNORM8X4, LW_FORMAT_UNORM8X4_SRGB})};
+const ImageRole kNormalRole{3, formatSet({LW_COLOUR_FLOATS, LW_FORMAT_UNORM8X4, LW_FORMAT_OCT16X2}),
+                            LW_ROLE_NORMAL};
+const ImageRole kAlbedoRole{3,
+                            formatSet({LW_COLOUR_FLOATS, LW_FORMAT_UNORM8X4, LW_FORMAT_UNORM8X4_SRGB})};
 const ImageRole kRadianceRole{3, formatSet({LW_COLOUR_FLOATS})};
 const ImageRole kScalarRole{1, formatSet({LW_FORMAT_FLOAT1})};
 const ImageRole kMotionRole{2, formatSet({LW_FORMAT_FLOAT2, LW_FORMAT_PLANAR_FLOAT2})};
@@ -184,8 +195,8 @@ CheckedImage checkImage(Device& device, const LWImage& image, const ImageRole& r
              image.host ? "both" : "neither");
     checkFormat(image, role, name);
     if (image.width != width || image.height != height)
-        fail(LW_ERROR_INVALID_ARGUMENT, name, ": expected ", width, " x ", height, " pixels, got ", image.width,
-             " x ", image.height);
+        fail(LW_ERROR_INVALID_ARGUMENT, name, ": expected ", width, " x ", height, " pixels, got ",
+             image.width, " x ", image.height);
 
     CheckedImage checked{};
     checked.image = image;

@@ -14,7 +14,9 @@ namespace lightwell {
 class Device;
 
 using FormatSet = std::uint32_t;  // bit per LWFormat
-constexpr FormatSet formatBit(LWFormat format) { return 1u << unsigned(format); }
+constexpr FormatSet formatBit(LWFormat format) {
+    return 1u << unsigned(format);
+}
 constexpr FormatSet formatSet(std::initializer_list<LWFormat> formats) {
     FormatSet set = 0;
     for (LWFormat format : formats) set |= formatBit(format);
@@ -42,8 +44,8 @@ struct CheckedImage {
     LwPixels pixels;
     std::uint64_t firstByte, endByte;  // from the start of memory
     std::uint32_t pixelBytes, planes;  // bytes of a pixel in one plane; planes of the format
-    // Rows of whole groups of 16 float32 on 64-byte borders, planes apart: usable as planes as it stands,
-    // with the padding of the last row in `paddedEndByte`.
+    // Rows of whole groups of 16 float32 on 64-byte borders, planes apart: usable as planes as it
+    // stands, with the padding of the last row in `paddedEndByte`.
     bool planesLayout;
     std::uint64_t paddedEndByte;
 };

@@ -22,13 +22,16 @@ void readRows(Executor& executor, const Buffer& from, const CheckedImage& checke
     const bool gapless = pixels.byteRowStride == rowBytes &&
                          (planes == 1 || pixels.bytePlaneStride == rowBytes * pixels.height);
     if (gapless) {
-        executor.read(kReadPass, from.get(), 0, std::size_t(rowBytes * pixels.height * planes), host + first);
+        executor.read(kReadPass, from.get(), 0, std::size_t(rowBytes * pixels.height * planes),
+                      host + first);
         return;
     }
     for (std::int64_t plane = 0; plane < planes; ++plane)
         for (std::int64_t y = 0; y < pixels.height; ++y) {
-            const std::int64_t at = pixels.byteOffset + y * pixels.byteRowStride + plane * pixels.bytePlaneStride;
-            executor.read(kReadPass, from.get(), std::size_t(at - first), std::size_t(rowBytes), host + at);
+            const std::int64_t at =
+                pixels.byteOffset + y * pixels.byteRowStride + plane * pixels.bytePlaneStride;
+            executor.read(kReadPass, from.get(), std::size_t(at - first), std::size_t(rowBytes),
+                          host + at);
         }
 }
 
@@ -53,8 +56,8 @@ OutputTarget::~OutputTarget() = default;
 OutputTarget::OutputTarget(OutputTarget&&) noexcept = default;
 OutputTarget& OutputTarget::operator=(OutputTarget&&) noexcept = default;
 
-Planes OutputTarget::begin(Executor& executor, const View& view, const LWImage& image, std::uint32_t planeCount,
-                           const char* name) {
+Planes OutputTarget::begin(Executor& executor, const View& view, const LWImage& image,
+                           std::uint32_t planeCount, const char* name) {
     Impl& impl = *impl_;
     impl.mode = Impl::Mode::kNone;
     impl.name = name;
@@ -72,7 +75,8 @@ Planes OutputTarget::begin(Executor& executor, const View& view, const LWImage& 
     } else {
         planes = planes && !staged;
         char* start = static_cast<char*>(const_cast<void*>(image.host)) + checked.firstByte;
-        const std::size_t bytes = std::size_t((planes ? checked.paddedEndByte : checked.endByte) - checked.firstByte);
+        const std::size_t bytes =
+            std::size_t((planes ? checked.paddedEndByte : checked.endByte) - checked.firstByte);
         target = staged ? Buffer(device, bytes, name) : Buffer::overHost(device, start, bytes, true);
         const bool pixelGaps = checked.pixels.bytePixelStride != checked.pixelBytes;
         if (staged && pixelGaps) executor.write("output.upload", target, 0, bytes, start);
@@ -104,8 +108,9 @@ Planes OutputTarget::begin(Executor& executor, const View& view, const LWImage& 
     impl.hostMemory = image.host != nullptr;
     impl.staged = staged;
     impl.checked = checked;
-    impl.choice = planes ? "planar, written in place"
-                         : staged ? "packed on the device, then copied" : "packed into the host's format";
+    impl.choice = planes   ? "planar, written in place"
+                  : staged ? "packed on the device, then copied"
+                           : "packed into the host's format";
     impl.mode = planes ? Impl::Mode::kInPlace : Impl::Mode::kPack;
     return result;
 }
@@ -118,8 +123,8 @@ void OutputTarget::end(Executor& executor) {
         LwPixels pixels = impl.checked.pixels;
         if (impl.hostMemory) pixels.byteOffset -= std::int64_t(impl.checked.firstByte);
         Kernel& kernel = device.programs().kernel("output/output", "output_pack");
-        executor.run("output.pack", kernel, rowGrid(device, impl.planes.width, impl.planes.height), rowGroup(device),
-                     impl.planes, impl.target, pixels);
+        executor.run("output.pack", kernel, rowGrid(device, impl.planes.width, impl.planes.height),
+                     rowGroup(device), impl.planes, impl.target, pixels);
     }
     if (impl.staged)
         readRows(executor, impl.target, impl.checked);
@@ -131,7 +136,9 @@ void OutputTarget::report(Report& report) const {
     if (impl_->mode != Impl::Mode::kNone) report.choices.push_back({impl_->name, impl_->choice});
 }
 
-std::uint64_t OutputTarget::bytes() const { return impl_->own.bytes(); }
+std::uint64_t OutputTarget::bytes() const {
+    return impl_->own.bytes();
+}
 
 std::uint64_t OutputTarget::estimateBytes(const LWViewDesc& view, std::uint32_t planeCount) {
     return std::uint64_t(planeCount) * sizeof(float) * paddedWidth(view.maxWidth) * view.maxHeight;

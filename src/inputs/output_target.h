@@ -19,7 +19,8 @@ public:
 
     // The planes that kernels write for `image` (1 or 3): the host's own memory where its layout allows,
     // else an image of ours. Empty when the format is LW_FORMAT_NONE. `name`: "output.irradiance" ...
-    Planes begin(Executor& executor, const View& view, const LWImage& image, std::uint32_t planeCount, const char* name);
+    Planes begin(Executor& executor, const View& view, const LWImage& image, std::uint32_t planeCount,
+                 const char* name);
     // Packs (pass "output.pack"), copies or publishes what kernels wrote since begin().
     void end(Executor& executor);
 

@@ -10,8 +10,9 @@ void readPlanes(Device& device, const Planes& planes, float* pixels) {
     for (std::uint32_t plane = 0; plane < planes.count; ++plane)
         for (std::uint32_t y = 0; y < planes.height; ++y) {
             const std::int64_t at = planes.offset + plane * planes.planeStride + y * planes.rowStride;
-            checkCl(clEnqueueReadBuffer(device.queue(), planes.memory, CL_FALSE, std::size_t(at) * sizeof(float), rowBytes,
-                                        pixels, 0, nullptr, nullptr),
+            checkCl(clEnqueueReadBuffer(device.queue(), planes.memory, CL_FALSE,
+                                        std::size_t(at) * sizeof(float), rowBytes, pixels, 0, nullptr,
+                                        nullptr),
                     "clEnqueueReadBuffer");
             pixels += planes.width;
         }

@@ -19,8 +19,8 @@ namespace {
 constexpr std::uint32_t kMaxSide = 16384;
 // Indices of floats in the texels' planes are 32-bit in kernels.
 constexpr std::uint64_t kMaxTexels = 0x7fffffff / LW_RSM_PLANES / 16 * 16;
-// Sine of the angle by which the axes of one directional light may differ: rounding of float matrices, no
-// more. Beyond it areas and the cascades' footprints no longer belong to one light.
+// Sine of the angle by which the axes of one directional light may differ: rounding of float matrices,
+// no more. Beyond it areas and the cascades' footprints no longer belong to one light.
 constexpr double kMaxAxisSine = 1e-2;
 constexpr std::uint32_t kPointFaces = 6;
 
@@ -49,17 +49,18 @@ lw_float4 float4(double x, double y, double z, double w) {
 CheckedRsm checkRsm(Device& device, const LWRsm& rsm, bool perspective, const std::string& name) {
     const bool fromDepth = !imageAbsent(rsm.depth);
     if (fromDepth == !imageAbsent(rsm.position))
-        fail(LW_ERROR_INVALID_ARGUMENT, name, ": expected position or depth, got ", fromDepth ? "both" : "neither");
+        fail(LW_ERROR_INVALID_ARGUMENT, name, ": expected position or depth, got ",
+             fromDepth ? "both" : "neither");
     const LWImage& first = fromDepth ? rsm.depth : rsm.position;
     const std::uint32_t width = first.width, height = first.height;
     if (width == 0 || height == 0 || width > kMaxSide || height > kMaxSide)
-        fail(LW_ERROR_INVALID_ARGUMENT, name, fromDepth ? ".depth" : ".position", ": expected 1 .. ", kMaxSide,
-             " pixels a side, got ", width, " x ", height);
+        fail(LW_ERROR_INVALID_ARGUMENT, name, fromDepth ? ".depth" : ".position", ": expected 1 .. ",
+             kMaxSide, " pixels a side, got ", width, " x ", height);
     const auto kind = static_cast<std::uint32_t>(rsm.depthKind);
     if (fromDepth && kind > LW_DEPTH_RADIAL)
-        fail(LW_ERROR_INVALID_ARGUMENT, name, ".depthKind: expected an LWDepthKind (0 .. 3), got ", kind);
-    CheckedRsm checked{std::nullopt,
-                       std::nullopt,
+        fail(LW_ERROR_INVALID_ARGUMENT, name, ".depthKind: expected an LWDepthKind (0 .. 3), got ",
+             kind);
+    CheckedRsm checked{std::nullopt, std::nullopt,
                        checkImage(device, rsm.normal, kNormalRole, width, height, name + ".normal"),
                        checkImage(device, rsm.flux, kRadianceRole, width, height, name + ".flux"),
                        Camera(rsm.camera, width, height, name + ".camera")};
@@ -71,7 +72,8 @@ CheckedRsm checkRsm(Device& device, const LWRsm& rsm, bool perspective, const st
         checked.depth = checkImage(device, rsm.depth, kDepthRole, width, height, name + ".depth");
         checked.unprojection = checked.camera.unprojection(rsm.depthKind);
     } else {
-        checked.position = checkImage(device, rsm.position, kPositionRole, width, height, name + ".position");
+        checked.position =
+            checkImage(device, rsm.position, kPositionRole, width, height, name + ".position");
     }
     LwRsmSpan& span = checked.span;
     span.width = std::int32_t(width);
@@ -95,25 +97,29 @@ void checkLight(const LWLight& light, const std::string& name) {
                                : light.kind == LW_LIGHT_POINT     ? kPointFaces
                                                                   : 1;
     if (light.rsmCount > most)
-        fail(LW_ERROR_INVALID_ARGUMENT, name, ".rsmCount: expected at most ", most, " for this kind of light, got ",
-             light.rsmCount);
+        fail(LW_ERROR_INVALID_ARGUMENT, name, ".rsmCount: expected at most ", most,
+             " for this kind of light, got ", light.rsmCount);
 }
 
 // The cascades of one directional light: parallel, finest first; each learns where the finer ones lie.
-void nestCascades(const LWLight& light, std::vector<CheckedRsm>& rsms, std::size_t first, const std::string& name) {
+void nestCascades(const LWLight& light, std::vector<CheckedRsm>& rsms, std::size_t first,
+                  const std::string& name) {
     glm::dvec3 direction(light.direction[0], light.direction[1], light.direction[2]);
     const double length = glm::length(direction);
     for (std::size_t k = first; k < rsms.size(); ++k) {
         const Camera& camera = rsms[k].camera;
         const std::string rsmName = name + ".rsms[" + std::to_string(k - first) + "]";
-        if (length > 0.0 && !(glm::length(glm::cross(direction / length, camera.axis())) <= kMaxAxisSine))
-            fail(LW_ERROR_INVALID_ARGUMENT, rsmName, ".camera.view: expected a camera that looks along ", name,
-                 ".direction, got one at an angle to it");
+        if (length > 0.0 &&
+            !(glm::length(glm::cross(direction / length, camera.axis())) <= kMaxAxisSine))
+            fail(LW_ERROR_INVALID_ARGUMENT, rsmName, ".camera.view: expected a camera that looks along ",
+                 name, ".direction, got one at an angle to it");
         for (std::size_t finer = first; finer < k; ++finer) {
             if (!(glm::length(glm::cross(rsms[finer].camera.axis(), camera.axis())) <= kMaxAxisSine))
-                fail(LW_ERROR_INVALID_ARGUMENT, rsmName, ".camera.view: expected the axis of the light's other cascades, got another");
+                fail(LW_ERROR_INVALID_ARGUMENT, rsmName,
+                     ".camera.view: expected the axis of the light's other cascades, got another");
             if (rsms[finer].span.texelArea > rsms[k].span.texelArea * 1.0001f)
-                fail(LW_ERROR_INVALID_ARGUMENT, name, ".rsms: expected the finest cascade first, got texels of ",
+                fail(LW_ERROR_INVALID_ARGUMENT, name,
+                     ".rsms: expected the finest cascade first, got texels of ",
                      rsms[finer].span.texelArea, " before ", rsms[k].span.texelArea, " square units");
             ImageLinear<double> x, y;
             rsms[finer].camera.clipOf(camera, x, y);
@@ -135,7 +141,8 @@ std::vector<CheckedRsm> checkLights(Device& device, const LWFrame& frame, std::v
         const std::size_t first = rsms.size();
         const bool perspective = light.kind != LW_LIGHT_DIRECTIONAL;
         for (std::uint32_t r = 0; r < light.rsmCount; ++r) {
-            rsms.push_back(checkRsm(device, light.rsms[r], perspective, name + ".rsms[" + std::to_string(r) + "]"));
+            rsms.push_back(
+                checkRsm(device, light.rsms[r], perspective, name + ".rsms[" + std::to_string(r) + "]"));
             LwRsmSpan& span = rsms.back().span;
             span.firstTexel = std::int32_t(texels);
             span.firstRow = std::int32_t(rows);
@@ -170,17 +177,19 @@ struct RsmInput::Impl {
             part.rowStride = paddedWidth(part.width);
             return part;
         };
-        const auto open = [&](const CheckedImage& image, const ImageRole& role, const char* what) -> DeviceImage& {
+        const auto open = [&](const CheckedImage& image, const ImageRole& role,
+                              const char* what) -> DeviceImage& {
             opened.push_back(openForReading(executor, image, role, "rsm_input.upload"));
-            choices.emplace(what, opened.back().planes ? "planar, copied among the texels" : opened.back().choice);
+            choices.emplace(
+                what, opened.back().planes ? "planar, copied among the texels" : opened.back().choice);
             return opened.back();
         };
         opened.reserve(opened.size() + 3);  // references stay valid
         DeviceImage& normal = open(rsm.normal, kNormalRole, "rsm_normal");
         if (rsm.depth) {
             DeviceImage& depth = open(*rsm.depth, kDepthRole, "rsm_depth");
-            unproject(executor, "rsm_input.unproject", depth, normal, rsm.unprojection, target(kPositionX),
-                      target(kNormalX));
+            unproject(executor, "rsm_input.unproject", depth, normal, rsm.unprojection,
+                      target(kPositionX), target(kNormalX));
         } else {
             unpack(executor, "rsm_input.unpack", open(*rsm.position, kPositionRole, "rsm_position"),
                    target(kPositionX));
@@ -205,7 +214,8 @@ void RsmInput::import(Executor& executor, const LWFrame& frame) {
         newTexels += span.width * span.height;
     }
     if (total > 0) {
-        impl_->texelMemory.reserve(device, std::size_t(total) * kPlaneCount * sizeof(float), "RSM texels");
+        impl_->texelMemory.reserve(device, std::size_t(total) * kPlaneCount * sizeof(float),
+                                   "RSM texels");
         rows.reserve(device, std::size_t(newRows) * 4 * sizeof(std::int32_t), "RSM rows");
         impl_->counters.reserve(device, LW_RSM_COUNTERS * sizeof(std::uint32_t), "RSM counters");
     }
@@ -226,10 +236,11 @@ void RsmInput::import(Executor& executor, const LWFrame& frame) {
     Kernel& finish = device.programs().kernel("rsm_input/rsm_input", "rsm_input_finish");
     for (const CheckedRsm& rsm : rsms) {
         const auto width = std::uint32_t(rsm.span.width), height = std::uint32_t(rsm.span.height);
-        executor.run("rsm_input.rows", rowsKernel, {height, 1}, rowGroup(device), rows, impl_->counters, rsm.span);
+        executor.run("rsm_input.rows", rowsKernel, {height, 1}, rowGroup(device), rows, impl_->counters,
+                     rsm.span);
         impl_->unpackRsm(executor, rsm, texels);
-        executor.run("rsm_input.area", finish, rowGrid(device, width, height), rowGroup(device), texels.memory,
-                     cl_int(texels.planeStride), impl_->counters, rsm.span);
+        executor.run("rsm_input.area", finish, rowGrid(device, width, height), rowGroup(device),
+                     texels.memory, cl_int(texels.planeStride), impl_->counters, rsm.span);
     }
 }
 
@@ -248,7 +259,8 @@ std::uint64_t RsmInput::bytes() const {
 }
 
 std::uint64_t RsmInput::estimateBytes(std::uint64_t rsmTexels) {
-    // Rows: at most one per texel in theory; square maps need the square root, so 16 bytes per 16 texels is ample.
+    // Rows: at most one per texel in theory; square maps need the square root, so 16 bytes per 16 texels
+    // is ample.
     const std::uint64_t padded = (rsmTexels + 15) / 16 * 16;
     return padded * kPlaneCount * sizeof(float) + padded + LW_RSM_COUNTERS * sizeof(std::uint32_t);
 }

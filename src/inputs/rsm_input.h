@@ -24,7 +24,19 @@ struct RsmSpan {
 class RsmInput {
 public:
     // Planes of `texels`: consecutive rows of all RSMs, each row padded to 16 texels with zero flux.
-    enum Plane { kPositionX, kPositionY, kPositionZ, kNormalX, kNormalY, kNormalZ, kFluxR, kFluxG, kFluxB, kArea, kPlaneCount };
+    enum Plane {
+        kPositionX,
+        kPositionY,
+        kPositionZ,
+        kNormalX,
+        kNormalY,
+        kNormalZ,
+        kFluxR,
+        kFluxG,
+        kFluxB,
+        kArea,
+        kPlaneCount
+    };
 
     RsmInput();
     ~RsmInput();
@@ -34,10 +46,10 @@ public:
     // same directional light covers the texel; area A_p as lightwell.h's lights define it.
     void import(Executor& executor, const LWFrame& frame);
 
-    Planes texels;                // kPlaneCount planes, height 1, width = all texels with padding
-    Buffer rows;                  // int4 per row: first texel, width, span index, 0
+    Planes texels;  // kPlaneCount planes, height 1, width = all texels with padding
+    Buffer rows;    // int4 per row: first texel, width, span index, 0
     std::uint32_t rowCount = 0;
-    std::uint32_t texelCount = 0; // valid texels, padding left out (covered cascade texels included)
+    std::uint32_t texelCount = 0;  // valid texels, padding left out (covered cascade texels included)
     std::vector<RsmSpan> spans;
 
     void report(Report& report) const;  // rejected_texels, covered_texels, choices; after Device::finish

@@ -1,4 +1,5 @@
-// A floor lit by a sun, seen by one view: the smallest frame that a technique can light, through the API.
+// A floor lit by a sun, seen by one view: the smallest frame that a technique can light, through the
+// API.
 #pragma once
 
 #include <cstring>
@@ -31,9 +32,13 @@ inline std::string lastError(LWDevice device = nullptr) {
 class ApiScene {
 public:
     explicit ApiScene(std::uint32_t w = 24, std::uint32_t h = 10)
-        : position(LW_FORMAT_FLOAT3, w, h), normal(LW_FORMAT_FLOAT3, w, h), irradiance(LW_FORMAT_FLOAT3, w, h),
-          validity(LW_FORMAT_FLOAT1, w, h), rsmPosition(LW_FORMAT_FLOAT3, kRsm, kRsm),
-          rsmNormal(LW_FORMAT_FLOAT3, kRsm, kRsm), rsmFlux(LW_FORMAT_FLOAT3, kRsm, kRsm) {
+        : position(LW_FORMAT_FLOAT3, w, h),
+          normal(LW_FORMAT_FLOAT3, w, h),
+          irradiance(LW_FORMAT_FLOAT3, w, h),
+          validity(LW_FORMAT_FLOAT1, w, h),
+          rsmPosition(LW_FORMAT_FLOAT3, kRsm, kRsm),
+          rsmNormal(LW_FORMAT_FLOAT3, kRsm, kRsm),
+          rsmFlux(LW_FORMAT_FLOAT3, kRsm, kRsm) {
         for (std::uint32_t y = 0; y < kRsm; ++y)
             for (std::uint32_t x = 0; x < kRsm; ++x) {
                 rsmPosition.set(x, y, (x + 0.5) / kRsm - 0.5, 0, (y + 0.5) / kRsm - 0.5);
@@ -85,7 +90,8 @@ public:
     bool lit() const {
         for (std::uint32_t y = 0; y < irradiance.height(); ++y)
             for (std::uint32_t x = 0; x < irradiance.width(); ++x)
-                if (!(irradiance.value(x, y, 0) > 0.01 && irradiance.value(x, y, 2) == 0.0)) return false;
+                if (!(irradiance.value(x, y, 0) > 0.01 && irradiance.value(x, y, 2) == 0.0))
+                    return false;
         return true;
     }
 

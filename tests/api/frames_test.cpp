@@ -63,7 +63,8 @@ TEST_CASE("a frame is lit, at both widths, whatever the layout", "[api]") {
         names += std::string(stats.passes[i].name) + " ";
         CHECK(stats.passes[i].milliseconds >= 0.0);
     }
-    CHECK_THAT(names, Contains("rsm_input.unpack") && Contains("gbuffer_input.unpack_normal") && Contains("output.pack"));
+    CHECK_THAT(names, Contains("rsm_input.unpack") && Contains("gbuffer_input.unpack_normal") &&
+                          Contains("output.pack"));
     std::uint64_t texels = 0;
     for (std::uint32_t i = 0; i < stats.countCount; ++i)
         if (std::string(stats.counts[i].name) == "rsm_texels") texels = stats.counts[i].value;
@@ -114,15 +115,19 @@ TEST_CASE("refused frames name the argument and change nothing", "[api]") {
     CHECK_THAT(withLight([](LWLight& l) { l.structSize = 0; }), Contains("frame.lights[0].structSize"));
     CHECK_THAT(withLight([](LWLight& l) { l.rsms = nullptr; }), Contains("frame.lights[0].rsms"));
     CHECK_THAT(withLight([](LWLight& l) { l.rsmCount = 1000; }), Contains("frame.lights[0].rsmCount"));
-    CHECK_THAT(withLight([](LWLight& l) { l.irradiance[2] = HUGE_VALF; }), Contains("frame.lights[0].irradiance"));
-    CHECK_THAT(withLight([](LWLight& l) { l.outerConeAngle = 2; }), Contains("frame.lights[0].outerConeAngle"));
+    CHECK_THAT(withLight([](LWLight& l) { l.irradiance[2] = HUGE_VALF; }),
+               Contains("frame.lights[0].irradiance"));
+    CHECK_THAT(withLight([](LWLight& l) { l.outerConeAngle = 2; }),
+               Contains("frame.lights[0].outerConeAngle"));
     CHECK_THAT(withLight([](LWLight& l) { setEnum(l.kind, 99); }), Contains("frame.lights[0].kind"));
     LWRsm rsm = scene.rsm;
     rsm.structSize = 7;
-    CHECK_THAT(withLight([&](LWLight& l) { l.rsms = &rsm; }), Contains("frame.lights[0].rsms[0].structSize"));
+    CHECK_THAT(withLight([&](LWLight& l) { l.rsms = &rsm; }),
+               Contains("frame.lights[0].rsms[0].structSize"));
     rsm = scene.rsm;
     rsm.camera.view[3] = HUGE_VALF;
-    CHECK_THAT(withLight([&](LWLight& l) { l.rsms = &rsm; }), Contains("frame.lights[0].rsms[0].camera.view"));
+    CHECK_THAT(withLight([&](LWLight& l) { l.rsms = &rsm; }),
+               Contains("frame.lights[0].rsms[0].camera.view"));
 
     LWGBuffer gbuffer = scene.gbuffer;
     gbuffer.normal.format = LW_FORMAT_UINT8;
@@ -224,7 +229,8 @@ TEST_CASE("debug views are listed, described and read", "[api]") {
         CHECK(info.description != nullptr);
         const std::uint64_t size = std::uint64_t(info.width) * info.height * info.channels;
         std::vector<float> pixels(size + 1, -1000.0f);
-        CHECK(lwReadDebugView(rig.technique, rig.view, info.name, pixels.data(), size - 1) == LW_ERROR_INVALID_ARGUMENT);
+        CHECK(lwReadDebugView(rig.technique, rig.view, info.name, pixels.data(), size - 1) ==
+              LW_ERROR_INVALID_ARGUMENT);
         REQUIRE(lwReadDebugView(rig.technique, rig.view, info.name, pixels.data(), size) == LW_SUCCESS);
         CHECK(pixels[size] == -1000.0f);
         if (std::string(info.name) == "position") CHECK(pixels[24 * 10] == 0.5f);
@@ -275,7 +281,8 @@ TEST_CASE("a host's context, memory and events work together", "[api]") {
     technique.update(scene.frame);
     REQUIRE(signal != nullptr);
     cl_int state = 0;
-    clGetEventInfo(static_cast<cl_event>(signal), CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof state, &state, nullptr);
+    clGetEventInfo(static_cast<cl_event>(signal), CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof state,
+                   &state, nullptr);
     CHECK(state > CL_COMPLETE);
     clReleaseEvent(static_cast<cl_event>(signal));
     scene.output.irradiance = LWImage{};
@@ -290,7 +297,8 @@ TEST_CASE("a host's context, memory and events work together", "[api]") {
     cl_event done = static_cast<cl_event>(signal);
     REQUIRE(clWaitForEvents(1, &done) == CL_SUCCESS);
     std::vector<float> pixels(24 * 10 * 4);
-    REQUIRE(clEnqueueReadBuffer(queue, result, CL_TRUE, 0, pixels.size() * 4, pixels.data(), 0, nullptr, nullptr) == CL_SUCCESS);
+    REQUIRE(clEnqueueReadBuffer(queue, result, CL_TRUE, 0, pixels.size() * 4, pixels.data(), 0, nullptr,
+                                nullptr) == CL_SUCCESS);
     for (std::size_t i = 0; i < pixels.size(); i += 4) {
         REQUIRE(pixels[i] > 0.0f);
         REQUIRE(pixels[i + 3] == 1.0f);
@@ -314,7 +322,9 @@ TEST_CASE("many threads use one device, and devices of their own", "[api]") {
         const LWViewDesc desc = scene.viewDesc();
         if (lwCreateView(device, &desc, &view) || lwCreateRsm(device, nullptr, &technique)) ++failures;
         for (int i = 0; i < 10; ++i) {
-            if (lwUpdate(technique, &scene.frame) || lwRender(technique, view, &scene.gbuffer, &scene.output)) ++failures;
+            if (lwUpdate(technique, &scene.frame) ||
+                lwRender(technique, view, &scene.gbuffer, &scene.output))
+                ++failures;
             if (lwFinish(device) || !scene.lit()) ++failures;
             if (lwFinish(nullptr) != LW_ERROR_INVALID_HANDLE) ++failures;
             if (lastError().find("lwFinish") != 0) ++failures;  // each thread its own
@@ -341,7 +351,8 @@ TEST_CASE("one thread releases what another uses", "[api]") {
         std::thread user([&] {
             for (int i = 0; i < 20; ++i) {
                 const LWStatus status = lwUpdate(technique, &scene.frame);
-                if (status != LW_SUCCESS && status != LW_ERROR_INVALID_HANDLE) FAIL("unexpected " << lwStatusName(status));
+                if (status != LW_SUCCESS && status != LW_ERROR_INVALID_HANDLE)
+                    FAIL("unexpected " << lwStatusName(status));
             }
         });
         CHECK(lwReleaseTechnique(technique) == LW_SUCCESS);

@@ -9,7 +9,9 @@ using Catch::Matchers::Contains;
 
 extern "C" int lwTestHeaderFromC(void);
 
-TEST_CASE("the header works from C99", "[api]") { CHECK(lwTestHeaderFromC() == 0); }
+TEST_CASE("the header works from C99", "[api]") {
+    CHECK(lwTestHeaderFromC() == 0);
+}
 
 TEST_CASE("null, released and foreign handles are refused", "[api]") {
     CHECK(lwFinish(nullptr) == LW_ERROR_INVALID_HANDLE);
@@ -18,7 +20,8 @@ TEST_CASE("null, released and foreign handles are refused", "[api]") {
     int stranger = 0;
     CHECK(lwFinish(reinterpret_cast<LWDevice>(&stranger)) == LW_ERROR_INVALID_HANDLE);
     CHECK(lwReleaseView(reinterpret_cast<LWView>(&stranger)) == LW_ERROR_INVALID_HANDLE);
-    CHECK(lwReleaseTechnique(reinterpret_cast<LWTechnique>(std::uintptr_t(-1))) == LW_ERROR_INVALID_HANDLE);
+    CHECK(lwReleaseTechnique(reinterpret_cast<LWTechnique>(std::uintptr_t(-1))) ==
+          LW_ERROR_INVALID_HANDLE);
 
     const LWDevice device = makeDevice(16);
     REQUIRE(device);
@@ -87,7 +90,8 @@ TEST_CASE("the first error of a device is kept until it is fetched", "[api]") {
 
 TEST_CASE("struct sizes are checked", "[api]") {
     const LWDevice device = makeDevice(16);
-    for (const std::uint32_t size : {0u, 1u, 0xffffffffu, 0x80000000u, unsigned(sizeof(LWViewDesc) + 4)}) {
+    for (const std::uint32_t size :
+         {0u, 1u, 0xffffffffu, 0x80000000u, unsigned(sizeof(LWViewDesc) + 4)}) {
         LWViewDesc desc{};
         desc.structSize = size;
         desc.maxWidth = desc.maxHeight = 8;
@@ -119,7 +123,10 @@ TEST_CASE("views have sizes", "[api]") {
     LWView view = nullptr;
     LWViewDesc desc{};
     desc.structSize = sizeof desc;
-    for (const auto& bad : {std::pair<std::uint32_t, std::uint32_t>{0, 8}, {8, 0}, {16385, 8}, {0xffffffffu, 0xffffffffu}}) {
+    for (const auto& bad : {std::pair<std::uint32_t, std::uint32_t>{0, 8},
+                            {8, 0},
+                            {16385, 8},
+                            {0xffffffffu, 0xffffffffu}}) {
         desc.maxWidth = bad.first;
         desc.maxHeight = bad.second;
         CHECK(lwCreateView(device, &desc, &view) == LW_ERROR_INVALID_ARGUMENT);
@@ -167,7 +174,8 @@ TEST_CASE("technique parameters are checked by name", "[api]") {
                 CHECK_THAT(lastError(device), Contains(parameter.name) && Contains("nan"));
             } else if (parameter.maximum < double(huge)) {
                 CHECK(create(&huge) == LW_ERROR_INVALID_ARGUMENT);
-                CHECK_THAT(lastError(device), Contains(std::string("desc.") + parameter.name) && Contains("expected"));
+                CHECK_THAT(lastError(device),
+                           Contains(std::string("desc.") + parameter.name) && Contains("expected"));
             }
             if (parameter.allowed) {
                 const std::uint32_t three = 3;
@@ -189,7 +197,8 @@ TEST_CASE("memory is estimated without creating anything", "[api]") {
     lwGetDeviceInfo(device, &before);
     const LWViewDesc desc = scene.viewDesc();
     std::uint64_t bytes = 0;
-    CHECK(lwEstimateMemory(device, "rsm", nullptr, &desc, ApiScene::kRsm * ApiScene::kRsm, &bytes) == LW_SUCCESS);
+    CHECK(lwEstimateMemory(device, "rsm", nullptr, &desc, ApiScene::kRsm * ApiScene::kRsm, &bytes) ==
+          LW_SUCCESS);
     lwGetDeviceInfo(device, &after);
     CHECK(before.allocatedBytes == after.allocatedBytes);
     LWView view = nullptr;
@@ -203,7 +212,8 @@ TEST_CASE("memory is estimated without creating anything", "[api]") {
     REQUIRE(lwGetStats(technique, &stats) == LW_SUCCESS);
     CHECK(stats.deviceBytes <= bytes);
     CHECK(double(stats.deviceBytes) > 0.6 * double(bytes));  // interleaved inputs: nearly all is needed
-    CHECK(lwEstimateMemory(device, "rsm", nullptr, &desc, UINT64_MAX, &bytes) == LW_ERROR_INVALID_ARGUMENT);
+    CHECK(lwEstimateMemory(device, "rsm", nullptr, &desc, UINT64_MAX, &bytes) ==
+          LW_ERROR_INVALID_ARGUMENT);
     CHECK(lwEstimateMemory(device, "rsm", nullptr, nullptr, 1, &bytes) == LW_ERROR_INVALID_ARGUMENT);
     CHECK(lwEstimateMemory(device, "rsm", nullptr, &desc, 1, nullptr) == LW_ERROR_INVALID_ARGUMENT);
     lwReleaseTechnique(technique);

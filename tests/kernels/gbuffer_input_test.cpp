@@ -70,13 +70,14 @@ Triple decodeNormal(const HostImage& image, LWFormat format, std::uint32_t x, st
 }
 
 const std::array<HostLayout, 4> kLayouts = {HostLayout{}, HostLayout{12, 0, 32, false, false},
-                                            HostLayout{0, 4, 0, true, false}, HostLayout{0, 0, 0, false, true}};
+                                            HostLayout{0, 4, 0, true, false},
+                                            HostLayout{0, 0, 0, false, true}};
 
 // One round trip per width, format and layout.
 void checkFormats(const std::array<std::uint32_t, 2>& size) {
     const auto width = GENERATE(1u, 16u);
-    const auto format = GENERATE(LW_FORMAT_FLOAT3, LW_FORMAT_FLOAT4, LW_FORMAT_HALF4, LW_FORMAT_PLANAR_FLOAT3,
-                                 LW_FORMAT_UNORM8X4, LW_FORMAT_OCT16X2);
+    const auto format = GENERATE(LW_FORMAT_FLOAT3, LW_FORMAT_FLOAT4, LW_FORMAT_HALF4,
+                                 LW_FORMAT_PLANAR_FLOAT3, LW_FORMAT_UNORM8X4, LW_FORMAT_OCT16X2);
     const auto layoutIndex = GENERATE(0u, 1u, 2u, 3u);
     KernelRig rig(width);
     const HostLayout& layout = kLayouts[layoutIndex];
@@ -109,7 +110,8 @@ void checkFormats(const std::array<std::uint32_t, 2>& size) {
             const Triple expected = decodeNormal(normal, format, x, y);
             for (int c = 0; c < 3; ++c) {
                 const std::size_t at = c * plane + y * size[0] + x;
-                worstPosition = std::fmax(worstPosition, std::fabs(double(p[at]) - position.value(x, y, c)));
+                worstPosition =
+                    std::fmax(worstPosition, std::fabs(double(p[at]) - position.value(x, y, c)));
                 worstNormal = std::fmax(worstNormal, std::fabs(double(n[at]) - expected.v[c]));
             }
         }
@@ -123,18 +125,26 @@ void checkFormats(const std::array<std::uint32_t, 2>& size) {
 
 }  // namespace
 
-TEST_CASE("positions and normals arrive in every format", "[gbuffer_input]") { checkFormats({33, 3}); }
-TEST_CASE("one pixel arrives in every format", "[gbuffer_input]") { checkFormats({1, 1}); }
-TEST_CASE("an image of odd size arrives in every format", "[gbuffer_input][large]") { checkFormats({257, 89}); }
+TEST_CASE("positions and normals arrive in every format", "[gbuffer_input]") {
+    checkFormats({33, 3});
+}
+TEST_CASE("one pixel arrives in every format", "[gbuffer_input]") {
+    checkFormats({1, 1});
+}
+TEST_CASE("an image of odd size arrives in every format", "[gbuffer_input][large]") {
+    checkFormats({257, 89});
+}
 
 TEST_CASE("the other images of a G-buffer", "[gbuffer_input]") {
     const auto width = GENERATE(1u, 16u);
-    const auto format = GENERATE(LW_FORMAT_FLOAT3, LW_FORMAT_HALF4, LW_FORMAT_UNORM8X4, LW_FORMAT_UNORM8X4_SRGB);
+    const auto format =
+        GENERATE(LW_FORMAT_FLOAT3, LW_FORMAT_HALF4, LW_FORMAT_UNORM8X4, LW_FORMAT_UNORM8X4_SRGB);
     constexpr std::uint32_t w = 37, h = 7;
     KernelRig rig(width);
     const bool bytes = format == LW_FORMAT_UNORM8X4 || format == LW_FORMAT_UNORM8X4_SRGB;
     HostImage position(LW_FORMAT_FLOAT3, w, h), normal(LW_FORMAT_FLOAT3, w, h), albedo(format, w, h);
-    HostImage radiance(bytes ? LW_FORMAT_PLANAR_FLOAT3 : format, w, h), roughness(LW_FORMAT_FLOAT1, w, h);
+    HostImage radiance(bytes ? LW_FORMAT_PLANAR_FLOAT3 : format, w, h),
+        roughness(LW_FORMAT_FLOAT1, w, h);
     const auto motionFormat = bytes ? LW_FORMAT_FLOAT2 : LW_FORMAT_PLANAR_FLOAT2;
     HostImage motion(motionFormat, w, h), mask(LW_FORMAT_UINT8, w, h);
     for (std::uint32_t y = 0; y < h; ++y)
@@ -178,7 +188,8 @@ TEST_CASE("the other images of a G-buffer", "[gbuffer_input]") {
                 if (bytes) {
                     expected = albedo.get<std::uint8_t>(x, y, 0, c) / 255.0;
                     if (format == LW_FORMAT_UNORM8X4_SRGB)
-                        expected = expected <= 0.04045 ? expected / 12.92 : std::pow((expected + 0.055) / 1.055, 2.4);
+                        expected = expected <= 0.04045 ? expected / 12.92
+                                                       : std::pow((expected + 0.055) / 1.055, 2.4);
                 } else {
                     expected = albedo.value(x, y, c);
                 }
@@ -186,7 +197,8 @@ TEST_CASE("the other images of a G-buffer", "[gbuffer_input]") {
                 if (double(l[c * plane + at]) != radiance.value(x, y, c)) ++wrong;
             }
             if (double(r[at]) != roughness.value(x, y, 0)) ++wrong;
-            if (double(m[at]) != motion.value(x, y, 0) || double(m[plane + at]) != motion.value(x, y, 1)) ++wrong;
+            if (double(m[at]) != motion.value(x, y, 0) || double(m[plane + at]) != motion.value(x, y, 1))
+                ++wrong;
             if (k[at] != (x % 3 == 0 ? 0.0f : 1.0f)) ++wrong;
         }
     CAPTURE(width, int(format));
@@ -211,7 +223,8 @@ TEST_CASE("planar rows on 64-byte borders are used in place", "[gbuffer_input]")
     HostLayout layout;
     layout.aligned = true;
     layout.bottomUp = bottomUp;
-    HostImage position(LW_FORMAT_PLANAR_FLOAT3, w, h, layout), normal(LW_FORMAT_PLANAR_FLOAT3, w, h, layout);
+    HostImage position(LW_FORMAT_PLANAR_FLOAT3, w, h, layout),
+        normal(LW_FORMAT_PLANAR_FLOAT3, w, h, layout);
     for (std::uint32_t y = 0; y < h; ++y)
         for (std::uint32_t x = 0; x < w; ++x) {
             position.set(x, y, x, y, 5);
@@ -240,7 +253,8 @@ TEST_CASE("depth of every kind becomes the position it came from", "[gbuffer_inp
     const int far = GENERATE(0, 1);
     KernelRig rig(width);
     constexpr std::uint32_t w = 61, h = 23;
-    const TestCamera camera = testCamera(which, far ? glm::dvec3(4000, -2500, 8000) : glm::dvec3(1, 2, -3));
+    const TestCamera camera =
+        testCamera(which, far ? glm::dvec3(4000, -2500, 8000) : glm::dvec3(1, 2, -3));
     for (const LWDepthKind kind : {LW_DEPTH_ZERO_TO_ONE, LW_DEPTH_GL, LW_DEPTH_AXIAL, LW_DEPTH_RADIAL}) {
         if (!camera.supports(kind)) continue;
         HostImage depth(LW_FORMAT_FLOAT1, w, h), normal(LW_FORMAT_OCT16X2, w, h);
@@ -256,10 +270,13 @@ TEST_CASE("depth of every kind becomes the position it came from", "[gbuffer_inp
                 normal.set(x, y, 0, 1, 0);
                 // The depth's own rounding to float, moved through the projection, and the roundings of
                 // matrices and position at the size of world coordinates (8 units in the last place).
-                const double shift = glm::length(camera.point((x + 0.5) / w, (y + 0.5) / h, axial * (1 + 1e-6)) - p) / 1e-6;
+                const double shift =
+                    glm::length(camera.point((x + 0.5) / w, (y + 0.5) / h, axial * (1 + 1e-6)) - p) /
+                    1e-6;
                 const double slope = camera.depthSlope(axial, kind);  // depth per unit of distance
                 const double rounding = std::ldexp(std::fabs(camera.depth(p, kind)) + 1e-30, -24);
-                tolerance[y * w + x] = 3 * rounding / slope * shift / axial + std::ldexp(glm::length(p) + axial, -21);
+                tolerance[y * w + x] =
+                    3 * rounding / slope * shift / axial + std::ldexp(glm::length(p) + axial, -21);
                 truth[y * w + x] = p;
             }
         LWGBuffer gbuffer{};
@@ -288,8 +305,10 @@ TEST_CASE("background depth is no surface", "[gbuffer_input]") {
     const auto width = GENERATE(1u, 16u);
     KernelRig rig(width);
     constexpr std::uint32_t w = 5, h = 1;
-    const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
-    const auto surfaces = [&](const TestCamera& camera, LWDepthKind kind, const std::array<float, w>& depths) {
+    const float nan = std::numeric_limits<float>::quiet_NaN(),
+                inf = std::numeric_limits<float>::infinity();
+    const auto surfaces = [&](const TestCamera& camera, LWDepthKind kind,
+                              const std::array<float, w>& depths) {
         HostImage depth(LW_FORMAT_FLOAT1, w, h), normal(LW_FORMAT_FLOAT3, w, h);
         for (std::uint32_t x = 0; x < w; ++x) {
             depth.set(x, 0, double(depths[x]));
@@ -312,16 +331,19 @@ TEST_CASE("background depth is no surface", "[gbuffer_input]") {
         return found;
     };
     // Infinite reversed depth: 0 lies at infinity.
-    CHECK(surfaces(testCamera(kReversedInfinite, glm::dvec3(0)), LW_DEPTH_ZERO_TO_ONE, {0.5f, 0.0f, nan, inf, -0.1f}) ==
-          "10000");
-    CHECK(surfaces(testCamera(kRightHanded, glm::dvec3(0)), LW_DEPTH_AXIAL, {2.0f, 0.0f, nan, inf, -1.0f}) == "10000");
-    CHECK(surfaces(testCamera(kRightHanded, glm::dvec3(0)), LW_DEPTH_RADIAL, {2.0f, 0.0f, nan, inf, 1e30f}) == "10000");
+    CHECK(surfaces(testCamera(kReversedInfinite, glm::dvec3(0)), LW_DEPTH_ZERO_TO_ONE,
+                   {0.5f, 0.0f, nan, inf, -0.1f}) == "10000");
+    CHECK(surfaces(testCamera(kRightHanded, glm::dvec3(0)), LW_DEPTH_AXIAL,
+                   {2.0f, 0.0f, nan, inf, -1.0f}) == "10000");
+    CHECK(surfaces(testCamera(kRightHanded, glm::dvec3(0)), LW_DEPTH_RADIAL,
+                   {2.0f, 0.0f, nan, inf, 1e30f}) == "10000");
 }
 
 TEST_CASE("a G-buffer that can't be used is refused by name", "[gbuffer_input]") {
     KernelRig rig(16);
     constexpr std::uint32_t w = 20, h = 4;
-    HostImage position(LW_FORMAT_FLOAT3, w, h), normal(LW_FORMAT_FLOAT3, w, h), depth(LW_FORMAT_FLOAT1, w, h);
+    HostImage position(LW_FORMAT_FLOAT3, w, h), normal(LW_FORMAT_FLOAT3, w, h),
+        depth(LW_FORMAT_FLOAT1, w, h);
     LWGBuffer good{};
     good.position = position.image();
     good.normal = normal.image();
@@ -368,20 +390,27 @@ TEST_CASE("a G-buffer that can't be used is refused by name", "[gbuffer_input]")
     CHECK_THAT(withPosition([](LWImage& i) { i.format = LW_FORMAT_UNORM8X4; }),
                Contains("gbuffer.position.format") && Contains("LW_FORMAT_UNORM8X4"));
     CHECK_THAT(withPosition([](LWImage& i) { setEnum(i.format, 77); }), Contains("77"));
-    CHECK_THAT(withPosition([](LWImage& i) { i.host = nullptr; }), Contains("exactly one of host and clMem"));
+    CHECK_THAT(withPosition([](LWImage& i) { i.host = nullptr; }),
+               Contains("exactly one of host and clMem"));
     CHECK_THAT(withPosition([](LWImage& i) { i.width = 19; }), Contains("20 x 4") && Contains("19 x 4"));
     CHECK_THAT(withPosition([](LWImage& i) { i.height = 0; }), Contains("20 x 0"));
     CHECK_THAT(withPosition([](LWImage& i) { i.bytePixelStride = 8; }), Contains("bytePixelStride"));
     CHECK_THAT(withPosition([](LWImage& i) { i.bytePixelStride = -12; }), Contains("bytePixelStride"));
-    CHECK_THAT(withPosition([](LWImage& i) { i.bytePixelStride = 13; }), Contains("byteRowStride") || Contains("multiple of 4"));
+    CHECK_THAT(withPosition([](LWImage& i) { i.bytePixelStride = 13; }),
+               Contains("byteRowStride") || Contains("multiple of 4"));
     CHECK_THAT(withPosition([](LWImage& i) { i.byteRowStride = 100; }), Contains("byteRowStride"));
     CHECK_THAT(withPosition([](LWImage& i) { i.byteRowStride = -240; }), Contains("byteOffset"));
     CHECK_THAT(withPosition([](LWImage& i) { i.byteOffset = 2; }), Contains("multiple of 4"));
-    CHECK_THAT(withPosition([](LWImage& i) { i.host = static_cast<const char*>(i.host) + 1; }), Contains("host"));
-    for (const std::int64_t huge : {std::int64_t(1) << 40, std::int64_t(1) << 62, INT64_MAX, INT64_MIN, -(std::int64_t(1) << 61)}) {
-        CHECK_THAT(withPosition([&](LWImage& i) { i.byteRowStride = huge; }), Contains("gbuffer.position"));
-        CHECK_THAT(withPosition([&](LWImage& i) { i.bytePixelStride = huge; }), Contains("gbuffer.position"));
-        CHECK_THAT(withPosition([&](LWImage& i) { i.byteOffset = std::uint64_t(huge); }), Contains("gbuffer.position"));
+    CHECK_THAT(withPosition([](LWImage& i) { i.host = static_cast<const char*>(i.host) + 1; }),
+               Contains("host"));
+    for (const std::int64_t huge : {std::int64_t(1) << 40, std::int64_t(1) << 62, INT64_MAX, INT64_MIN,
+                                    -(std::int64_t(1) << 61)}) {
+        CHECK_THAT(withPosition([&](LWImage& i) { i.byteRowStride = huge; }),
+                   Contains("gbuffer.position"));
+        CHECK_THAT(withPosition([&](LWImage& i) { i.bytePixelStride = huge; }),
+                   Contains("gbuffer.position"));
+        CHECK_THAT(withPosition([&](LWImage& i) { i.byteOffset = std::uint64_t(huge); }),
+                   Contains("gbuffer.position"));
         CHECK_THAT(withPosition([&](LWImage& i) {
                        i.format = LW_FORMAT_PLANAR_FLOAT3;
                        i.bytePixelStride = i.byteRowStride = 0;
@@ -416,8 +445,10 @@ TEST_CASE("device memory is checked and used", "[gbuffer_input]") {
 
     using Catch::Matchers::Contains;
     gbuffer.position.byteOffset = 1 << 20;
-    CHECK_THROWS_WITH(input.import(rig.executor(), View(w, h), gbuffer, 0, "gbuffer"), Contains("gbuffer.position.clMem"));
+    CHECK_THROWS_WITH(input.import(rig.executor(), View(w, h), gbuffer, 0, "gbuffer"),
+                      Contains("gbuffer.position.clMem"));
     KernelRig other(width == 1 ? 16 : 1);
     gbuffer.position.byteOffset = 0;
-    CHECK_THROWS_WITH(input.import(other.executor(), View(w, h), gbuffer, 0, "gbuffer"), Contains("cl_context"));
+    CHECK_THROWS_WITH(input.import(other.executor(), View(w, h), gbuffer, 0, "gbuffer"),
+                      Contains("cl_context"));
 }

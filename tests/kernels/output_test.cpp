@@ -15,8 +15,8 @@ using namespace lightwell::test;
 
 namespace {
 
-// Stands for a technique: writes `values` (planes of w * h) into the target's planes, in whole groups of 16
-// pixels as kernels do.
+// Stands for a technique: writes `values` (planes of w * h) into the target's planes, in whole groups of
+// 16 pixels as kernels do.
 void produce(KernelRig& rig, const Planes& planes, const std::vector<float>& values) {
     const Buffer memory = Buffer::retained(rig.device(), planes.memory);
     std::vector<float> row(paddedWidth(planes.width), -7.0f);
@@ -25,7 +25,8 @@ void produce(KernelRig& rig, const Planes& planes, const std::vector<float>& val
             const float* from = values.data() + (c * planes.height + y) * planes.width;
             std::copy(from, from + planes.width, row.begin());
             const std::int64_t at = planes.offset + c * planes.planeStride + y * planes.rowStride;
-            rig.executor().write("test.produce", memory, std::size_t(at) * 4, row.size() * 4, row.data());
+            rig.executor().write("test.produce", memory, std::size_t(at) * 4, row.size() * 4,
+                                 row.data());
             rig.device().finish();
         }
 }
@@ -35,8 +36,9 @@ void checkFormats(const std::array<std::uint32_t, 2>& size) {
     const auto width = GENERATE(1u, 16u);
     const auto format = GENERATE(LW_FORMAT_FLOAT1, LW_FORMAT_FLOAT3, LW_FORMAT_FLOAT4, LW_FORMAT_HALF4,
                                  LW_FORMAT_PLANAR_FLOAT3);
-    const auto layout = GENERATE(HostLayout{}, HostLayout{20, 0, 64, false, false}, HostLayout{0, 8, 4, true, false},
-                                 HostLayout{0, 0, 0, false, true}, HostLayout{0, 0, 128, true, true});
+    const auto layout =
+        GENERATE(HostLayout{}, HostLayout{20, 0, 64, false, false}, HostLayout{0, 8, 4, true, false},
+                 HostLayout{0, 0, 0, false, true}, HostLayout{0, 0, 128, true, true});
     KernelRig rig(width);
     const std::uint32_t count = format == LW_FORMAT_FLOAT1 ? 1 : 3;
     HostImage image(format, size[0], size[1], layout);
@@ -65,17 +67,25 @@ void checkFormats(const std::array<std::uint32_t, 2>& size) {
             if (format == LW_FORMAT_FLOAT4 && image.value(x, y, 3) != 1.0) ++wrong;
             if (format == LW_FORMAT_HALF4 && image.value(x, y, 3) != 1.0) ++wrong;
         }
-    CAPTURE(width, size[0], size[1], int(format), layout.rowGap, layout.pixelGap, layout.bottomUp, layout.aligned);
+    CAPTURE(width, size[0], size[1], int(format), layout.rowGap, layout.pixelGap, layout.bottomUp,
+            layout.aligned);
     CHECK(wrong == 0);
-    const bool inPlace = layout.aligned && (format == LW_FORMAT_FLOAT1 || format == LW_FORMAT_PLANAR_FLOAT3);
+    const bool inPlace =
+        layout.aligned && (format == LW_FORMAT_FLOAT1 || format == LW_FORMAT_PLANAR_FLOAT3);
     CHECK(image.damagedBytes(inPlace) == 0);
 }
 
 }  // namespace
 
-TEST_CASE("results are packed into every format and layout", "[output]") { checkFormats({16, 3}); }
-TEST_CASE("one pixel is packed into every format and layout", "[output]") { checkFormats({1, 1}); }
-TEST_CASE("an image of odd size is packed into every format and layout", "[output][large]") { checkFormats({257, 89}); }
+TEST_CASE("results are packed into every format and layout", "[output]") {
+    checkFormats({16, 3});
+}
+TEST_CASE("one pixel is packed into every format and layout", "[output]") {
+    checkFormats({1, 1});
+}
+TEST_CASE("an image of odd size is packed into every format and layout", "[output][large]") {
+    checkFormats({257, 89});
+}
 
 TEST_CASE("halves are rounded to nearest even", "[output]") {
     // Checks the test's own conversion against known codes of IEEE 754 binary16.
@@ -100,7 +110,8 @@ TEST_CASE("planar results on 64-byte borders are written in place", "[output]") 
     target.end(rig.executor());
     rig.device().finish();
     CHECK(target.bytes() == 0);
-    for (const LWPassTime& pass : rig.profile().passes()) CHECK(std::string(pass.name) == "output.publish");
+    for (const LWPassTime& pass : rig.profile().passes())
+        CHECK(std::string(pass.name) == "output.publish");
 }
 
 TEST_CASE("results go to device memory", "[output]") {
@@ -126,7 +137,8 @@ TEST_CASE("results go to device memory", "[output]") {
     for (std::uint32_t y = 0; y < h; ++y)
         for (std::uint32_t x = 0; x < w; ++x)
             for (std::uint32_t c = 0; c < 3; ++c)
-                REQUIRE(result[planar ? (c * h + y) * row + x : y * row + 4 * x + c] == values[(c * h + y) * w + x]);
+                REQUIRE(result[planar ? (c * h + y) * row + x : y * row + 4 * x + c] ==
+                        values[(c * h + y) * w + x]);
 }
 
 TEST_CASE("formats that can't hold irradiance are refused", "[output]") {
@@ -134,8 +146,9 @@ TEST_CASE("formats that can't hold irradiance are refused", "[output]") {
     HostImage image(LW_FORMAT_FLOAT4, 8, 8);
     OutputTarget target;
     using Catch::Matchers::Contains;
-    for (const LWFormat format : {LW_FORMAT_UNORM8X4, LW_FORMAT_UNORM8X4_SRGB, LW_FORMAT_OCT16X2, LW_FORMAT_UINT8,
-                                  LW_FORMAT_FLOAT1, LW_FORMAT_FLOAT2, LW_FORMAT_PLANAR_FLOAT2}) {
+    for (const LWFormat format :
+         {LW_FORMAT_UNORM8X4, LW_FORMAT_UNORM8X4_SRGB, LW_FORMAT_OCT16X2, LW_FORMAT_UINT8,
+          LW_FORMAT_FLOAT1, LW_FORMAT_FLOAT2, LW_FORMAT_PLANAR_FLOAT2}) {
         LWImage bad = image.image();
         bad.format = format;
         bad.bytePixelStride = bad.byteRowStride = 0;

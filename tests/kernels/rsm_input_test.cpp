@@ -19,9 +19,11 @@ namespace {
 // Areas and cosines pass through a dozen float roundings.
 constexpr double kAreaTolerance = 3e-6;
 
-// A camera that looks straight down from `height` above (x, z), image +x = world +x, image down = world +z.
+// A camera that looks straight down from `height` above (x, z), image +x = world +x, image down = world
+// +z.
 TestCamera downward(double x, double z, double height, double half, bool orthographic) {
-    TestCamera camera = testCamera(orthographic ? kOrthographic : kRightHanded, glm::dvec3(x, height, z));
+    TestCamera camera =
+        testCamera(orthographic ? kOrthographic : kRightHanded, glm::dvec3(x, height, z));
     camera.right = {1, 0, 0};
     camera.up = {0, 0, -1};
     camera.forward = {0, -1, 0};
@@ -33,7 +35,10 @@ TestCamera downward(double x, double z, double height, double half, bool orthogr
 // One map whose pixels lie on a plane through the origin.
 struct Map {
     Map(std::uint32_t w, std::uint32_t h, const TestCamera& from, const glm::dvec3& planeNormal)
-        : camera(from), position(LW_FORMAT_FLOAT3, w, h), normal(LW_FORMAT_FLOAT3, w, h), flux(LW_FORMAT_FLOAT3, w, h),
+        : camera(from),
+          position(LW_FORMAT_FLOAT3, w, h),
+          normal(LW_FORMAT_FLOAT3, w, h),
+          flux(LW_FORMAT_FLOAT3, w, h),
           points(w * h) {
         for (std::uint32_t y = 0; y < h; ++y)
             for (std::uint32_t x = 0; x < w; ++x) {
@@ -64,7 +69,9 @@ struct Imported {
     std::vector<float> texels;
     std::size_t total = 0;
     std::uint64_t rejected = 0, covered = 0;
-    double at(int plane, std::size_t texel) const { return double(texels[std::size_t(plane) * total + texel]); }
+    double at(int plane, std::size_t texel) const {
+        return double(texels[std::size_t(plane) * total + texel]);
+    }
     double sum(int plane) const {
         double result = 0;
         for (std::size_t i = 0; i < total; ++i) result += at(plane, i);
@@ -125,7 +132,8 @@ std::string refusal(const LWLight& light) {
 
 TEST_CASE("maps of several lights lie row after row, padded with darkness", "[rsm_input]") {
     KernelRig rig(GENERATE(1u, 16u));
-    Map first(37, 5, downward(0, 0, 4, 2, true), {0, 1, 0}), second(3, 2, downward(1, 1, 2, 0.5, false), {0, 1, 0});
+    Map first(37, 5, downward(0, 0, 4, 2, true), {0, 1, 0}),
+        second(3, 2, downward(1, 1, 2, 0.5, false), {0, 1, 0});
     const std::vector<LWRsm> firstRsm{first.rsm()};
     const LWRsm secondRsm = second.rsm();
     LWLight analytic{};
@@ -189,8 +197,8 @@ TEST_CASE("texels that can't be used are dark and counted", "[rsm_input]") {
     CHECK(got.rejected == 7);
     for (const float value : got.texels) REQUIRE(std::isfinite(value));
     const auto texel = [](std::uint32_t x, std::uint32_t y) { return std::size_t(32 * y + x); };
-    for (const auto& bad : {texel(0, 0), texel(1, 0), texel(19, 2), texel(2, 0), texel(3, 1), texel(4, 1),
-                            texel(5, 1), texel(6, 1)})
+    for (const auto& bad : {texel(0, 0), texel(1, 0), texel(19, 2), texel(2, 0), texel(3, 1),
+                            texel(4, 1), texel(5, 1), texel(6, 1)})
         for (int plane = 0; plane < RsmInput::kPlaneCount; ++plane) CHECK(got.at(plane, bad) == 0.0);
     CHECK(got.at(RsmInput::kNormalY, texel(7, 1)) == Approx(0.6));
     CHECK(got.at(RsmInput::kNormalZ, texel(7, 1)) == Approx(0.8));
@@ -215,9 +223,11 @@ TEST_CASE("flux over area is albedo times direct irradiance", "[rsm_input]") {
                 orthographic ? glm::dvec3(0, 1, 0) : map.camera.eye - map.points[y * size + x];
             const double distance = glm::length(toLight), cosine = glm::dot(tilted, toLight) / distance;
             const double onAxis = toLight.y / distance;
-            const double flux = albedo * (orthographic ? sunIrradiance * texel * texel
-                                                       : intensity * texel * texel * onAxis * onAxis * onAxis);
-            direct[y * size + x] = cosine * (orthographic ? sunIrradiance : intensity / (distance * distance));
+            const double flux =
+                albedo * (orthographic ? sunIrradiance * texel * texel
+                                       : intensity * texel * texel * onAxis * onAxis * onAxis);
+            direct[y * size + x] =
+                cosine * (orthographic ? sunIrradiance : intensity / (distance * distance));
             map.flux.set(x, y, flux, flux, flux);
         }
     const LWRsm rsm = map.rsm();
@@ -240,19 +250,22 @@ TEST_CASE("flux over area is albedo times direct irradiance", "[rsm_input]") {
         return a - (b - a) * (glm::dot(a, tilted) / glm::dot(b - a, tilted));
     };
     const glm::dvec3 c00 = corner(0, 0), c10 = corner(1, 0), c01 = corner(0, 1), c11 = corner(1, 1);
-    const double seen = (glm::length(glm::cross(c10 - c00, c11 - c00)) + glm::length(glm::cross(c11 - c00, c01 - c00))) / 2;
+    const double seen =
+        (glm::length(glm::cross(c10 - c00, c11 - c00)) + glm::length(glm::cross(c11 - c00, c01 - c00))) /
+        2;
     // A perspective texel's area is taken at its centre: second order in the texel's size.
     CHECK(area / seen == Approx(1.0).epsilon(orthographic ? kAreaTolerance : 1e-3));
 }
 
-TEST_CASE("six faces of a point light see the whole sphere", "[rsm_input]") {
+TEST_CASE("six faces of a point light see the whole sphere", "[rsm_input][large]") {
     KernelRig rig(16);
     // On a unit sphere around the light every cosine is 1: areas sum to 4 pi.
     constexpr std::uint32_t size = 64;
     Map map(size, size, downward(0, 0, 2, 1, false), {0, 1, 0});
     for (std::uint32_t y = 0; y < size; ++y)
         for (std::uint32_t x = 0; x < size; ++x) {
-            const glm::dvec3 out = glm::normalize(map.points[y * size + x] - map.camera.eye), p = map.camera.eye + out;
+            const glm::dvec3 out = glm::normalize(map.points[y * size + x] - map.camera.eye),
+                             p = map.camera.eye + out;
             map.position.set(x, y, p.x, p.y, p.z);
             map.normal.set(x, y, -out.x, -out.y, -out.z);
         }
@@ -308,11 +321,13 @@ TEST_CASE("nested cascades carry the flux of one map", "[rsm_input]") {
 TEST_CASE("maps by depth equal maps by position", "[rsm_input]") {
     KernelRig rig(GENERATE(1u, 16u));
     const bool orthographic = GENERATE(true, false);
-    Map map(21, 9, downward(0.5, 0.25, 4, orthographic ? 2 : 0.7, orthographic), glm::normalize(glm::dvec3(0.1, 1, 0.2)));
+    Map map(21, 9, downward(0.5, 0.25, 4, orthographic ? 2 : 0.7, orthographic),
+            glm::normalize(glm::dvec3(0.1, 1, 0.2)));
     HostImage depth(LW_FORMAT_FLOAT1, 21, 9);
     for (std::uint32_t y = 0; y < 9; ++y)
         for (std::uint32_t x = 0; x < 21; ++x)
-            depth.set(x, y, x == 4 && y == 4 ? 0.0 : map.camera.depth(map.points[y * 21 + x], LW_DEPTH_AXIAL));
+            depth.set(x, y,
+                      x == 4 && y == 4 ? 0.0 : map.camera.depth(map.points[y * 21 + x], LW_DEPTH_AXIAL));
     LWRsm byPosition = map.rsm(), byDepth = byPosition;
     byDepth.position = LWImage{};
     byDepth.depth = depth.image();
@@ -323,22 +338,26 @@ TEST_CASE("maps by depth equal maps by position", "[rsm_input]") {
         return result;
     };
     RsmInput input;
-    const Imported a = importLights(rig, {light(byPosition)}, input), b = importLights(rig, {light(byDepth)}, input);
+    const Imported a = importLights(rig, {light(byPosition)}, input),
+                   b = importLights(rig, {light(byDepth)}, input);
     double worst = 0;
     for (std::size_t i = 0; i < a.texels.size(); ++i)
-        if (i % a.total != 4 * 32 + 4) worst = std::fmax(worst, std::fabs(double(a.texels[i]) - double(b.texels[i])));
+        if (i % a.total != 4 * 32 + 4)
+            worst = std::fmax(worst, std::fabs(double(a.texels[i]) - double(b.texels[i])));
     CHECK(worst < 5e-6);  // roundings of float at distances of 4 units
     CHECK(b.at(RsmInput::kFluxR, 4 * 32 + 4) == 0.0);
     CHECK(b.rejected == 0);
 }
 
 TEST_CASE("lights that can't be used are refused by name", "[rsm_input]") {
-    Map ortho(8, 8, downward(0, 0, 4, 2, true), {0, 1, 0}), persp(8, 8, downward(0, 0, 4, 1, false), {0, 1, 0});
+    Map ortho(8, 8, downward(0, 0, 4, 2, true), {0, 1, 0}),
+        persp(8, 8, downward(0, 0, 4, 1, false), {0, 1, 0});
     std::vector<LWRsm> rsms{ortho.rsm()};
     LWRsm perspRsm = persp.rsm();
     CHECK(refusal(sun(rsms)) == "accepted");
     CHECK(refusal(spot(perspRsm)) == "accepted");
-    CHECK_THAT(refusal(spot(rsms[0])), Contains("frame.lights[0].rsms[0].camera.projection: expected perspective"));
+    CHECK_THAT(refusal(spot(rsms[0])),
+               Contains("frame.lights[0].rsms[0].camera.projection: expected perspective"));
     CHECK_THAT(refusal(sun({perspRsm})), Contains("expected orthographic"));
     LWLight light = sun(rsms);
     light.direction[0] = 1.0f;
@@ -355,7 +374,8 @@ TEST_CASE("lights that can't be used are refused by name", "[rsm_input]") {
     const std::vector<LWRsm> coarseFirst{wide.rsm(), ortho.rsm()};
     CHECK_THAT(refusal(sun(coarseFirst)), Contains("finest cascade first"));
     rsms[0].flux.height = 7;
-    CHECK_THAT(refusal(sun(rsms)), Contains("frame.lights[0].rsms[0].flux") && Contains("8 x 8") && Contains("8 x 7"));
+    CHECK_THAT(refusal(sun(rsms)),
+               Contains("frame.lights[0].rsms[0].flux") && Contains("8 x 8") && Contains("8 x 7"));
     rsms[0] = ortho.rsm();
     rsms[0].normal = LWImage{};
     CHECK_THAT(refusal(sun(rsms)), Contains("rsms[0].normal"));

@@ -10,13 +10,13 @@
 namespace lightwell::test {
 
 enum TestCameraKind {
-    kRightHanded,        // looks along -z of view space, depth 0 near, 1 far
-    kLeftHanded,         // looks along +z
-    kReversed,           // depth 1 near, 0 far
-    kReversedInfinite,   // depth 1 near, 0 at infinity
-    kOffCentre,          // an asymmetric frustum
-    kOpenGL,             // clip z / w in [-1, 1]
-    kOrthographic,       // right-handed
+    kRightHanded,       // looks along -z of view space, depth 0 near, 1 far
+    kLeftHanded,        // looks along +z
+    kReversed,          // depth 1 near, 0 far
+    kReversedInfinite,  // depth 1 near, 0 at infinity
+    kOffCentre,         // an asymmetric frustum
+    kOpenGL,            // clip z / w in [-1, 1]
+    kOrthographic,      // right-handed
     kOrthographicLeftReversed,
     kTestCameraCount
 };
@@ -37,7 +37,10 @@ struct TestCamera {
 
     // clip z / w as a function of the distance along the axis: a + b / t, or a + b t.
     void curve(double& a, double& b) const {
-        const double z0 = openGL ? -1.0 : reversed ? 1.0 : 0.0, z1 = reversed ? 0.0 : 1.0;  // at near, far
+        const double z0 = openGL     ? -1.0
+                          : reversed ? 1.0
+                                     : 0.0,
+                     z1 = reversed ? 0.0 : 1.0;  // at near, far
         if (orthographic) {
             b = (z1 - z0) / (far - near);
             a = z0 - b * near;
@@ -84,7 +87,8 @@ struct TestCamera {
         }
         camera.view[15] = 1.0f;
         const double sx = 2 / (rightEdge - left), sy = 2 / (top - bottom);
-        const double cx = -(rightEdge + left) / (rightEdge - left), cy = -(top + bottom) / (top - bottom);
+        const double cx = -(rightEdge + left) / (rightEdge - left),
+                     cy = -(top + bottom) / (top - bottom);
         double a, b;
         curve(a, b);
         float* p = camera.projection;
@@ -120,11 +124,13 @@ inline TestCamera testCamera(int kind, const glm::dvec3& eye) {
     camera.top = 0.5;
     camera.near = 0.125;
     camera.far = 64;
-    static const char* const names[] = {"right-handed", "left-handed", "reversed", "reversed, infinite",
-                                        "off-centre", "OpenGL", "orthographic", "orthographic, left-handed, reversed"};
+    static const char* const names[] = {
+        "right-handed", "left-handed", "reversed",     "reversed, infinite",
+        "off-centre",   "OpenGL",      "orthographic", "orthographic, left-handed, reversed"};
     camera.name = names[kind];
     camera.leftHanded = kind == kLeftHanded || kind == kOrthographicLeftReversed;
-    camera.reversed = kind == kReversed || kind == kReversedInfinite || kind == kOrthographicLeftReversed;
+    camera.reversed =
+        kind == kReversed || kind == kReversedInfinite || kind == kOrthographicLeftReversed;
     camera.infinite = kind == kReversedInfinite;
     camera.openGL = kind == kOpenGL;
     camera.orthographic = kind == kOrthographic || kind == kOrthographicLeftReversed;

@@ -21,11 +21,12 @@ inline std::uint16_t toHalf(double value) {
     if (magnitude >= 65520.0) return std::uint16_t(sign | 0x7c00);
     if (magnitude == 0.0) return sign;
     int exponent = 0;
-    std::frexp(magnitude, &exponent);                 // magnitude = f * 2^exponent, f in [1/2, 1)
-    const int unit = std::max(exponent - 11, -24);    // of the last place
+    std::frexp(magnitude, &exponent);               // magnitude = f * 2^exponent, f in [1/2, 1)
+    const int unit = std::max(exponent - 11, -24);  // of the last place
     const double steps = std::nearbyint(std::ldexp(magnitude, -unit));
     // Subnormals and normals are numbered without a gap.
-    const auto code = unit == -24 ? std::uint32_t(steps) : std::uint32_t((unit + 24) * 1024 + int(steps));
+    const auto code =
+        unit == -24 ? std::uint32_t(steps) : std::uint32_t((unit + 24) * 1024 + int(steps));
     return std::uint16_t(sign | code);
 }
 
@@ -97,7 +98,8 @@ public:
     std::uint32_t height() const { return height_; }
 
     // Stores a pixel as a host would; `normal`: unorm8 takes n/2 + 1/2.
-    void set(std::uint32_t x, std::uint32_t y, double a, double b = 0.0, double c = 0.0, bool normal = false) {
+    void set(std::uint32_t x, std::uint32_t y, double a, double b = 0.0, double c = 0.0,
+             bool normal = false) {
         const double v[4] = {a, b, c, 0.25};
         switch (format_) {
             case LW_FORMAT_HALF4:
@@ -107,7 +109,8 @@ public:
             case LW_FORMAT_UNORM8X4_SRGB:
                 for (int k = 0; k < 4; ++k) {
                     const double unit = normal ? v[k] / 2 + 0.5 : v[k];
-                    put(x, y, 0, k, std::uint8_t(std::lround(std::fmin(std::fmax(unit, 0.0), 1.0) * 255)));
+                    put(x, y, 0, k,
+                        std::uint8_t(std::lround(std::fmin(std::fmax(unit, 0.0), 1.0) * 255)));
                 }
                 break;
             case LW_FORMAT_OCT16X2: {
@@ -122,7 +125,9 @@ public:
                 put(x, y, 0, 2, sum > 0 ? std::int16_t(std::lround(w * 32767)) : std::int16_t(-32768));
                 break;
             }
-            case LW_FORMAT_UINT8: put(x, y, 0, 0, std::uint8_t(a)); break;
+            case LW_FORMAT_UINT8:
+                put(x, y, 0, 0, std::uint8_t(a));
+                break;
             default:
                 if (planes_ > 1)
                     for (int k = 0; k < planes_; ++k) put(x, y, k, 0, float(v[k]));
@@ -141,8 +146,8 @@ public:
         if (format_ == LW_FORMAT_HALF4) return fromHalf(get<std::uint16_t>(x, y, 0, 2 * c));
         return planes_ > 1 ? double(get<float>(x, y, c, 0)) : double(get<float>(x, y, 0, 4 * c));
     }
-    // Bytes outside all pixels that no longer hold the pattern. `padding`: pixels past the end of a row up
-    // to the next multiple of 16 may have been written.
+    // Bytes outside all pixels that no longer hold the pattern. `padding`: pixels past the end of a row
+    // up to the next multiple of 16 may have been written.
     std::size_t damagedBytes(bool padding = false) const {
         std::vector<bool> owned(storage_.size(), false);
         const std::uint32_t width = padding ? (width_ + 15) / 16 * 16 : width_;
@@ -158,7 +163,8 @@ public:
 
 private:
     std::size_t at(std::uint32_t x, std::uint32_t y, int plane, int byte) const {
-        return start_ + std::size_t(offset_ + y * rowStride_ + x * pixelStride_ + plane * planeStride_ + byte);
+        return start_ +
+               std::size_t(offset_ + y * rowStride_ + x * pixelStride_ + plane * planeStride_ + byte);
     }
     template <class T>
     void put(std::uint32_t x, std::uint32_t y, int plane, int byte, T value) {
