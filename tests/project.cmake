@@ -20,9 +20,10 @@ lightwell_tool_test(reference_docs_test TOOL doxygen COMMAND ${CMAKE_COMMAND} -E
   LIGHTWELL_VERSION=${PROJECT_VERSION} doxygen docs/Doxyfile)
 
 # The C and C++ compilers both take the public headers, with every warning an error.
-add_library(header_c_check OBJECT docs/header_check.c)
-target_include_directories(header_c_check PRIVATE ${PROJECT_SOURCE_DIR}/include)
-target_compile_options(header_c_check PRIVATE -std=c99 -pedantic -Wall -Wextra -Wconversion -Werror)
+add_library(header_check OBJECT docs/header_check.c docs/header_check.cpp)
+target_include_directories(header_check PRIVATE ${PROJECT_SOURCE_DIR}/include)
+target_compile_options(header_check PRIVATE -pedantic -Wall -Wextra -Wshadow -Wconversion -Werror
+  $<$<COMPILE_LANGUAGE:C>:-std=c99>)
 
 # README's program, as it stands there.
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/README.md)
