@@ -36,7 +36,7 @@ nlohmann::ordered_json toJson(const LWDeviceInfo& info, const std::optional<Prob
                                 {"shares_host_memory", info.hostUnifiedMemory != 0}};
     if (probe) {
         json["width"] = probe->info.width;
-        json["gflops"] = probe->roofline.multiplyAddGflops;
+        json["multiply_add_gflops"] = probe->roofline.multiplyAddGflops;
         json["bandwidth_GBps"] = probe->roofline.bandwidthGBps;
         json["launch_us"] = probe->roofline.launchMicroseconds;
     }

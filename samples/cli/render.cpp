@@ -24,7 +24,7 @@ struct RenderOptions {
     ViewOptions view;
     std::string technique, seed, vplsOut, device, debugView;
     std::vector<std::string> assignments, outs;
-    int frames = 9, width = 0, rsmSize = 512, cascades = 1;
+    int frames = 9, warmup = 3, width = 0, rsmSize = 512, cascades = 1;
     double exposure = 0.0, scale = 1.0;
     bool asJson = false, printsHash = false;
 };
@@ -147,7 +147,7 @@ studio::Image renderWithTechnique(const RenderOptions& options, const RenderInpu
     FrameRunner runner(device, options.technique, parameters, inputs);
     report.parameters = parameters.resolved();
     report.hasDevice = true;
-    report.figures = runner.run(options.frames);
+    report.figures = runner.run(options.warmup, options.frames);
     report.device = device.info();
     report.frames = options.frames;
     report.hash = hashBits(runner.irradiance());
@@ -249,10 +249,11 @@ void addRender(CLI::App& app) {
                         "A technique (below), or none: direct light only");
     command->add_option("--set", options->assignments,
                         "key=value, one or several: parameters of the technique (below)");
-    command
-        ->add_option("--frames", options->frames,
-                     "Frames measured, after three of warm-up; times are medians")
+    command->add_option("--frames", options->frames, "Frames measured; times are medians")
         ->check(CLI::Range(1, 100000))
+        ->capture_default_str();
+    command->add_option("--warmup", options->warmup, "Frames rendered before these, not measured")
+        ->check(CLI::Range(0, 100000))
         ->capture_default_str();
     command->add_option("--seed", options->seed, "Seed of the technique's samples; default: its own");
     command->add_option("--vpls-out", options->vplsOut,

@@ -9,8 +9,6 @@
 namespace cli {
 namespace {
 
-constexpr int kWarmUpFrames = 3;  // the first may still build; caches and clocks settle in the others
-
 double median(std::vector<double> values) {
     if (values.empty()) return -1.0;
     std::sort(values.begin(), values.end());
@@ -88,8 +86,8 @@ void FrameRunner::renderFrame() {
     device_.finish();
 }
 
-FrameFigures FrameRunner::run(int count) {
-    for (int i = 0; i < kWarmUpFrames; ++i) renderFrame();
+FrameFigures FrameRunner::run(int warmUpCount, int count) {
+    for (int i = 0; i < warmUpCount; ++i) renderFrame();
     FrameFigures figures;
     figures.estimatedBytes = estimatedBytes_;
     std::vector<PassSamples> passes;

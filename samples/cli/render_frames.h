@@ -40,8 +40,8 @@ public:
     FrameRunner(const lightwell::Device& device, const std::string& technique,
                 const Parameters& parameters, const RenderInputs& inputs);
 
-    // Unmeasured warm-up, then `count` measured frames.
-    FrameFigures run(int count);
+    // `warmUpCount` unmeasured frames, in which caches and clocks settle, then `count` measured ones.
+    FrameFigures run(int warmUpCount, int count);
     const studio::PlanarBuffer& irradiance() const { return irradiance_; }
     const studio::PlanarBuffer& validity() const { return validity_; }
     // UsageError listing the views when there is none of this name.

@@ -149,6 +149,11 @@ class Lists(CommandLine):
             self.assertLessEqual({"name", "platform", "driver", "compute_units", "memory_bytes"}, set(device))
         self.assertIn(devices[0]["name"], self.done("devices").stdout)
 
+    def test_probe(self):
+        for device in self.json("devices", "--probe", "--json"):
+            for key in ("width", "multiply_add_gflops", "bandwidth_GBps", "launch_us"):
+                self.assertGreater(device[key], 0)
+
     def test_help(self):
         self.assertIn("interleave=", self.done("render", "--help").stdout)
         for command in ("devices", "scenes", "reference", "compare", "triptych"):
@@ -157,7 +162,8 @@ class Lists(CommandLine):
 
 class Render(CommandLine):
     def render(self, *arguments):
-        return self.json("render", "cornell", "--technique", "rsm", *SIZE, "--frames", "2", "--json", *arguments)
+        return self.json("render", "cornell", "--technique", "rsm", *SIZE, "--warmup", "1", "--frames", "2", "--json",
+                         *arguments)
 
     def test_json_and_pictures(self):
         picture, display = self.path("a.exr"), self.path("a.png")
