@@ -18,6 +18,10 @@ REFERENCES = os.path.join(ROOT, "samples", "scenes", "references")
 # rsm sees no blockers: against the truth with them it is too bright. nRMSE and bias of 1,024 VPLs may not
 # exceed what was measured when the technique landed by more than a tenth (sampling and filter).
 WITH_VISIBILITY = {  # scene: (nRMSE, bias)
+    "basic": (0.490, -0.034),  # concentrated where the cube stands on the floor: few VPLs, each bounded
+    "cornell": (0.248, +0.155),
+    "rooms": (0.393, +0.173),
+    "sphere_room": (0.0043, -0.0020),  # convex: nothing blocks, only sampling and bounding are left
 }
 # Against the limit without visibility only sampling (4,096 VPLs) and bounding are left.
 UNSHADOWED_BIAS = 0.03
