@@ -14,7 +14,7 @@ cd "$root" || exit 2
 source tests/support/packages.sh
 
 scene=cornell
-size=640x360
+size=400x400 # the Cornell box is square
 while [ $# -gt 0 ]; do
     case $1 in
         --size)
@@ -34,7 +34,7 @@ while [ $# -gt 0 ]; do
     shift
 done
 if ! [[ $size =~ ^[1-9][0-9]*x[1-9][0-9]*$ ]]; then
-    lightwell_complain "--size: expected WIDTHxHEIGHT, for example 640x360, got '$size'"
+    lightwell_complain "--size: expected WIDTHxHEIGHT, for example 400x400, got '$size'"
     exit 2
 fi
 
@@ -78,7 +78,7 @@ truth=$build/work/${scene//\//_}-$size-truth.exr
 rendered=$build/work/${scene//\//_}-$size-rsm.exr
 if [ ! -s "$truth" ]; then
     lightwell_say "path-tracing the truth (once)"
-    "$lightwell" reference "$scene" --bounces all --spp 256 --size "$size" --out "$truth" || exit 2
+    "$lightwell" reference "$scene" --bounces all --spp 128 --size "$size" --out "$truth" || exit 2
 fi
 "$lightwell" render "$scene" --technique rsm --frames 9 --size "$size" --out "$rendered" || exit 2
 echo
