@@ -229,13 +229,18 @@ void Device::takeFailures(bool all) {
     watched_ = std::move(pending);
 }
 
+void Device::raiseFailure() {
+    takeFailures(false);
+    if (!failure_.empty())
+        fail(LW_ERROR_DEVICE,
+             "a command failed on the device: ", std::exchange(failure_, std::string{}));
+}
+
 void Device::finish() {
     const cl_int status = clFinish(queue_);
     takeFailures(true);
     if (status != CL_SUCCESS && failure_.empty()) failure_ = clErrorName(status);
-    if (!failure_.empty())
-        fail(LW_ERROR_DEVICE,
-             "a command failed on the device: ", std::exchange(failure_, std::string{}));
+    raiseFailure();
     programs_->saveBinaries();
 }
 

@@ -41,6 +41,7 @@ public:
     bool insideLog() const;        // this thread is inside the device's log callback
     static bool insideAnyLog();    // ... of any device
     void describe(LWDeviceInfo& info) const;
+    void raiseFailure();  // throws DEVICE when a command is known to have failed; waits for nothing
     void finish();  // clFinish, then saves new binaries; throws DEVICE on an execution error
 
     void countAllocation(std::int64_t bytes) { allocatedBytes_ += std::uint64_t(bytes); }

@@ -29,12 +29,24 @@ public:
     // Waits for nothing: call after Device::finish. `names` are string literals.
     std::vector<LWPassTime> passes() const;
     double totalMilliseconds() const;
+    std::size_t heldEntries() const { return entries_.size(); }
 
 private:
     struct Entry {
         const char* pass;
         cl_event event;
     };
+    // Times summed by pass, and the span of them all in nanoseconds.
+    struct Sums {
+        std::vector<LWPassTime> passes;
+        cl_ulong first = ~cl_ulong(0), last = 0;
+        bool untimed = false;
+        void add(const Entry& entry);
+    };
+    void fold();
+    Sums sums() const;
+
+    Sums folded_;  // of commands that have completed and whose events are let go
     std::vector<Entry> entries_;
 };
 

@@ -7,6 +7,9 @@
 namespace lightwell {
 namespace {
 
+// Some hundred frames; beyond them, completed commands are summed up.
+constexpr std::size_t kMostEntries = 4096;
+
 // Start and end in nanoseconds; false when the event was not timed or has not completed.
 bool times(cl_event event, cl_ulong& start, cl_ulong& end) {
     return event &&
@@ -26,38 +29,61 @@ void Profile::clear() {
     for (const Entry& entry : entries_)
         if (entry.event) clReleaseEvent(entry.event);
     entries_.clear();
+    folded_ = Sums{};
 }
 
 void Profile::add(const char* pass, cl_event event) {
+    if (entries_.size() >= kMostEntries) fold();
     entries_.push_back({pass, event});
 }
 
-std::vector<LWPassTime> Profile::passes() const {
-    std::vector<LWPassTime> passes;
-    for (const Entry& entry : entries_) {
-        auto pass = std::find_if(passes.begin(), passes.end(), [&](const LWPassTime& candidate) {
-            return std::strcmp(candidate.name, entry.pass) == 0;
-        });
-        if (pass == passes.end()) pass = passes.insert(passes.end(), LWPassTime{entry.pass, 0.0, 0});
-        ++pass->launches;
-        cl_ulong start = 0, end = 0;
-        if (pass->milliseconds >= 0.0 && times(entry.event, start, end))
-            pass->milliseconds += double(end - start) * 1e-6;
-        else
-            pass->milliseconds = -1.0;
+// Sums up the commands that have completed: a host that updates a still world once and renders for hours
+// must not pile up events.
+void Profile::fold() {
+    std::size_t count = 0;
+    for (; count < entries_.size(); ++count) {
+        const Entry& entry = entries_[count];
+        cl_int status = CL_COMPLETE;
+        if (entry.event && clGetEventInfo(entry.event, CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof status,
+                                          &status, nullptr) == CL_SUCCESS &&
+            status > CL_COMPLETE)
+            break;
+        folded_.add(entry);
+        if (entry.event) clReleaseEvent(entry.event);
     }
-    return passes;
+    entries_.erase(entries_.begin(), entries_.begin() + std::ptrdiff_t(count));
+}
+
+void Profile::Sums::add(const Entry& entry) {
+    auto pass = std::find_if(passes.begin(), passes.end(), [&](const LWPassTime& candidate) {
+        return std::strcmp(candidate.name, entry.pass) == 0;
+    });
+    if (pass == passes.end()) pass = passes.insert(passes.end(), LWPassTime{entry.pass, 0.0, 0});
+    ++pass->launches;
+    cl_ulong start = 0, end = 0;
+    if (!times(entry.event, start, end)) {
+        pass->milliseconds = -1.0;
+        untimed = true;
+        return;
+    }
+    if (pass->milliseconds >= 0.0) pass->milliseconds += double(end - start) * 1e-6;
+    first = std::min(first, start);
+    last = std::max(last, end);
+}
+
+Profile::Sums Profile::sums() const {
+    Sums all = folded_;
+    for (const Entry& entry : entries_) all.add(entry);
+    return all;
+}
+
+std::vector<LWPassTime> Profile::passes() const {
+    return sums().passes;
 }
 
 double Profile::totalMilliseconds() const {
-    cl_ulong first = ~cl_ulong(0), last = 0;
-    for (const Entry& entry : entries_) {
-        cl_ulong start = 0, end = 0;
-        if (!times(entry.event, start, end)) return -1.0;
-        first = std::min(first, start);
-        last = std::max(last, end);
-    }
-    return entries_.empty() ? -1.0 : double(last - first) * 1e-6;
+    const Sums all = sums();
+    return all.untimed || all.passes.empty() ? -1.0 : double(all.last - all.first) * 1e-6;
 }
 
 }  // namespace lightwell

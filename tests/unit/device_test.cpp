@@ -210,7 +210,8 @@ TEST_CASE("the log reaches the callback, which is known to be inside", "[device]
     CHECK_FALSE(device.insideLog());
 }
 
-TEST_CASE("errors of execution surface at finish, once", "[device]") {
+TEST_CASE("errors of execution surface at finish or the next call, once", "[device]") {
+    const bool atFinish = GENERATE(true, false);
     const auto device = freshDevice();
     Profile profile;
     Executor executor(*device, profile);
@@ -225,10 +226,12 @@ TEST_CASE("errors of execution surface at finish, once", "[device]") {
     executor.run("test.add", device->programs().kernel("executor_test", "add_one"), {64, 1}, {16, 1},
                  values, cl_int(64));
     clSetUserEventStatus(gate, -7777);
-    const Thrown failed = thrown([&] { device->finish(); });
+    if (!atFinish) clFinish(device->queue());
+    const Thrown failed = thrown([&] { atFinish ? device->finish() : device->raiseFailure(); });
     CHECK(failed.status == LW_ERROR_DEVICE);
     CHECK(failed.says("failed"));
     clReleaseEvent(gate);
+    CHECK(thrown([&] { device->raiseFailure(); }).status == LW_SUCCESS);
     CHECK(thrown([&] { device->finish(); }).status == LW_SUCCESS);
 }
 

@@ -234,3 +234,21 @@ TEST_CASE("first launches of a kernel and local size are counted", "[executor]")
     CHECK(specialised(*device) == before + 2);
     device->finish();
 }
+
+TEST_CASE("times of a frame without end are summed up, not piled up", "[executor][large]") {
+    const auto device = freshDevice();
+    Profile profile;
+    Executor executor(*device, profile);
+    const Buffer values(*device, 256, "values");
+    constexpr std::uint32_t kRounds = 20, kFills = 500;
+    for (std::uint32_t round = 0; round < kRounds; ++round) {
+        for (std::uint32_t i = 0; i < kFills; ++i) executor.fill("test.fill", values, i, 0, 256);
+        device->finish();
+    }
+    CHECK(profile.heldEntries() < kRounds * kFills / 2);
+    const auto passes = profile.passes();
+    REQUIRE(passes.size() == 1);
+    CHECK(passes[0].launches == kRounds * kFills);
+    CHECK(passes[0].milliseconds > 0.0);
+    CHECK(profile.totalMilliseconds() >= passes[0].milliseconds);
+}
