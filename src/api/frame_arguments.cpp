@@ -119,6 +119,12 @@ void FrameArgument::checkNumbers() const {
         if (!good || !lit)
             fail(LW_ERROR_INVALID_ARGUMENT, "frame.vpls[", i,
                  "]: expected finite numbers, area and flux of 0 or more, got something else");
+        const float* n = vpl.normal;
+        const float squared = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
+        // Two per cent: normals that a host stored in 8 bits per component.
+        if (!(squared > 0.98f * 0.98f && squared < 1.02f * 1.02f))
+            fail(LW_ERROR_INVALID_ARGUMENT, "frame.vpls[", i, "].normal: expected unit length, got ",
+                 std::sqrt(squared));
     }
     for (std::uint32_t i = 0; i < frame_.blockerCount; ++i) {
         const LWBlocker& blocker = frame_.blockers[i];

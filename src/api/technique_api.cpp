@@ -25,10 +25,10 @@ LWStatus createTechnique(const char* function, LWDevice device, const char* name
 }
 
 // True when a failed update left the technique's world part as it was: techniques and inputs check their
-// arguments before they change anything.
+// arguments before they change anything. (What the kernels' indices or the device cannot hold is UNSUPPORTED,
+// and found out on the way.)
 bool refusedUnchanged(LWStatus status) {
-    return status == LW_ERROR_INVALID_ARGUMENT || status == LW_ERROR_INVALID_HANDLE ||
-           status == LW_ERROR_UNSUPPORTED;
+    return status == LW_ERROR_INVALID_ARGUMENT || status == LW_ERROR_INVALID_HANDLE;
 }
 
 void checkOutput(const LWOutput& output) {
@@ -114,6 +114,7 @@ LWStatus lwUpdate(LWTechnique technique, const LWFrame* frame) {
         Device& device = call.owner()->device;
         const FrameArgument own(call, frame);
         const SyncArgument sync(own.get().sync, device.context(), "frame.sync");
+        device.raiseFailure();
         auto record = std::make_unique<FrameRecord>(device);
         try {
             record->executor.waitFor(sync.get());
@@ -143,6 +144,7 @@ LWStatus lwRender(LWTechnique technique, LWView view, const LWGBuffer* gbuffer, 
         const SyncArgument sync(ownOutput.sync, call.owner()->device.context(), "output.sync");
         if (!object->updated)
             fail(LW_ERROR_NOT_UPDATED, "technique: expected a successful lwUpdate before, got none");
+        call.owner()->device.raiseFailure();
         Executor& executor = object->record->executor;
         executor.waitFor(sync.get());
         object->technique->render(executor, own, ownGBuffer, ownOutput);

@@ -35,6 +35,10 @@ void readRows(Executor& executor, const Buffer& from, const CheckedImage& checke
         }
 }
 
+const ImageRole& roleOf(std::uint32_t planeCount) {
+    return planeCount == 1 ? kOutputScalarRole : kOutputColourRole;
+}
+
 }  // namespace
 
 struct OutputTarget::Impl {
@@ -56,6 +60,11 @@ OutputTarget::~OutputTarget() = default;
 OutputTarget::OutputTarget(OutputTarget&&) noexcept = default;
 OutputTarget& OutputTarget::operator=(OutputTarget&&) noexcept = default;
 
+void OutputTarget::check(Device& device, const View& view, const LWImage& image, std::uint32_t planeCount,
+                         const char* name) {
+    if (!imageAbsent(image)) checkImage(device, image, roleOf(planeCount), view.width, view.height, name);
+}
+
 Planes OutputTarget::begin(Executor& executor, const View& view, const LWImage& image,
                            std::uint32_t planeCount, const char* name) {
     Impl& impl = *impl_;
@@ -63,8 +72,7 @@ Planes OutputTarget::begin(Executor& executor, const View& view, const LWImage& 
     impl.name = name;
     if (imageAbsent(image)) return {};
     Device& device = executor.device();
-    const ImageRole& role = planeCount == 1 ? kOutputScalarRole : kOutputColourRole;
-    const CheckedImage checked = checkImage(device, image, role, view.width, view.height, name);
+    const CheckedImage checked = checkImage(device, image, roleOf(planeCount), view.width, view.height, name);
 
     Buffer target;
     bool planes = checked.planesLayout;

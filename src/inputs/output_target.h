@@ -17,6 +17,10 @@ public:
     OutputTarget(OutputTarget&&) noexcept;
     OutputTarget& operator=(OutputTarget&&) noexcept;
 
+    // Throws what begin() would say of this image, and changes nothing: a frame with a bad output must be
+    // refused before its other images are imported.
+    static void check(Device& device, const View& view, const LWImage& image, std::uint32_t planeCount,
+                      const char* name);
     // The planes that kernels write for `image` (1 or 3): the host's own memory where its layout allows,
     // else an image of ours. Empty when the format is LW_FORMAT_NONE. `name`: "output.irradiance" ...
     Planes begin(Executor& executor, const View& view, const LWImage& image, std::uint32_t planeCount,

@@ -25,22 +25,6 @@ cl_float2 rotation(std::uint32_t seed) {
     return shift;
 }
 
-void checkVpls(const LWVpl* vpls, std::uint32_t count) {
-    for (std::uint32_t i = 0; i < count; ++i) {
-        const LWVpl& v = vpls[i];
-        bool finite = std::isfinite(v.area) && v.area >= 0.0f;
-        for (int a = 0; a < 3; ++a)
-            finite = finite && std::isfinite(v.position[a]) && std::isfinite(v.normal[a]) &&
-                     std::isfinite(v.flux[a]) && v.flux[a] >= 0.0f;
-        if (!finite)
-            fail(LW_ERROR_INVALID_ARGUMENT, "frame.vpls[", i,
-                 "]: expected a finite position and normal and finite area and flux of at least 0");
-        const float n2 = v.normal[0] * v.normal[0] + v.normal[1] * v.normal[1] + v.normal[2] * v.normal[2];
-        if (!(n2 > 0.98f && n2 < 1.02f))
-            fail(LW_ERROR_INVALID_ARGUMENT, "frame.vpls[", i, "].normal: expected unit length, got ", std::sqrt(n2));
-    }
-}
-
 }  // namespace
 
 lw_subset_order subsetOrder(std::uint32_t count, std::uint32_t subsets) {
@@ -85,7 +69,6 @@ void VplSampling::reserve(const RsmInput& rsms, std::uint32_t authoredCount) {
 
 void VplSampling::record(Executor& executor, const RsmInput& rsms, const LWVpl* authored,
                          std::uint32_t authoredCount) {
-    checkVpls(authored, authoredCount);
     reserve(rsms, authoredCount);
     static_assert(sizeof(LWVpl) == sizeof(lw_vpl), "LWVpl is uploaded as it is");
     const lw_vpl none{};
@@ -132,6 +115,8 @@ std::uint64_t VplSampling::bytes() const {
 
 std::uint64_t VplSampling::estimateBytes(const VplSamplingOptions& options, std::uint64_t texels) {
     const std::uint64_t drawn = options.count ? options.count : texels;
+    if (drawn > std::numeric_limits<std::uint32_t>::max())
+        fail(LW_ERROR_UNSUPPORTED, "rsmTexels: ", drawn, " VPLs exceed the 32-bit indices of the kernels");
     const lw_subset_order order = subsetOrder(std::uint32_t(drawn), options.subsets);
     const std::uint64_t list = std::uint64_t(order.subsets) * std::uint64_t(order.capacity) * sizeof(lw_vpl);
     // Rows are not known before the RSMs are: a square map's are the most common.

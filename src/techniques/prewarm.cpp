@@ -41,10 +41,17 @@ struct Inputs {
     }
 };
 
+// The device reads and writes the inputs until it is idle, also when an exception cuts the frames short.
+struct IdleAtEnd {
+    Device& device;
+    ~IdleAtEnd() { clFinish(device.queue()); }
+};
+
 }  // namespace
 
 void exerciseTechnique(Executor& executor, Technique& technique) {
     Inputs inputs;
+    const IdleAtEnd idle{executor.device()};
     const auto view = std::make_shared<View>(kSize, kSize);
     for (const bool byDepth : {false, true}) {
         LWRsm rsm{};
@@ -78,6 +85,12 @@ void exerciseTechnique(Executor& executor, Technique& technique) {
         technique.update(executor, frame);
         technique.render(executor, view, gbuffer, output);
         technique.debugViews(view.get());
+        executor.device().finish();
+        // The same view with every light out.
+        LWFrame dark{};
+        dark.structSize = sizeof dark;
+        technique.update(executor, dark);
+        technique.render(executor, view, gbuffer, output);
         executor.device().finish();
     }
 }

@@ -28,6 +28,23 @@ VplSamplingOptions samplingOptions(const LWRsmDesc& desc) {
 bool halfResolution(const LWRsmDesc& desc) { return desc.resolution == LW_RESOLUTION_HALF; }
 bool filters(const LWRsmDesc& desc) { return desc.filter != 0 && desc.interleave > 1; }
 
+// What the host gave and this technique does not read: said in the stats, so that nobody waits for its light.
+std::vector<LWChoice> unusedInputs(const LWFrame& frame) {
+    constexpr const char* kReason = "not used: technique rsm takes light from RSMs and authored VPLs only";
+    std::vector<LWChoice> unused;
+    if (frame.sourceViewCount) unused.push_back({"frame.sourceViews", kReason});
+    if (frame.geometry) unused.push_back({"frame.geometry", kReason});
+    if (frame.blockerCount) unused.push_back({"frame.blockers", kReason});
+    if (frame.environment[0] > 0.0f || frame.environment[1] > 0.0f || frame.environment[2] > 0.0f)
+        unused.push_back({"frame.environment", kReason});
+    for (std::uint32_t l = 0; l < frame.lightCount; ++l)
+        if (frame.lights[l].rsmCount == 0) {
+            unused.push_back({"frame.lights", "some have no RSM: technique rsm makes no indirect light of those"});
+            break;
+        }
+    return unused;
+}
+
 class RsmTechnique final : public Technique {
 public:
     RsmTechnique(Device& device, const LWRsmDesc& desc)
@@ -37,13 +54,19 @@ public:
     void update(Executor& executor, const LWFrame& frame) override {
         rsms_.import(executor, frame);
         sampling_.record(executor, rsms_, frame.vpls, frame.vplCount);
+        unused_ = unusedInputs(frame);
+        states_.purge();
+        states_.each([](ViewState& state) { state.rendered = false; });
     }
 
     void render(Executor& executor, const std::shared_ptr<View>& view, const LWGBuffer& gbuffer,
                 const LWOutput& output) override {
-        checkOutputs(output);
+        checkOutputs(output, *view);
         ViewState& state = states_.get(view, [&] { return std::make_unique<ViewState>(device_, desc_, *view); });
         state.gbuffer.import(executor, *view, gbuffer, 0, "gbuffer");
+        // Should a later step fail, the images of the frame before are gone.
+        state.lastGathered = state.lastFiltered = Planes{};
+        state.rendered = true;
         const Planes irradiance = state.irradiance.begin(executor, *view, output.irradiance, 3, "output.irradiance");
         const Planes validity = state.validity.begin(executor, *view, output.validity, 1, "output.validity");
         if (irradiance) light(executor, state, irradiance);
@@ -72,11 +95,12 @@ public:
         OutputTarget irradiance, validity;
         PlanarImage gathered, filtered, halfPosition, halfNormal;
         Buffer counts;  // rejected pixels, up-sampling fallbacks
-        Planes lastGathered, lastFiltered;
+        Planes lastGathered, lastFiltered;  // empty where the last frame had no irradiance
+        bool rendered = false;              // since the last update
     };
 
 private:
-    static void checkOutputs(const LWOutput& output);
+    void checkOutputs(const LWOutput& output, const View& view) const;
     void light(Executor& executor, ViewState& state, const Planes& irradiance);
 
     Device& device_;
@@ -86,6 +110,7 @@ private:
     InterleavedGather gather_;
     JointBilateral bilateral_;
     PerView<ViewState> states_;
+    std::vector<LWChoice> unused_;  // of the last update
 };
 
 RsmTechnique::ViewState::ViewState(Device& device, const LWRsmDesc& desc, const View& view)
@@ -109,7 +134,7 @@ std::uint64_t RsmTechnique::ViewState::imageBytes(const LWRsmDesc& desc, std::ui
     return images * 3 * w * h * sizeof(float) + 2 * sizeof(cl_int);
 }
 
-void RsmTechnique::checkOutputs(const LWOutput& output) {
+void RsmTechnique::checkOutputs(const LWOutput& output, const View& view) const {
     const std::pair<const LWImage*, const char*> unsupported[] = {{&output.ambientOcclusion, "ambientOcclusion"},
                                                                   {&output.specularRadiance, "specularRadiance"},
                                                                   {&output.shadow, "shadow"}};
@@ -118,6 +143,8 @@ void RsmTechnique::checkOutputs(const LWOutput& output) {
             fail(LW_ERROR_UNSUPPORTED, "output.", name, ": technique rsm makes irradiance and validity only");
     if (output.irradiance.format == LW_FORMAT_NONE && output.validity.format == LW_FORMAT_NONE)
         fail(LW_ERROR_INVALID_ARGUMENT, "output: expected irradiance or validity, got neither");
+    OutputTarget::check(device_, view, output.irradiance, 3, "output.irradiance");
+    OutputTarget::check(device_, view, output.validity, 1, "output.validity");
 }
 
 void RsmTechnique::light(Executor& executor, ViewState& state, const Planes& irradiance) {
@@ -150,7 +177,9 @@ Report RsmTechnique::report() {
     rsms_.report(report);
     report.counts.push_back({"vpls", sampling_.vplCount()});
     std::array<cl_int, 2> total{};
+    report.choices.insert(report.choices.end(), unused_.begin(), unused_.end());
     states_.each([&](const ViewState& state) {
+        if (!state.rendered) return;
         state.gbuffer.report(report);
         state.irradiance.report(report);
         state.validity.report(report);

@@ -84,11 +84,13 @@ public:
         for (const auto& entry : states_) visit(*entry.second);
     }
 
-private:
+    // Drops the states of views that are gone.
     void purge() {
         for (std::size_t i = states_.size(); i-- > 0;)
             if (states_[i].first.expired()) states_.erase(states_.begin() + std::ptrdiff_t(i));
     }
+
+private:
     std::vector<std::pair<std::weak_ptr<View>, std::unique_ptr<State>>> states_;
 };
 

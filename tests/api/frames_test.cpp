@@ -35,6 +35,12 @@ struct Rig {
         CHECK(lwGetStats(technique, &result) == LW_SUCCESS);
         return result;
     }
+    std::uint32_t launches() {
+        const LWStats all = stats();
+        std::uint32_t sum = 0;
+        for (std::uint32_t i = 0; i < all.passCount; ++i) sum += all.passes[i].launches;
+        return sum;
+    }
     LWDevice device;
     LWView view = nullptr;
     LWTechnique technique = nullptr;
@@ -98,6 +104,13 @@ TEST_CASE("refused frames name the argument and change nothing", "[api]") {
     frame.vplCount = 1;
     frame.vpls = &vpl;
     CHECK_THAT(refusal(&frame), Contains("frame.vpls[0]"));
+    vpl = LWVpl{};
+    vpl.normal[1] = 1;
+    vpl.position[2] = std::nanf("");
+    CHECK_THAT(refusal(&frame), Contains("frame.vpls[0]") && Contains("finite"));
+    vpl.position[2] = 0;
+    vpl.normal[1] = 2;
+    CHECK_THAT(refusal(&frame), Contains("frame.vpls[0].normal") && Contains("unit length, got 2"));
     frame = scene.frame;
     LWSourceView source{};
     frame.sourceViewCount = 1;
@@ -164,6 +177,88 @@ TEST_CASE("refused frames name the argument and change nothing", "[api]") {
     CHECK(lastError(rig.device) == "");
 }
 
+TEST_CASE("a refused output leaves statistics and debug views as they were", "[api]") {
+    ApiScene scene(32, 8);
+    Rig rig(scene);
+    LWRsmDesc desc;
+    lwDefaultRsm(&desc);
+    desc.interleave = 1;  // "gathered" is then the host's own image, where that is used in place
+    LWTechnique technique = nullptr;
+    REQUIRE(lwCreateRsm(rig.device, &desc, &technique) == LW_SUCCESS);
+    std::swap(technique, rig.technique);
+    HostImage planar(LW_FORMAT_PLANAR_FLOAT3, 32, 8);
+    scene.output.irradiance = planar.image();
+    REQUIRE(lwUpdate(rig.technique, &scene.frame) == LW_SUCCESS);
+    REQUIRE(lwRender(rig.technique, rig.view, &scene.gbuffer, &scene.output) == LW_SUCCESS);
+    const auto gathered = [&] {
+        std::vector<float> pixels(32 * 8 * 3);
+        CHECK(lwReadDebugView(rig.technique, rig.view, "gathered", pixels.data(), pixels.size()) == LW_SUCCESS);
+        return pixels;
+    };
+    const std::vector<float> before = gathered();
+    const std::uint32_t launches = rig.launches();
+    LWOutput bad = scene.output;
+    HostImage other(LW_FORMAT_FLOAT3, 32, 8);
+    bad.irradiance = other.image();
+    bad.validity.format = LW_FORMAT_HALF4;
+    CHECK(lwRender(rig.technique, rig.view, &scene.gbuffer, &bad) == LW_ERROR_INVALID_ARGUMENT);
+    CHECK_THAT(lastError(rig.device), Contains("output.validity.format"));
+    CHECK(rig.launches() == launches);
+    CHECK(gathered() == before);
+    lwReleaseTechnique(technique);
+}
+
+TEST_CASE("inputs that a technique does not read are named in the statistics", "[api]") {
+    ApiScene scene;
+    Rig rig(scene);
+    const auto choices = [&] {
+        REQUIRE(lwUpdate(rig.technique, &scene.frame) == LW_SUCCESS);
+        const LWStats stats = rig.stats();
+        std::string names;
+        for (std::uint32_t i = 0; i < stats.choiceCount; ++i)
+            if (std::string(stats.choices[i].reason).find("not used") == 0 ||
+                std::string(stats.choices[i].reason).find("some have no RSM") == 0)
+                names += std::string(stats.choices[i].name) + " ";
+        return names;
+    };
+    CHECK(choices() == "");
+    LWGeometry geometry{};
+    geometry.structSize = sizeof geometry;
+    const LWSourceView source{rig.view, &scene.gbuffer};
+    LWBlocker blocker{};
+    const LWLight lights[2] = {scene.light, [&] {
+                                   LWLight analytic = scene.light;
+                                   analytic.rsmCount = 0;
+                                   return analytic;
+                               }()};
+    scene.frame.geometry = &geometry;
+    scene.frame.sourceViews = &source;
+    scene.frame.sourceViewCount = 1;
+    scene.frame.blockers = &blocker;
+    scene.frame.blockerCount = 1;
+    scene.frame.environment[2] = 0.5f;
+    scene.frame.lights = lights;
+    scene.frame.lightCount = 2;
+    CHECK(choices() == "frame.sourceViews frame.geometry frame.blockers frame.environment frame.lights ");
+}
+
+TEST_CASE("counts are those of the views rendered since the last update", "[api]") {
+    ApiScene scene;
+    Rig rig(scene);
+    const auto rejected = [&] {
+        const LWStats stats = rig.stats();
+        for (std::uint32_t i = 0; i < stats.countCount; ++i)
+            if (std::string(stats.counts[i].name) == "rejected_pixels") return int(stats.counts[i].value);
+        return -1;
+    };
+    scene.normal.set(4, 3, std::nan(""), 0, 0);
+    REQUIRE(lwUpdate(rig.technique, &scene.frame) == LW_SUCCESS);
+    REQUIRE(lwRender(rig.technique, rig.view, &scene.gbuffer, &scene.output) == LW_SUCCESS);
+    CHECK(rejected() == 1);
+    REQUIRE(lwUpdate(rig.technique, &scene.frame) == LW_SUCCESS);
+    CHECK(rejected() == 0);
+}
+
 TEST_CASE("handles of another device are refused", "[api]") {
     ApiScene scene;
     Rig rig(scene), other(scene);
@@ -208,6 +303,9 @@ TEST_CASE("prewarmed techniques compile nothing more, through resizes", "[api]")
         REQUIRE(lwFinish(rig.device) == LW_SUCCESS);
         REQUIRE(current.lit());
     }
+    scene.frame.lightCount = 0;  // the lights go out
+    REQUIRE(lwUpdate(rig.technique, &scene.frame) == LW_SUCCESS);
+    REQUIRE(lwFinish(rig.device) == LW_SUCCESS);
     REQUIRE(lwGetDeviceInfo(rig.device, &after) == LW_SUCCESS);
     CHECK(before.programsBuilt == after.programsBuilt);
     CHECK(before.programsLoaded == after.programsLoaded);

@@ -251,27 +251,3 @@ TEST_CASE("a drawn set's light converges to that of all texels", "[vpl_sampling]
         CHECK(light(16384, uniform) == Approx(all).epsilon(0.01));
     }
 }
-
-TEST_CASE("bad authored VPLs are refused by name", "[vpl_sampling]") {
-    KernelRig rig(16);
-    Maps maps({{16, 4}}, spotFlux);
-    LWVpl vpl{};
-    vpl.normal[1] = 1.0f;
-    auto refused = [&](LWVpl bad) {
-        try {
-            draw(rig, maps, {}, {vpl, bad});
-        } catch (const std::exception& error) {
-            return std::string(error.what());
-        }
-        return std::string();
-    };
-    LWVpl bad = vpl;
-    bad.flux[2] = -1.0f;
-    CHECK(refused(bad).find("frame.vpls[1]") != std::string::npos);
-    bad = vpl;
-    bad.position[0] = std::numeric_limits<float>::quiet_NaN();
-    CHECK(refused(bad).find("finite") != std::string::npos);
-    bad = vpl;
-    bad.normal[1] = 2.0f;
-    CHECK(refused(bad).find("unit length") != std::string::npos);
-}
