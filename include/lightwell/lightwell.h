@@ -24,8 +24,10 @@
  *  - RSM `flux` is albedo * incident flux through the texel, in W.
  *  - the host composites L = L_d + albedo / pi * irradiance.
  *
- * VERSIONING: the first field of every struct is `structSize`; set it to sizeof(struct), which
- * lwDefault* and the LW_INIT macro do. Zero in any other field means "absent" or "the default".
+ * VERSIONING: structs that may grow begin with `structSize`; set it to sizeof(struct), which lwDefault*
+ * and the LW_INIT macro do. The others (LWImage, LWCamera, LWVpl, LWBlocker, LWSourceView, and what the
+ * library hands out in arrays) keep their layout. Zero in any other field means "absent" or "the
+ * default", unless the field says what else.
  *
  * THREADS: calls on one device are serialised by a lock of that device and may come from any thread;
  * devices are independent of each other. A log callback must not call Lightwell (it gets
@@ -194,9 +196,11 @@ typedef enum LWFormat {
  *
  *  Used in place, without copy or conversion: LW_FORMAT_PLANAR_* and LW_FORMAT_FLOAT1 whose rows are
  *  16 pixels long or a multiple of it (byteRowStride % 64 == 0), whose start is 64-byte aligned, with
- *  all rows' padding allocated, on a device that shares memory with the host (or as cl_mem). Padding
- *  may hold anything. Everything else is unpacked on the device; the cost stands in the stats as
- *  `gbuffer_input.*`, `rsm_input.*` and `output.*`. */
+ *  all rows' padding allocated, on a device that shares memory with the host (or as cl_mem). Padding up
+ *  to the next multiple of 16 pixels may hold anything, and is overwritten in outputs: a part of a wider
+ *  image whose width is no multiple of 16 must be handed over with another layout. Everything else is
+ *  unpacked on the device; the cost stands in the stats as `gbuffer_input.*`, `rsm_input.*` and
+ *  `output.*`. */
 typedef struct LWImage {
     const void* host;         /**< address of pixel (0, 0) less byteOffset; written for outputs */
     void* clMem;              /**< cl_mem of the device's context, or null */
@@ -239,8 +243,8 @@ typedef struct LWGBuffer {
     LWDepthKind depthKind;
     LWImage position;        /**< world position; 3 channels */
     LWImage depth;           /**< instead of `position`: 1 channel, with `camera` */
-    LWImage normal;          /**< world normal; 3 channels; zero = no surface (optional with depth:
-                                  pixels whose depth does not unproject to a finite point have none) */
+    LWImage normal;          /**< world normal; 3 channels; zero = no surface. With depth, pixels whose
+                                  depth does not unproject to a finite point have none either */
     LWImage albedo;          /**< diffuse reflectance in [0,1] */
     LWImage directRadiance;  /**< L_d, W/(sr m^2) */
     LWImage roughness;       /**< 1 channel, [0,1] */
@@ -490,7 +494,8 @@ typedef struct LWDebugView {
 LW_API LWStatus lwCountDebugViews(LWTechnique technique, LWView view, uint32_t* count);
 LW_API LWStatus lwDescribeDebugView(LWTechnique technique, LWView view, uint32_t index,
                                     LWDebugView* info);
-/** Waits, then copies `channels` planes of width * height floats, packed. `capacity` counts floats. */
+/** Waits, then copies `channels` planes of width * height floats, packed. `capacity` counts floats.
+ *  Host memory that the last frame used in place (inputs and outputs) must still be valid. */
 LW_API LWStatus lwReadDebugView(LWTechnique technique, LWView view, const char* name, float* pixels,
                                 uint64_t capacity);
 
