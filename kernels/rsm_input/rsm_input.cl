@@ -20,7 +20,7 @@ __kernel void rsm_input_rows(__global int* rows, __global uint* counters, const 
 
 LW_FN real lw_linear(float4 c, real i, real j) { return fma_(c.x, i, fma_(c.y, j, c.w)); }
 
-LW_FN mask lw_usable_flux(real flux) { return and_(isfinite_(flux), flux >= 0.0f); }
+LW_FN mask lw_usable_flux(real flux) { return and_(flux >= 0.0f, flux <= LW_LARGEST_FLUX); }
 
 // One work-item = LW_WIDTH texels of a row, in place. Makes every value finite, the normals unit length
 // and the padding dark, and computes the texel's surface area:

@@ -14,6 +14,10 @@
 // across the light (a silhouette, an interpolated normal) stands for a huge disc and loses its light.
 #define LW_MIN_LIGHT_COSINE 0.05f
 
+// Reflected flux of a texel above which it is refused as garbage. Sums over the most texels that fit stay
+// finite (2e8 * 1e30 < 3e38), and no lamp comes near it in any unit of length.
+#define LW_LARGEST_FLUX 1e30f
+
 // Planes of the texels.
 #define LW_RSM_POSITION 0
 #define LW_RSM_NORMAL 3

@@ -42,8 +42,8 @@ public:
     ~RsmInput();
 
     // Records the unpacking of every RSM (passes "rsm_input.*"): flux 0 and normal 0 where the host gave
-    // none, gave something not finite or negative (counted as rejected), or where a finer cascade of the
-    // same directional light covers the texel; area A_p as lightwell.h's lights define it.
+    // none, gave something not finite, negative or beyond LW_LARGEST_FLUX (counted as rejected), or where
+    // a finer cascade of the same directional light covers the texel; area A_p as lightwell.h's lights define it.
     void import(Executor& executor, const LWFrame& frame);
 
     Planes texels;  // kPlaneCount planes, height 1, width = all texels with padding
