@@ -40,8 +40,9 @@
  *
  * ERRORS: every fallible call returns an LWStatus. The first failure since the last lwGetLastError is
  * kept with a message that names the argument, what was expected and what came. After a failed call
- * the objects are as they were before it. Errors of the device's execution surface at lwFinish and at
- * the next call.
+ * the objects are as they were before it, unless memory or the device failed: a technique then asks for
+ * another lwUpdate (LW_ERROR_NOT_UPDATED). Errors of the device's execution surface at lwFinish, and at
+ * the next lwUpdate or lwRender.
  */
 #ifndef LIGHTWELL_LIGHTWELL_H
 #define LIGHTWELL_LIGHTWELL_H
@@ -84,7 +85,7 @@ typedef enum LWStatus {
     LW_SUCCESS = 0,
     LW_ERROR_INVALID_ARGUMENT = 1, /**< a value outside its range; the message names it */
     LW_ERROR_INVALID_HANDLE = 2,   /**< null, released, or a handle of another kind or device */
-    LW_ERROR_OUT_OF_MEMORY = 3,    /**< host or device; nothing was changed */
+    LW_ERROR_OUT_OF_MEMORY = 3,    /**< host or device memory is exhausted */
     LW_ERROR_UNSUPPORTED = 4,      /**< this device or build lacks a feature; the message says which */
     LW_ERROR_NO_DEVICE = 5,        /**< no OpenCL device matches the selector */
     LW_ERROR_BUILD_FAILED = 6,     /**< a kernel does not build; the message carries the log */

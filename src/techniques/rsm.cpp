@@ -175,7 +175,9 @@ void RsmTechnique::light(Executor& executor, ViewState& state, const Planes& irr
 Report RsmTechnique::report() {
     Report report;
     rsms_.report(report);
-    report.counts.push_back({"vpls", sampling_.vplCount()});
+    // With every texel a VPL, the list also holds the dark padding of the maps' rows.
+    const std::uint32_t padding = desc_.vpls == 0 ? rsms_.texels.width - rsms_.texelCount : 0;
+    report.counts.push_back({"vpls", sampling_.vplCount() - padding});
     std::array<cl_int, 2> total{};
     report.choices.insert(report.choices.end(), unused_.begin(), unused_.end());
     states_.each([&](const ViewState& state) {

@@ -245,6 +245,15 @@ TEST_CASE("stats name the passes, count what was refused, and memory is as estim
     CHECK(stats.deviceBytes > estimate / 4);
 }
 
+TEST_CASE("every texel counts as a VPL, the padding of rows does not", "[rsm]") {
+    TestDevice device(16);
+    LitFloor floor(13, uniformProfile);
+    TestTechnique technique(device, descOf(0, 4));
+    CHECK(technique.count("vpls") == 0);
+    technique.update({floor.light});
+    CHECK(technique.count("vpls") == 13 * 13);
+}
+
 TEST_CASE("rsm refuses what it cannot make", "[rsm]") {
     TestDevice device(16);
     LitFloor floor(32, spotProfile);
