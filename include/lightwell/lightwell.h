@@ -198,10 +198,10 @@ typedef enum LWFormat {
  *  Used in place, without copy or conversion: LW_FORMAT_PLANAR_* and LW_FORMAT_FLOAT1 whose rows are
  *  16 pixels long or a multiple of it (byteRowStride % 64 == 0), whose start is 64-byte aligned, with
  *  all rows' padding allocated, on a device that shares memory with the host (or as cl_mem). Padding up
- *  to the next multiple of 16 pixels may hold anything, and is overwritten in outputs: a part of a wider
- *  image whose width is no multiple of 16 must be handed over with another layout. Everything else is
- *  unpacked on the device; the cost stands in the stats as `gbuffer_input.*`, `rsm_input.*` and
- *  `output.*`. */
+ *  to the next multiple of 16 pixels may hold anything. An output is written in place only when that
+ *  padding is its own (the row stride is the width rounded up to 16 pixels) or there is none; it is then
+ *  overwritten. Everything else is unpacked, or packed, on the device; the cost stands in the stats as
+ *  `gbuffer_input.*`, `rsm_input.*` and `output.*`. */
 typedef struct LWImage {
     const void* host;         /**< address of pixel (0, 0) less byteOffset; written for outputs */
     void* clMem;              /**< cl_mem of the device's context, or null */

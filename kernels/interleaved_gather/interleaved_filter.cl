@@ -26,7 +26,7 @@ LW_FN void add_row(lw_window_sum* sum, const lw_surface s, __global const float*
         const real w = edge_weight(s, LW_TAP(position, row.position), LW_TAP(position, row.position + row.positionPlane),
                                    LW_TAP(position, row.position + 2 * row.positionPlane), LW_TAP(normal, row.normal),
                                    LW_TAP(normal, row.normal + row.normalPlane),
-                                   LW_TAP(normal, row.normal + 2 * row.normalPlane));
+                                   LW_TAP(normal, row.normal + 2 * row.normalPlane), s.scale);
         sum->r = fma_(w, LW_TAP(irradiance, row.irradiance), sum->r);
         sum->g = fma_(w, LW_TAP(irradiance, row.irradiance + row.irradiancePlane), sum->g);
         sum->b = fma_(w, LW_TAP(irradiance, row.irradiance + 2 * row.irradiancePlane), sum->b);
@@ -63,7 +63,7 @@ __kernel void interleaved_gather_filter(__global const float* position, int4 pos
             else add_row(&sum, s, position, normal, irradiance, row, 0, first, columns);
         }
     }
-    // The pixel itself has weight 1 up to rounding of its normal's length, so the sum is never small.
+    // The pixel itself has weight 1 up to rounding, so the sum is never small.
     const real scale = select_((real)0.0f, 1.0f / sum.weight, and_(s.valid, sum.weight > 0.0f));
     const int o = filteredLayout.x + y * filteredLayout.y + x;
     store(sum.r * scale, filtered, o);

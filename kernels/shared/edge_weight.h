@@ -14,11 +14,13 @@
 // Lower: light bleeds around corners and over small curvature. Higher: noise on normal-mapped surfaces.
 #define LW_EDGE_NORMAL_COSINE 0.8f
 
-LW_FN real edge_weight(const lw_surface s, real qx, real qy, real qz, real mx, real my, real mz) {
+// `scale` brings the neighbour's normal to unit length. A raw neighbour is given the pixel's own scale: a
+// G-buffer's normals share one length (or nearly), and the pixel itself then has a weight of exactly 1.
+LW_FN real edge_weight(const lw_surface s, real qx, real qy, real qz, real mx, real my, real mz, real scale) {
     const real dx = qx - s.px, dy = qy - s.py, dz = qz - s.pz;
     const real d2 = fma_(dx, dx, fma_(dy, dy, dz * dz));
     const real off = fma_(dx, s.nx, fma_(dy, s.ny, dz * s.nz));
-    const real agreement = fma_(mx, s.nx, fma_(my, s.ny, mz * s.nz));
+    const real agreement = scale * fma_(mx, s.nx, fma_(my, s.ny, mz * s.nz));
     const real w = fmin((agreement - LW_EDGE_NORMAL_COSINE) * (1.0f / (1.0f - LW_EDGE_NORMAL_COSINE)), (real)1.0f);
     // NaN in a neighbour fails both comparisons.
     return select_((real)0.0f, w, and_(off * off <= (LW_EDGE_SLOPE * LW_EDGE_SLOPE) * d2, w > 0.0f));

@@ -7,6 +7,7 @@
 typedef struct {
     real px, py, pz;  // world position; 0 without a surface
     real nx, ny, nz;  // unit normal; 0 without a surface
+    real scale;       // 1 / length of the normal as the host gave it
     mask valid;       // a surface with finite position and a normal that can be normalised
     mask rejected;    // not a surface although the host did not mark it as background (zero normal)
 } lw_surface;
@@ -19,13 +20,13 @@ LW_FN lw_surface make_surface(real px, real py, real pz, real nx, real ny, real 
     const real n2 = fma_(nx, nx, fma_(ny, ny, nz * nz));
     s.valid = and_(and_(n2 > 0.25f, n2 < 4.0f), and_(isfinite_(px), and_(isfinite_(py), isfinite_(pz))));
     s.rejected = and_(not_(s.valid), not_(n2 == 0.0f));
-    const real scale = rsqrt(n2);
+    s.scale = rsqrt(n2);
     s.px = select_((real)0.0f, px, s.valid);
     s.py = select_((real)0.0f, py, s.valid);
     s.pz = select_((real)0.0f, pz, s.valid);
-    s.nx = select_((real)0.0f, nx * scale, s.valid);
-    s.ny = select_((real)0.0f, ny * scale, s.valid);
-    s.nz = select_((real)0.0f, nz * scale, s.valid);
+    s.nx = select_((real)0.0f, nx * s.scale, s.valid);
+    s.ny = select_((real)0.0f, ny * s.scale, s.valid);
+    s.nz = select_((real)0.0f, nz * s.scale, s.valid);
     return s;
 }
 

@@ -147,8 +147,13 @@ LWStatus lwRender(LWTechnique technique, LWView view, const LWGBuffer* gbuffer, 
         call.owner()->device.raiseFailure();
         Executor& executor = object->record->executor;
         executor.waitFor(sync.get());
-        object->technique->render(executor, own, ownGBuffer, ownOutput);
-        executor.signal(sync.get());
-        executor.flush();
+        try {
+            object->technique->render(executor, own, ownGBuffer, ownOutput);
+            executor.signal(sync.get());
+            executor.flush();
+        } catch (...) {
+            executor.forgetWaits();  // the host may release its events as soon as the call is back
+            throw;
+        }
     });
 }

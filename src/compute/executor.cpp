@@ -2,6 +2,7 @@
 #include "compute/executor.h"
 
 #include <limits>
+#include <utility>
 
 #include "compute/device.h"
 #include "compute/error.h"
@@ -41,6 +42,7 @@ void Executor::setArg(Kernel& kernel, cl_uint& index, const Planes& planes) {
 
 void Executor::enqueue(const char* pass, Kernel& kernel, Range global, Range local,
                        cl_uint argumentCount) {
+    startWaits();
     if (argumentCount != kernel.argumentCount())
         fail(LW_ERROR_INTERNAL, pass, ": kernel ", kernel.name(), " takes ", kernel.argumentCount(),
              " arguments, got ", argumentCount);
@@ -76,6 +78,7 @@ void Executor::done(const char* pass, cl_event event) {
 
 void Executor::write(const char* pass, const Buffer& to, std::size_t byteOffset, std::size_t bytes,
                      const void* from) {
+    startWaits();
     checkRange(pass, to, byteOffset, bytes);
     cl_event event = nullptr;
     checkCl(clEnqueueWriteBuffer(device_.queue(), to.get(), CL_FALSE, byteOffset, bytes, from, 0,
@@ -86,6 +89,7 @@ void Executor::write(const char* pass, const Buffer& to, std::size_t byteOffset,
 }
 
 void Executor::read(const char* pass, cl_mem from, std::size_t byteOffset, std::size_t bytes, void* to) {
+    startWaits();
     cl_event event = nullptr;
     checkCl(
         clEnqueueReadBuffer(device_.queue(), from, CL_FALSE, byteOffset, bytes, to, 0, nullptr, &event),
@@ -96,6 +100,7 @@ void Executor::read(const char* pass, cl_mem from, std::size_t byteOffset, std::
 
 void Executor::fill(const char* pass, const Buffer& buffer, std::uint32_t pattern,
                     std::size_t byteOffset, std::size_t bytes) {
+    startWaits();
     checkRange(pass, buffer, byteOffset, bytes);
     cl_event event = nullptr;
     checkCl(clEnqueueFillBuffer(device_.queue(), buffer.get(), &pattern, sizeof pattern, byteOffset,
@@ -106,6 +111,7 @@ void Executor::fill(const char* pass, const Buffer& buffer, std::uint32_t patter
 
 void Executor::copy(const char* pass, cl_mem from, cl_mem to, std::size_t fromOffset,
                     std::size_t toOffset, std::size_t bytes) {
+    startWaits();
     cl_event event = nullptr;
     checkCl(
         clEnqueueCopyBuffer(device_.queue(), from, to, fromOffset, toOffset, bytes, 0, nullptr, &event),
@@ -114,6 +120,7 @@ void Executor::copy(const char* pass, cl_mem from, cl_mem to, std::size_t fromOf
 }
 
 void Executor::publish(const char* pass, const Buffer& buffer) {
+    startWaits();
     cl_int status = CL_SUCCESS;
     cl_event event = nullptr;
     void* host = clEnqueueMapBuffer(device_.queue(), buffer.get(), CL_FALSE, CL_MAP_READ, 0,
@@ -132,16 +139,20 @@ void Executor::publish(const char* pass, const Buffer& buffer) {
 }
 
 void Executor::waitFor(const LWSync* sync) {
-    if (!sync || sync->waitEventCount == 0) return;
-    std::vector<cl_event> events;
+    if (!sync) return;
     for (std::uint32_t i = 0; i < sync->waitEventCount; ++i) {
         if (!sync->waitEvents || !sync->waitEvents[i])
             fail(LW_ERROR_INVALID_ARGUMENT, "sync.waitEvents[", i, "]: expected a cl_event, got null");
-        events.push_back(static_cast<cl_event>(sync->waitEvents[i]));
+        waits_.push_back(static_cast<cl_event>(sync->waitEvents[i]));
     }
+}
+
+void Executor::startWaits() {
+    if (waits_.empty()) return;
+    const std::vector<cl_event> events = std::exchange(waits_, {});
     cl_event event = nullptr;
     const cl_int status =
-        clEnqueueBarrierWithWaitList(device_.queue(), sync->waitEventCount, events.data(), &event);
+        clEnqueueBarrierWithWaitList(device_.queue(), cl_uint(events.size()), events.data(), &event);
     if (status == CL_INVALID_EVENT_WAIT_LIST || status == CL_INVALID_CONTEXT ||
         status == CL_INVALID_EVENT)
         fail(LW_ERROR_INVALID_ARGUMENT,
@@ -152,6 +163,7 @@ void Executor::waitFor(const LWSync* sync) {
 }
 
 void Executor::signal(const LWSync* sync) {
+    startWaits();
     if (!sync || !sync->signalEvent) return;
     cl_event event = nullptr;
     checkCl(clEnqueueMarkerWithWaitList(device_.queue(), 0, nullptr, &event),
@@ -161,6 +173,7 @@ void Executor::signal(const LWSync* sync) {
 }
 
 void Executor::flush() {
+    startWaits();
     checkCl(clFlush(device_.queue()), "clFlush");
 }
 

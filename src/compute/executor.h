@@ -79,7 +79,10 @@ public:
     // Makes what kernels wrote to a Buffer::overHost visible to the host (map and unmap), non-blocking.
     void publish(const char* pass, const Buffer& buffer);
 
-    void waitFor(const LWSync* sync);  // commands enqueued from here on start after the host's events
+    // Commands enqueued from here on start after the host's events (which must live until the first of
+    // them). Nothing is enqueued yet: a call that is refused leaves no wait behind in the queue.
+    void waitFor(const LWSync* sync);
+    void forgetWaits() { waits_.clear(); }
     void signal(const LWSync* sync);   // gives the host an event of everything enqueued so far
     void flush();
     std::uint64_t copiedBytes() const { return copiedBytes_; }  // between host and device
@@ -99,10 +102,12 @@ private:
         setRaw(kernel, index, sizeof value, &value);
     }
     void enqueue(const char* pass, Kernel& kernel, Range global, Range local, cl_uint argumentCount);
+    void startWaits();  // before every command
     void done(const char* pass, cl_event event);  // takes the event; a barrier on an out-of-order queue
 
     Device& device_;
     Profile& profile_;
+    std::vector<cl_event> waits_;
     std::uint64_t copiedBytes_ = 0;
 };
 

@@ -75,7 +75,10 @@ Planes OutputTarget::begin(Executor& executor, const View& view, const LWImage& 
     const CheckedImage checked = checkImage(device, image, roleOf(planeCount), view.width, view.height, name);
 
     Buffer target;
-    bool planes = checked.planesLayout;
+    // Kernels write whole rows of 16: the padding must be the image's own, not a neighbour's pixels.
+    const std::int64_t ownRow = std::int64_t(paddedWidth(view.width)) * 4;
+    bool planes = checked.planesLayout &&
+                  (view.width % 16 == 0 || std::abs(checked.pixels.byteRowStride) == ownRow);
     const bool staged = image.host && !device.unifiedMemory();
     if (image.clMem) {
         target = Buffer::retained(device, static_cast<cl_mem>(image.clMem));

@@ -173,7 +173,7 @@ inline std::uint32_t upsample(const Image& position, const Image& normal, const 
 // ------------------------------------------------------------------------------------ test scenes
 
 // A floor that meets a wall, a slab standing before them, and background: depth edges, normal edges,
-// grazing angles.
+// grazing angles; normals of several lengths, as compact formats and interpolation leave them.
 inline void fillCorner(Image& position, Image& normal) {
     for (std::uint32_t y = 0; y < position.height; ++y)
         for (std::uint32_t x = 0; x < position.width; ++x) {
@@ -181,13 +181,13 @@ inline void fillCorner(Image& position, Image& normal) {
             if (v < 0.1) continue;  // background
             if (u > 0.3 && u < 0.5 && v > 0.3 && v < 0.8) {
                 position.set(x, y, {u, 1.0 - v, 0.7});
-                normal.set(x, y, {0, 0, 1});
+                normal.set(x, y, {0, 0, 0.7});
             } else if (v < 0.6) {
                 position.set(x, y, {u, 1.0 - v, 0.0});
                 normal.set(x, y, {0, 0, 1});
             } else {
                 position.set(x, y, {u, 0.4, (v - 0.6) * 2.0});
-                normal.set(x, y, {0, 1, 0});
+                normal.set(x, y, {0, 1.5, 0});
             }
         }
 }

@@ -215,6 +215,45 @@ TEST_CASE("after lwPrewarm 500 frames with resizes build nothing", "[rsm]") {
     CHECK(after.kernelsSpecialised == before.kernelsSpecialised);
 }
 
+TEST_CASE("the length of normals does not matter", "[rsm]") {
+    TestDevice device(GENERATE(1u, 16u));
+    LitFloor floor(64, spotProfile);
+    WallAndCeiling scene(kWidth, kHeight);
+    LWRsmDesc desc = descOf(256, 4);
+    desc.resolution = GENERATE(LW_RESOLUTION_FULL, LW_RESOLUTION_HALF);
+    const auto unit = render(device, desc, {floor.light}, scene, kWidth, kHeight);
+    for (const float length : {0.7f, 0.95f, 1.5f}) {
+        WallAndCeiling other(kWidth, kHeight);
+        for (std::uint32_t y = 0; y < kHeight; ++y)
+            for (std::uint32_t x = 0; x < kWidth; ++x) other.normal.set(x, y, scene.normal.get(x, y) * double(length));
+        CAPTURE(length);
+        CHECK(rootMeanSquare(render(device, desc, {floor.light}, other, kWidth, kHeight), unit) < 1e-5);
+    }
+}
+
+TEST_CASE("an output inside a larger image leaves its neighbours alone", "[rsm]") {
+    TestDevice device(16);
+    LitFloor floor(64, spotProfile);
+    const std::uint32_t width = 37, height = 21;  // not a multiple of 16, in rows of 96
+    WallAndCeiling scene(width, height);
+    TestTechnique technique(device, descOf(64, 4));
+    TestView view(device, width, height);
+    technique.update({floor.light});
+    const auto expected = technique.render(view, scene.gbuffer);
+    PlanarPixels atlas(96, height, 3);
+    for (std::uint32_t y = 0; y < height; ++y)
+        for (std::uint32_t x = 0; x < 96; ++x) atlas.set(x, y, {-7, -7, -7});
+    LWOutput output{};
+    output.structSize = sizeof output;
+    output.irradiance = atlas.image();
+    output.irradiance.width = width;
+    REQUIRE(lwRender(technique, view, &scene.gbuffer, &output) == LW_SUCCESS);
+    REQUIRE(lwFinish(device) == LW_SUCCESS);
+    for (std::uint32_t y = 0; y < height; ++y)
+        for (std::uint32_t x = 0; x < 96; ++x)
+            REQUIRE(atlas.get(x, y).x == (x < width ? double(expected[y * width + x]) : -7.0));
+}
+
 TEST_CASE("stats name the passes, count what was refused, and memory is as estimated", "[rsm]") {
     TestDevice device(16);
     LitFloor floor(64, spotProfile);
