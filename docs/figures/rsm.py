@@ -86,10 +86,10 @@ def limit_tables(options, work, call, render, compare):
         lines.append(f"| {scene} | flux, sampling alone | " + " | ".join(f"{e:.4f}" for e in errors) +
                      f" | {fitted_slope(COUNTS, errors):+.2f} | | |")
     return lines + ["", "*Sampling alone*: nRMSE between two seeds, over the root of two: what bounding takes from every "
-                    "picture alike is left out. The slopes stay above -0.5 because surfaces meet: a pixel nearer to a "
-                    "lit surface than one VPL's radius sees single VPLs, and its error stays of the order of the "
-                    "light itself. That strip narrows with the root of N, so its share of the nRMSE falls "
-"with the fourth root only.", ""]
+                    "picture alike is left out. The slopes stay above -0.5. The likely reason, not measured yet: where "
+                    "surfaces meet, a pixel nearer to a lit surface than one VPL's radius sees single VPLs, and its "
+                    "error stays of the order of the light itself; that strip narrows with the root of N, so its "
+                    "share of the nRMSE falls with the fourth root only.", ""]
 
 
 def fitted_slope(counts, errors):

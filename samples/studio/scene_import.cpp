@@ -2,7 +2,8 @@
 //
 // Reduced to what a diffuse method needs: base colour with its texture and alpha mask, emission.
 // Metals are diffuse of their base colour; materials named "[glass]" are left out with their
-// triangles. Texture coordinates run down from the picture's top in every format.
+// triangles. Texture coordinates run down from the picture's top in every format. A little over 300 lines:
+// one walk over one library's structures; what it drops is read in gltf_extras.cpp.
 #include "scene_import.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Frame part, per-view state, report, and the registration with its parameter table: a little over 300
+// lines, kept together so that the technique stays one stem; the table moves out with its second user.
 #include "techniques/rsm.h"
 
 #include <array>
