@@ -11,13 +11,6 @@
 namespace cli {
 namespace {
 
-std::vector<LWTechniqueInfo> describeTechniques() {
-    std::vector<LWTechniqueInfo> infos(lwCountTechniques(), lightwell::make<LWTechniqueInfo>());
-    for (std::size_t i = 0; i < infos.size(); ++i)
-        lightwell::check(lwDescribeTechnique(std::uint32_t(i), &infos[i]));
-    return infos;
-}
-
 std::vector<std::string> choicesOf(const LWParameter& parameter) {
     std::vector<std::string> names;
     for (const char* const* choice = parameter.choices; choice != nullptr && *choice != nullptr;
@@ -75,6 +68,13 @@ std::string defaultText(const LWParameter& parameter) {
 
 }  // namespace
 
+std::vector<LWTechniqueInfo> describeTechniques() {
+    std::vector<LWTechniqueInfo> infos(lwCountTechniques(), lightwell::make<LWTechniqueInfo>());
+    for (std::size_t i = 0; i < infos.size(); ++i)
+        lightwell::check(lwDescribeTechnique(std::uint32_t(i), &infos[i]));
+    return infos;
+}
+
 std::vector<std::string> techniqueNames() {
     std::vector<std::string> names;
     for (const LWTechniqueInfo& info : describeTechniques()) names.emplace_back(info.name);
@@ -94,12 +94,16 @@ std::string describeParameters() {
     return text;
 }
 
-Parameters::Parameters(const std::string& technique) {
+Parameters::Parameters(const std::string& technique) : technique_(technique) {
     requireOneOf("technique", technique, techniqueNames());
     for (const LWTechniqueInfo& info : describeTechniques())
         if (technique == info.name) info_ = info;
     bytes_.resize((info_.descSize + sizeof(std::uint64_t) - 1) / sizeof(std::uint64_t));
     info_.setDefaults(bytes_.data());
+}
+
+bool Parameters::needsDevice() const {
+    return true;
 }
 
 const LWParameter* Parameters::find(const std::string& name) const {

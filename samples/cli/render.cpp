@@ -1,4 +1,4 @@
-// `lightwell render`: one view of a scene with a technique of the library, measured.
+// `lightwell render`: one view of a scene with a technique, measured.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -6,10 +6,9 @@
 #include <cstring>
 
 #include "cli.h"
+#include "indirect_renderer.h"
 #include "layers.h"
-#include "open_device.h"
 #include "path_tracer.h"
-#include "render_frames.h"
 #include "render_inputs.h"
 #include "render_report.h"
 
@@ -97,9 +96,9 @@ std::vector<studio::VplRecord> toVpls(const DebugPlanes& planes) {
 }
 
 // The channels c00, c01, ... of an intermediate buffer.
-void writeDebugView(const FrameRunner& runner, const std::string& argument) {
+void writeDebugView(const IndirectRenderer& renderer, const std::string& argument) {
     const auto [name, path] = splitAssignment("--debug-view", argument);
-    const DebugPlanes planes = runner.readDebugView(name);
+    const DebugPlanes planes = renderer.readDebugView(name);
     studio::Image image(int(planes.width), int(planes.height));
     for (std::uint32_t c = 0; c < planes.channels; ++c)
         image.plane(fmt::format("c{:02}", c))
@@ -143,20 +142,22 @@ void writeOutputs(const RenderOptions& options, const studio::Image& image, Rend
 studio::Image renderWithTechnique(const RenderOptions& options, const RenderInputs& inputs,
                                   RenderReport& report) {
     const Parameters parameters = parseParameters(options);
-    const lightwell::Device device = openDevice(options.device, std::uint32_t(options.width));
-    FrameRunner runner(device, options.technique, parameters, inputs);
+    const auto renderer =
+        makeRenderer(parameters, inputs, DeviceOptions{options.device, std::uint32_t(options.width)});
     report.parameters = parameters.resolved();
-    report.hasDevice = true;
-    report.figures = runner.run(options.warmup, options.frames);
-    report.device = device.info();
+    report.figures = measure(*renderer, inputs, options.warmup, options.frames);
     report.frames = options.frames;
-    report.hash = hashBits(runner.irradiance());
+    if (renderer->device() != nullptr) {
+        report.hasDevice = true;
+        report.device = *renderer->device();
+    }
+    report.hash = hashBits(renderer->irradiance());
     if (!options.vplsOut.empty()) {
-        studio::writeVpls(options.vplsOut, toVpls(runner.readDebugView("vpls")));
+        studio::writeVpls(options.vplsOut, toVpls(renderer->readDebugView("vpls")));
         report.outputs.push_back(options.vplsOut);
     }
-    if (!options.debugView.empty()) writeDebugView(runner, options.debugView);
-    return assemble(inputs, runner.irradiance(), runner.validity(), report);
+    if (!options.debugView.empty()) writeDebugView(*renderer, options.debugView);
+    return assemble(inputs, renderer->irradiance(), renderer->validity(), report);
 }
 
 studio::Image renderDirectOnly(const RenderInputs& inputs, RenderReport& report) {

@@ -86,7 +86,8 @@ LWImage describePlanes(const studio::PlanarBuffer& buffer) {
 
 RenderInputs::RenderInputs(const studio::RayScene& scene, const studio::Camera& camera,
                            const InputOptions& options)
-    : gbuffer_(
+    : scene_(scene),
+      gbuffer_(
           studio::renderGBuffer(scene, camera, options.width, options.height, camera, options.time)),
       lwGBuffer_(describeGBuffer(gbuffer_)) {
     studio::RsmOptions rsmOptions = options.rsm;

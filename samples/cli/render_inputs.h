@@ -16,7 +16,7 @@ struct InputOptions {
     studio::RsmOptions rsm;
 };
 
-// The structs point into the buffers beside them: made once, never moved.
+// The structs point into the buffers beside them: made once, never moved. `scene` must live as long.
 class RenderInputs {
 public:
     RenderInputs(const studio::RayScene& scene, const studio::Camera& camera,
@@ -24,6 +24,7 @@ public:
     RenderInputs(const RenderInputs&) = delete;
     RenderInputs& operator=(const RenderInputs&) = delete;
 
+    const studio::RayScene& scene() const { return scene_; }
     const studio::GBuffer& gbuffer() const { return gbuffer_; }
     const LWGBuffer& lwGBuffer() const { return lwGBuffer_; }
     const std::vector<LWLight>& lights() const { return lights_; }
@@ -31,6 +32,7 @@ public:
     std::uint64_t rsmTexelCount() const;
 
 private:
+    const studio::RayScene& scene_;
     studio::GBuffer gbuffer_;
     std::vector<std::vector<studio::Rsm>> rsms_;  // of each light
     std::vector<std::vector<LWRsm>> lwRsms_;

@@ -31,7 +31,7 @@ Json parametersJson(const RenderReport& report) {
 
 Json passesJson(const FrameFigures& figures) {
     Json passes = Json::array();
-    for (const PassFigures& pass : figures.passes)
+    for (const PassTime& pass : figures.passes)
         passes.push_back(
             {{"name", pass.name}, {"ms", milliseconds(pass.milliseconds)}, {"launches", pass.launches}});
     return passes;
@@ -47,6 +47,24 @@ std::string parametersText(const RenderReport& report) {
 
 std::string millisecondsText(double value) {
     return value < 0.0 ? "unavailable" : fmt::format("{:.3f} ms", value);
+}
+
+std::string figuresText(const RenderReport& report) {
+    const FrameFigures& figures = report.figures;
+    std::string text;
+    for (const PassTime& pass : figures.passes)
+        text += fmt::format("  {:<34} {:>14}  {} launches\n", pass.name,
+                            millisecondsText(pass.milliseconds), pass.launches);
+    text += fmt::format("  {:<34} {:>14}  median of {} frames\n", "total",
+                        millisecondsText(figures.totalMilliseconds), report.frames);
+    text += fmt::format("  {:<34} {:>14}\n", "host clock", millisecondsText(figures.wallMilliseconds));
+    text +=
+        fmt::format("device memory {:.1f} MB, copied per frame {:.1f} MB\n",
+                    double(figures.deviceBytes) / kMegabyte, double(figures.hostCopyBytes) / kMegabyte);
+    for (const auto& [name, value] : figures.counts)
+        text += fmt::format("  {:<34} {:>14}\n", name, value);
+    for (const auto& [name, reason] : figures.choices) text += fmt::format("  {}: {}\n", name, reason);
+    return text;
 }
 
 }  // namespace
@@ -89,28 +107,14 @@ std::string toJson(const RenderReport& report) {
 }
 
 std::string toText(const RenderReport& report) {
-    const FrameFigures& figures = report.figures;
     std::string text =
         fmt::format("{}, camera {}, {}x{}, {}{}\n", report.scene, report.camera, report.size.width,
                     report.size.height, report.technique, parametersText(report));
     if (report.hasDevice) {
         text += fmt::format("{} ({}, driver {}), width {}\n", report.device.name, report.device.platform,
                             report.device.driver, report.device.width);
-        for (const PassFigures& pass : figures.passes)
-            text += fmt::format("  {:<34} {:>14}  {} launches\n", pass.name,
-                                millisecondsText(pass.milliseconds), pass.launches);
-        text += fmt::format("  {:<34} {:>14}  median of {} frames\n", "total",
-                            millisecondsText(figures.totalMilliseconds), report.frames);
-        text +=
-            fmt::format("  {:<34} {:>14}\n", "host clock", millisecondsText(figures.wallMilliseconds));
-        text += fmt::format("device memory {:.1f} MB, copied per frame {:.1f} MB\n",
-                            double(figures.deviceBytes) / kMegabyte,
-                            double(figures.hostCopyBytes) / kMegabyte);
-        for (const auto& [name, value] : figures.counts)
-            text += fmt::format("  {:<34} {:>14}\n", name, value);
-        for (const auto& [name, reason] : figures.choices)
-            text += fmt::format("  {}: {}\n", name, reason);
     }
+    if (report.frames > 0) text += figuresText(report);
     if (report.exposure > 0.0) text += fmt::format("exposure {:.4g}\n", report.exposure);
     for (const std::string& output : report.outputs) text += fmt::format("wrote {}\n", output);
     return text;

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "cli.h"
-#include "render_frames.h"
+#include "indirect_renderer.h"
 
 namespace cli {
 
@@ -13,7 +13,7 @@ struct RenderReport {
     Size size;
     int frames = 0;
     std::vector<std::pair<std::string, ParameterValue>> parameters;
-    bool hasDevice = false;  // false for technique "none": nothing ran
+    bool hasDevice = false;  // false for "none" and for techniques of the host
     LWDeviceInfo device{};
     FrameFigures figures;
     std::uint64_t hash = 0;  // of the irradiance's bits

@@ -1,0 +1,75 @@
+#include "indirect_renderer.h"
+
+#include <algorithm>
+
+#include "library_renderer.h"
+#include "open_device.h"
+
+namespace cli {
+namespace {
+
+double median(std::vector<double> values) {
+    if (values.empty()) return -1.0;
+    std::sort(values.begin(), values.end());
+    const std::size_t middle = values.size() / 2;
+    return values.size() % 2 != 0 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
+}
+
+// One pass over the measured frames; not every frame need have it.
+struct PassSamples {
+    std::string name;
+    std::vector<double> milliseconds;
+    std::uint32_t launches = 0;
+};
+
+void addPasses(std::vector<PassSamples>& passes, const FrameSample& frame) {
+    for (const PassTime& pass : frame.passes) {
+        auto known = std::find_if(passes.begin(), passes.end(),
+                                  [&](const PassSamples& each) { return each.name == pass.name; });
+        if (known == passes.end()) known = passes.insert(known, {pass.name, {}, 0});
+        known->milliseconds.push_back(pass.milliseconds);
+        known->launches = pass.launches;
+    }
+}
+
+}  // namespace
+
+std::unique_ptr<IndirectRenderer> makeRenderer(const Parameters& parameters, const RenderInputs& inputs,
+                                               const DeviceOptions& options) {
+    if (!parameters.needsDevice()) return makeRenderer(parameters, inputs, nullptr);
+    const lightwell::Device device = openDevice(options.device, options.width);
+    return makeRenderer(parameters, inputs, &device);
+}
+
+std::unique_ptr<IndirectRenderer> makeRenderer(const Parameters& parameters, const RenderInputs& inputs,
+                                               const lightwell::Device* device) {
+    if (device == nullptr)
+        throw std::runtime_error("technique " + parameters.technique() +
+                                 ": expected a device, got none");
+    return std::make_unique<LibraryRenderer>(*device, parameters, inputs);
+}
+
+FrameFigures measure(IndirectRenderer& renderer, const RenderInputs& inputs, int warmUpCount,
+                     int count) {
+    for (int i = 0; i < warmUpCount; ++i) renderer.renderFrame(inputs, i == 0);
+    FrameFigures figures;
+    figures.estimatedBytes = renderer.estimatedBytes();
+    std::vector<PassSamples> passes;
+    for (int i = 0; i < count; ++i) {
+        FrameSample frame = renderer.renderFrame(inputs, warmUpCount == 0 && i == 0);
+        figures.frameTotals.push_back(frame.totalMilliseconds);
+        figures.frameWalls.push_back(frame.wallMilliseconds);
+        addPasses(passes, frame);
+        figures.deviceBytes = frame.deviceBytes;
+        figures.hostCopyBytes = frame.hostCopyBytes;
+        figures.counts = std::move(frame.counts);
+        figures.choices = std::move(frame.choices);
+    }
+    for (const PassSamples& pass : passes)
+        figures.passes.push_back({pass.name, median(pass.milliseconds), pass.launches});
+    figures.totalMilliseconds = median(figures.frameTotals);
+    figures.wallMilliseconds = median(figures.frameWalls);
+    return figures;
+}
+
+}  // namespace cli

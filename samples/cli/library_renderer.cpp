@@ -1,0 +1,87 @@
+#include "library_renderer.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "cli.h"
+
+namespace cli {
+namespace {
+
+// A name may come several times in a frame; its times are summed.
+std::vector<PassTime> passTimes(const LWStats& stats) {
+    std::vector<PassTime> passes;
+    for (std::uint32_t i = 0; i < stats.passCount; ++i) {
+        const LWPassTime& from = stats.passes[i];
+        auto pass = std::find_if(passes.begin(), passes.end(),
+                                 [&](const PassTime& known) { return known.name == from.name; });
+        if (pass == passes.end()) pass = passes.insert(pass, {from.name, 0.0, 0});
+        const bool isKnown = pass->milliseconds >= 0.0 && from.milliseconds >= 0.0;
+        pass->milliseconds = isKnown ? pass->milliseconds + from.milliseconds : -1.0;
+        pass->launches += from.launches;
+    }
+    return passes;
+}
+
+FrameSample describeFrame(const LWStats& stats, double wallMilliseconds) {
+    FrameSample frame;
+    frame.passes = passTimes(stats);
+    frame.totalMilliseconds = stats.totalMilliseconds;
+    frame.wallMilliseconds = wallMilliseconds;
+    frame.deviceBytes = stats.deviceBytes;
+    frame.hostCopyBytes = stats.hostCopyBytes;
+    for (std::uint32_t i = 0; i < stats.countCount; ++i)
+        frame.counts.emplace_back(stats.counts[i].name, stats.counts[i].value);
+    for (std::uint32_t i = 0; i < stats.choiceCount; ++i)
+        frame.choices.emplace_back(stats.choices[i].name, stats.choices[i].reason);
+    return frame;
+}
+
+}  // namespace
+
+LibraryRenderer::LibraryRenderer(const lightwell::Device& device, const Parameters& parameters,
+                                 const RenderInputs& inputs)
+    : device_(device),
+      view_(device, std::uint32_t(inputs.gbuffer().width), std::uint32_t(inputs.gbuffer().height)),
+      technique_(device, parameters.technique().c_str(), parameters.descriptor()),
+      irradiance_(inputs.gbuffer().width, inputs.gbuffer().height, 3),
+      validity_(inputs.gbuffer().width, inputs.gbuffer().height, 1),
+      estimatedBytes_(device.estimateMemory(
+          parameters.technique().c_str(), parameters.descriptor(), std::uint32_t(inputs.gbuffer().width),
+          std::uint32_t(inputs.gbuffer().height), inputs.rsmTexelCount())) {
+    technique_.prewarm(view_);
+    info_ = device_.info();
+}
+
+FrameSample LibraryRenderer::renderFrame(const RenderInputs& inputs, bool reset) {
+    const auto start = std::chrono::steady_clock::now();
+    LWSourceView source{view_.get(), &inputs.lwGBuffer()};
+    LWFrame frame = lightwell::make<LWFrame>();
+    frame.reset = reset || frameIndex_ == 0 ? 1 : 0;
+    frame.frameIndex = frameIndex_++;
+    frame.lights = inputs.lights().data();
+    frame.lightCount = std::uint32_t(inputs.lights().size());
+    frame.sourceViews = &source;
+    frame.sourceViewCount = 1;
+    std::copy_n(inputs.environment(), 3, frame.environment);
+    LWOutput output = lightwell::make<LWOutput>();
+    output.irradiance = describePlanes(irradiance_);
+    output.validity = describePlanes(validity_);
+    technique_.update(frame);
+    technique_.render(view_, inputs.lwGBuffer(), output);
+    device_.finish();
+    const std::chrono::duration<double, std::milli> wall = std::chrono::steady_clock::now() - start;
+    return describeFrame(technique_.stats(), wall.count());
+}
+
+DebugPlanes LibraryRenderer::readDebugView(const std::string& name) const {
+    std::vector<std::string> names;
+    for (const LWDebugView& info : technique_.debugViews(&view_)) {
+        if (name == info.name)
+            return {info.width, info.height, info.channels, technique_.readDebugView(info, &view_)};
+        names.emplace_back(info.name);
+    }
+    throw UsageError("unknown debug view '" + name + "'; valid: " + joinNames(names));
+}
+
+}  // namespace cli

@@ -1,0 +1,29 @@
+// A technique of the library on an OpenCL device, frame after frame.
+#pragma once
+
+#include "indirect_renderer.h"
+
+namespace cli {
+
+class LibraryRenderer final : public IndirectRenderer {
+public:
+    LibraryRenderer(const lightwell::Device& device, const Parameters& parameters,
+                    const RenderInputs& inputs);
+
+    FrameSample renderFrame(const RenderInputs& inputs, bool reset) override;
+    const studio::PlanarBuffer& irradiance() const override { return irradiance_; }
+    const studio::PlanarBuffer& validity() const override { return validity_; }
+    std::uint64_t estimatedBytes() const override { return estimatedBytes_; }
+    const LWDeviceInfo* device() const override { return &info_; }
+    DebugPlanes readDebugView(const std::string& name) const override;
+
+private:
+    lightwell::Device device_;
+    LWDeviceInfo info_{};
+    lightwell::View view_;
+    lightwell::Technique technique_;
+    studio::PlanarBuffer irradiance_, validity_;
+    std::uint64_t estimatedBytes_ = 0, frameIndex_ = 0;
+};
+
+}  // namespace cli
