@@ -12,10 +12,11 @@
 # shellcheck disable=SC2034
 LIGHTWELL_LIBRARY_PACKAGES=(build-essential cmake ninja-build pkg-config ocl-icd-opencl-dev
     opencl-c-headers pocl-opencl-icd libglm-dev)
-# The studio and the command line. OpenImageIO's CMake files also look for its tools and for Imath.
+# The studio and the command line. OpenImageIO's CMake files also look for its tools and for Imath;
+# Assimp's name zlib's development file, which its package does not ask for.
 # shellcheck disable=SC2034
 LIGHTWELL_SAMPLE_PACKAGES=(libembree-dev libopenimageio-dev openimageio-tools libimath-dev
-    libassimp-dev libcli11-dev nlohmann-json3-dev libfmt-dev)
+    libassimp-dev zlib1g-dev libcli11-dev nlohmann-json3-dev libfmt-dev)
 # shellcheck disable=SC2034
 LIGHTWELL_TEST_PACKAGES=(catch2 libbenchmark-dev)
 # Tools that single suites are about; a suite without its tool is skipped.
