@@ -5,15 +5,13 @@
 #include <cstdio>
 #include <cstdlib>
 #include <utility>
+#include <vector>
 
 #include "compute/device_select.h"
 #include "compute/error.h"
 
 namespace lightwell {
 namespace {
-
-// Watched events are looked through for completed ones when there are so many.
-constexpr std::size_t kWatchLimit = 1024;
 
 thread_local const Device* insideLogOf = nullptr;
 
@@ -83,8 +81,7 @@ Device::~Device() {
 }
 
 void Device::release() {
-    for (cl_event event : watched_) clReleaseEvent(event);
-    watched_.clear();
+    watch_.clear();
     programs_.reset();
     if (queue_) clReleaseCommandQueue(queue_);
     if (context_) clReleaseContext(context_);
@@ -206,40 +203,17 @@ void Device::describe(LWDeviceInfo& info) const {
     info.kernelsSpecialised = kernelsSpecialised_;
 }
 
-void Device::watch(cl_event event) {
-    if (watched_.size() >= kWatchLimit) takeFailures(false);
-    if (clRetainEvent(event) == CL_SUCCESS) watched_.push_back(event);
-}
-
-// Drops events that have ended, noting the first failure; `all`: drops the others too.
-void Device::takeFailures(bool all) {
-    std::vector<cl_event> pending;
-    for (cl_event event : watched_) {
-        cl_int status = CL_COMPLETE;
-        const cl_int query =
-            clGetEventInfo(event, CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof status, &status, nullptr);
-        if (query == CL_SUCCESS && status > CL_COMPLETE && !all) {
-            pending.push_back(event);
-            continue;
-        }
-        if (failure_.empty() && (query != CL_SUCCESS || status < 0))
-            failure_ = clErrorName(query != CL_SUCCESS ? query : status);
-        clReleaseEvent(event);
-    }
-    watched_ = std::move(pending);
-}
-
 void Device::raiseFailure() {
-    takeFailures(false);
-    if (!failure_.empty())
-        fail(LW_ERROR_DEVICE,
-             "a command failed on the device: ", std::exchange(failure_, std::string{}));
+    watch_.collect();
+    if (!watch_.failure().empty())
+        fail(LW_ERROR_DEVICE, "a command failed on the device: ", watch_.takeFailure());
 }
 
 void Device::finish() {
     const cl_int status = clFinish(queue_);
-    takeFailures(true);
-    if (status != CL_SUCCESS && failure_.empty()) failure_ = clErrorName(status);
+    watch_.collect();
+    if (status != CL_SUCCESS) watch_.noteFailure(clErrorName(status));
+    watch_.clear();  // nothing unless the queue itself has failed
     raiseFailure();
     programs_->saveBinaries();
 }

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "compute/cl.h"
+#include "compute/event_watch.h"
 #include "compute/program.h"
 #include "lightwell/lightwell.h"
 
@@ -47,7 +47,8 @@ public:
     void countAllocation(std::int64_t bytes) { allocatedBytes_ += std::uint64_t(bytes); }
     std::uint64_t allocatedBytes() const { return allocatedBytes_; }
     void countSpecialisation() { ++kernelsSpecialised_; }
-    void watch(cl_event event);                    // finish() reports its failure
+    void watch(cl_event event) { watch_.add(event); }  // finish() reports its failure
+    const EventWatch& watched() const { return watch_; }
     void warnOfCache(const std::string& problem);  // once per device
 
 private:
@@ -56,7 +57,6 @@ private:
     void readLimits();
     std::uint32_t chooseWidth(const LWDeviceDesc& desc);
     void release();
-    void takeFailures(bool all);
 
     cl_platform_id platform_ = nullptr;
     cl_device_id id_ = nullptr;
@@ -70,8 +70,7 @@ private:
     void* logUser_ = nullptr;
     bool warnedOfCache_ = false;
     std::string identity_;
-    std::vector<cl_event> watched_;  // not yet known to have completed
-    std::string failure_;            // the first failed command since the last finish()
+    EventWatch watch_;
     std::unique_ptr<ProgramCache> programs_;
 };
 

@@ -247,6 +247,41 @@ TEST_CASE("many frames without a finish keep few events", "[device]") {
     CHECK(rig.download<cl_int>(values) == std::vector<cl_int>(16, kLaunches));
 }
 
+TEST_CASE("watching a command costs the same, however many are pending", "[device]") {
+    const auto device = freshDevice();
+    cl_event gate = clCreateUserEvent(device->context(), nullptr);
+    EventWatch watch;
+    constexpr std::uint64_t kEvents = 20000;
+    for (std::uint64_t i = 0; i < kEvents; ++i) watch.add(gate);
+    CHECK(watch.pending() == kEvents);
+    CHECK(watch.queries() <= kEvents);  // looking through all of them each time would take 2e8
+    clSetUserEventStatus(gate, CL_COMPLETE);
+    watch.collect();
+    CHECK(watch.pending() == 0);
+    CHECK(watch.queries() <= 2 * kEvents);
+    CHECK(watch.failure().empty());
+    // While commands end, few are held.
+    for (std::uint64_t i = 0; i < kEvents; ++i) watch.add(gate);
+    CHECK(watch.pending() <= 1024);
+    CHECK(watch.queries() <= 3 * kEvents);
+    clReleaseEvent(gate);
+}
+
+TEST_CASE("of failed commands the first is told", "[device]") {
+    const auto device = freshDevice();
+    EventWatch watch;
+    for (const cl_int status : {CL_COMPLETE, CL_OUT_OF_RESOURCES, CL_INVALID_VALUE}) {
+        cl_event event = clCreateUserEvent(device->context(), nullptr);
+        clSetUserEventStatus(event, status);
+        watch.add(event);
+        clReleaseEvent(event);
+    }
+    watch.collect();
+    CHECK(watch.takeFailure() == "CL_OUT_OF_RESOURCES");
+    CHECK(watch.failure().empty());
+    CHECK(watch.pending() == 0);
+}
+
 TEST_CASE("the roofline probe gives plausible rates in under two seconds", "[device][large]") {
     Device& device = sharedDevice(16);
     LWRoofline roofline = probeRoofline(device);  // builds
