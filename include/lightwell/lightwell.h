@@ -30,8 +30,9 @@
  * default", unless the field says what else.
  *
  * THREADS: calls on one device are serialised by a lock of that device and may come from any thread;
- * devices are independent of each other. A log callback must not call Lightwell (it gets
- * LW_ERROR_REENTRANT).
+ * devices are independent of each other. lwFinish, lwGetStats and lwReadDebugView wait with the lock open
+ * for what was enqueued before them, so that other threads' frames go on meanwhile; lwPrewarm and
+ * lwProbeDevice keep it to their end. A log callback must not call Lightwell (it gets LW_ERROR_REENTRANT).
  *
  * OWNERSHIP: handles are reference-counted; lwCreate* gives one reference. A child (view, technique)
  * keeps its device alive. A released or foreign handle is refused with LW_ERROR_INVALID_HANDLE.
@@ -126,7 +127,11 @@ typedef struct LWDeviceDesc {
     uint32_t width;       /**< lanes per work-item 1, 4, 8, 16; 0: LIGHTWELL_WIDTH, else by probe */
     uint32_t noProfiling; /**< 1: no event timing; LWStats then reports "unavailable" (-1) */
     void* clContext;      /**< cl_context to adopt (with clQueue), or null */
-    void* clQueue;        /**< cl_command_queue to adopt, in-order or out-of-order, or null */
+    void* clQueue;        /**< cl_command_queue to adopt, in-order or out-of-order, or null. Lightwell's
+                               commands run in the order of the calls in both: in an out-of-order queue each
+                               is followed by a barrier, so that what is enqueued later, by the host too,
+                               starts after it. What the host enqueued there *before* a call is not waited
+                               for unless its events are among LWSync's */
     const char* cacheDirectory; /**< program binaries; null: LIGHTWELL_CACHE_DIR, else the user's cache
                                      directory; "" : no cache on disk */
     LWLogCallback log; /**< null: warnings and errors go to stderr */
@@ -162,6 +167,9 @@ LW_API void lwDefaultDevice(LWDeviceDesc* desc);
  *  Errors: NO_DEVICE, INVALID_ARGUMENT, UNSUPPORTED, OUT_OF_MEMORY, BUILD_FAILED. */
 LW_API LWStatus lwCreateDevice(const LWDeviceDesc* desc, LWDevice* device);
 LW_API LWStatus lwRetainDevice(LWDevice device);
+/** Compiled kernels are written to the cache at lwFinish, lwGetStats, lwReadDebugView and lwPrewarm, and when
+ *  the last reference to the device (its children's too) is released after all of its commands have ended.
+ *  Releasing never waits. */
 LW_API LWStatus lwReleaseDevice(LWDevice device);
 LW_API LWStatus lwGetDeviceInfo(LWDevice device, LWDeviceInfo* info);
 
@@ -173,7 +181,8 @@ LW_API LWStatus lwDescribeDevice(uint32_t index, LWDeviceInfo* info);
 /** Measures the device's peak rates. Blocks for less than two seconds. */
 LW_API LWStatus lwProbeDevice(LWDevice device, LWRoofline* roofline);
 
-/** Waits until everything enqueued on the device has finished and reports errors of its execution. */
+/** Waits until everything enqueued on the device before this call has finished, and reports errors of its
+ *  execution. */
 LW_API LWStatus lwFinish(LWDevice device);
 
 /* --------------------------------------------------------------------------------------- images */
@@ -479,8 +488,8 @@ typedef struct LWStats {
     uint64_t hostCopyBytes;       /**< bytes copied between host and device for the frame */
 } LWStats;
 
-/** Waits for the technique's enqueued work, then reports it. Arrays stay valid until the next call of
- *  this function on the technique, or its release. */
+/** Reports the technique's work as enqueued before this call, after waiting for it. Arrays stay valid until
+ *  the next call of this function on the technique, or its release. */
 LW_API LWStatus lwGetStats(LWTechnique technique, LWStats* stats);
 
 typedef struct LWDebugView {
@@ -490,13 +499,15 @@ typedef struct LWDebugView {
     const char* description; /**< with the unit of each channel */
 } LWDebugView;
 
-/** The technique's intermediate buffers of its last frame, e.g. "vpls", "gather". `view` may be null
- *  for those of the world part. */
+/** The technique's intermediate buffers of its last frame, e.g. "vpls", "gathered". `view` may be null
+ *  for those of the world part. Counting and describing them are queries: they neither wait nor enqueue nor
+ *  allocate. */
 LW_API LWStatus lwCountDebugViews(LWTechnique technique, LWView view, uint32_t* count);
 LW_API LWStatus lwDescribeDebugView(LWTechnique technique, LWView view, uint32_t index,
                                     LWDebugView* info);
-/** Waits, then copies `channels` planes of width * height floats, packed. `capacity` counts floats.
- *  Host memory that the last frame used in place (inputs and outputs) must still be valid. */
+/** Waits for what was enqueued before this call, then copies `channels` planes of width * height floats,
+ *  packed. `capacity` counts floats. Host memory that the last frame used in place (inputs and outputs) must
+ *  still be valid. */
 LW_API LWStatus lwReadDebugView(LWTechnique technique, LWView view, const char* name, float* pixels,
                                 uint64_t capacity);
 

@@ -54,12 +54,13 @@ std::shared_ptr<View> Call::viewOfDevice(LWView handle, const char* argument, bo
     return object->view;
 }
 
-void Call::waitIdle() {
+void Call::settle() {
     // Neither the queue nor the context can go away: this call holds the device.
-    cl_command_queue queue = device_->device.queue();
+    const Marker marker = device_->device.mark();
     lock_.unlock();
-    clFinish(queue);  // a failure shows again in Device::finish, which also says what failed
+    marker.wait();
     lock_.lock();
+    device_->device.settle();
 }
 
 void Call::dispose(std::shared_ptr<ViewObject> object) {

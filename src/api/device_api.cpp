@@ -109,8 +109,7 @@ LWStatus lwProbeDevice(LWDevice device, LWRoofline* roofline) {
 
 LWStatus lwFinish(LWDevice device) {
     return enter("lwFinish", [&](Call& call) {
-        Device& own = call.device(device);
-        call.waitIdle();
-        own.finish();
+        call.device(device);
+        call.settle();
     });
 }

@@ -7,29 +7,50 @@
 
 using namespace lightwell;
 
+namespace {
+
+// Has a debug view written to `pixels`; one that must be made first is made in `made`.
+void enqueueDebugRead(Executor& executor, const DebugView& debug, Buffer& made, float* pixels) {
+    Planes planes = debug.planes;
+    if (debug.fill) {
+        made = Buffer(executor.device(), std::size_t(planes.planeStride) * planes.count * sizeof(float), debug.name);
+        planes.memory = made.get();
+        debug.fill(executor, planes);
+    }
+    enqueueReadPlanes(executor, planes, pixels);
+}
+
+}  // namespace
+
 LWStatus lwGetStats(LWTechnique technique, LWStats* stats) {
     return enter("lwGetStats", [&](Call& call) {
         const auto object = call.technique(technique);
         const std::uint32_t size = checkedStructSize(stats, "stats");
-        call.waitIdle();
-        call.owner()->device.finish();
-        object->report = object->technique->report();
-        object->passes.clear();
+        // As things stand now; other threads may go on while this call waits.
         LWStats result{};
+        result.frameIndex = object->frameIndex;
+        result.deviceBytes = object->technique->bytes();
         result.totalMilliseconds = -1.0;
+        std::unique_ptr<Profile> profile;
         if (object->record) {
-            object->passes = object->record->profile.passes();
-            result.totalMilliseconds = object->record->profile.totalMilliseconds();
+            profile = object->record->profile.snapshot();
             result.hostCopyBytes = object->record->executor.copiedBytes();
         }
-        result.frameIndex = object->frameIndex;
+        Report report = object->technique->report();
+        call.settle();
+        report.resolve();
+        object->report = std::move(report);
+        object->passes.clear();
+        if (profile) {
+            object->passes = profile->passes();
+            result.totalMilliseconds = profile->totalMilliseconds();
+        }
         result.passCount = std::uint32_t(object->passes.size());
         result.countCount = std::uint32_t(object->report.counts.size());
         result.choiceCount = std::uint32_t(object->report.choices.size());
         result.passes = object->passes.data();
         result.counts = object->report.counts.data();
         result.choices = object->report.choices.data();
-        result.deviceBytes = object->technique->bytes();
         writeStruct(stats, size, result);
     });
 }
@@ -70,8 +91,7 @@ LWStatus lwReadDebugView(LWTechnique technique, LWView view, const char* name, f
         const auto own = call.viewOfDevice(view, "view", true);
         if (!name) fail(LW_ERROR_INVALID_ARGUMENT, "name: expected a debug view's name, got null");
         if (!pixels) fail(LW_ERROR_INVALID_ARGUMENT, "pixels: expected an address, got null");
-        call.waitIdle();
-        call.owner()->device.finish();
+        Device& device = call.owner()->device;
         std::string names;
         for (const DebugView& debug : object->technique->debugViews(own.get())) {
             names += (names.empty() ? "" : ", ") + std::string(debug.name);
@@ -81,7 +101,15 @@ LWStatus lwReadDebugView(LWTechnique technique, LWView view, const char* name, f
             if (capacity < needed)
                 fail(LW_ERROR_INVALID_ARGUMENT, "capacity: expected at least ", needed, " floats, got ",
                      capacity);
-            readPlanes(call.owner()->device, debug.planes, pixels);
+            FrameRecord scratch(device);  // its times belong to no frame
+            Buffer made;                   // held until the reads are done
+            try {
+                enqueueDebugRead(scratch.executor, debug, made, pixels);
+                call.settle();
+            } catch (...) {
+                clFinish(device.queue());  // `pixels` must not be written after this call
+                throw;
+            }
             return;
         }
         fail(LW_ERROR_INVALID_ARGUMENT, "name: expected one of ", names.empty() ? "(none yet)" : names,

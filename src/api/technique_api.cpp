@@ -103,8 +103,7 @@ LWStatus lwPrewarm(LWTechnique technique, LWView view) {
         const auto own = call.viewOfDevice(view, "view");
         FrameRecord scratch(call.owner()->device);  // its times belong to no frame
         object->technique->prewarm(scratch.executor, own);
-        call.waitIdle();
-        call.owner()->device.finish();
+        call.settle();
     });
 }
 

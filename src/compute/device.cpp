@@ -77,6 +77,14 @@ Device::Device(const LWDeviceDesc& desc) : log_(desc.log), logUser_(desc.logUser
 }
 
 Device::~Device() {
+    try {
+        // For hosts that wait on events of their own and never finish. No waiting here: the queue may be the
+        // host's, behind something that only the host can set off.
+        watch_.collect();
+        if (watch_.pending() == 0) programs_->saveBinaries();
+    } catch (const std::exception& error) {
+        log(LW_LOG_WARNING, std::string("cache: kernels are not saved: ") + error.what());
+    }
     release();
 }
 
@@ -214,8 +222,23 @@ void Device::finish() {
     watch_.collect();
     if (status != CL_SUCCESS) watch_.noteFailure(clErrorName(status));
     watch_.clear();  // nothing unless the queue itself has failed
+    settle();
+}
+
+Marker Device::mark() {
+    cl_event event = nullptr;
+    checkCl(clEnqueueMarkerWithWaitList(queue_, 0, nullptr, &event), "clEnqueueMarkerWithWaitList");
+    const cl_int status = clFlush(queue_);
+    if (status != CL_SUCCESS) clReleaseEvent(event);
+    checkCl(status, "clFlush");
+    return Marker(event);
+}
+
+void Device::settle() {
     raiseFailure();
-    programs_->saveBinaries();
+    // Other threads' commands may be on their way by now; drivers compile at first launches, and what is being
+    // compiled is not to be read.
+    if (watch_.pending() == 0) programs_->saveBinaries();
 }
 
 }  // namespace lightwell

@@ -12,6 +12,21 @@
 
 namespace lightwell {
 
+// A place in the queue.
+class Marker {
+public:
+    explicit Marker(cl_event event) : event_(event) {}  // takes the event over
+    ~Marker() { clReleaseEvent(event_); }
+    Marker(const Marker&) = delete;
+    Marker& operator=(const Marker&) = delete;
+    // Until the queue gets there, from any thread and without the API's lock. What failed on the way is told
+    // by Device::settle.
+    void wait() const { clWaitForEvents(1, &event_); }
+
+private:
+    cl_event event_;
+};
+
 // Not thread-safe: src/api serialises the calls on one device.
 class Device {
 public:
@@ -42,7 +57,11 @@ public:
     static bool insideAnyLog();    // ... of any device
     void describe(LWDeviceInfo& info) const;
     void raiseFailure();  // throws DEVICE when a command is known to have failed; waits for nothing
-    void finish();  // clFinish, then saves new binaries; throws DEVICE on an execution error
+    void finish();  // clFinish, then as settle()
+    Marker mark();  // behind everything enqueued so far, on its way to the device
+    // After a marker was waited for: throws DEVICE when a command has failed; saves new binaries when
+    // everything enqueued has ended.
+    void settle();
 
     void countAllocation(std::int64_t bytes) { allocatedBytes_ += std::uint64_t(bytes); }
     std::uint64_t allocatedBytes() const { return allocatedBytes_; }

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -29,6 +30,7 @@ public:
     // Waits for nothing: call after Device::finish. `names` are string literals.
     std::vector<LWPassTime> passes() const;
     double totalMilliseconds() const;
+    std::unique_ptr<Profile> snapshot() const;  // what it holds now, for a report after a wait
     std::size_t heldEntries() const { return entries_.size(); }
 
 private:

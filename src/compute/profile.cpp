@@ -77,6 +77,17 @@ Profile::Sums Profile::sums() const {
     return all;
 }
 
+std::unique_ptr<Profile> Profile::snapshot() const {
+    auto copy = std::make_unique<Profile>();
+    copy->folded_ = folded_;
+    copy->entries_.reserve(entries_.size());
+    for (const Entry& entry : entries_) {
+        const bool held = entry.event && clRetainEvent(entry.event) == CL_SUCCESS;
+        copy->entries_.push_back({entry.pass, held ? entry.event : nullptr});
+    }
+    return copy;
+}
+
 std::vector<LWPassTime> Profile::passes() const {
     return sums().passes;
 }

@@ -156,7 +156,7 @@ void GBufferInput::import(Executor& executor, const View& view, const LWGBuffer&
 
 void GBufferInput::report(Report& report) const {
     for (std::size_t f = 0; f < kFieldCount; ++f)
-        if (impl_->choices[f]) report.choices.push_back({kFields[f].name, impl_->choices[f]});
+        if (impl_->choices[f]) report.choose(kFields[f].name, impl_->choices[f]);
 }
 
 std::uint64_t GBufferInput::bytes() const {

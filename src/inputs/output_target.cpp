@@ -144,7 +144,7 @@ void OutputTarget::end(Executor& executor) {
 }
 
 void OutputTarget::report(Report& report) const {
-    if (impl_->mode != Impl::Mode::kNone) report.choices.push_back({impl_->name, impl_->choice});
+    if (impl_->mode != Impl::Mode::kNone) report.choose(impl_->name, impl_->choice);
 }
 
 std::uint64_t OutputTarget::bytes() const {

@@ -163,6 +163,7 @@ std::vector<CheckedRsm> checkLights(Device& device, const LWFrame& frame, std::v
 }  // namespace
 
 struct RsmInput::Impl {
+    Device* device = nullptr;  // of the last import
     Buffer texelMemory, counters;
     std::vector<DeviceImage> opened;
     std::set<std::pair<const char*, const char*>> choices;  // of all maps, each once; literals
@@ -206,6 +207,7 @@ void RsmInput::import(Executor& executor, const LWFrame& frame) {
     Device& device = executor.device();
     std::vector<RsmSpan> newSpans;
     const std::vector<CheckedRsm> rsms = checkLights(device, frame, newSpans);
+    impl_->device = &device;
     std::uint64_t total = 0;
     std::uint32_t newRows = 0, newTexels = 0;
     for (const RsmSpan& span : newSpans) {
@@ -245,13 +247,14 @@ void RsmInput::import(Executor& executor, const LWFrame& frame) {
 }
 
 void RsmInput::report(Report& report) const {
-    // The queue is idle: reading 16 bytes waits for nothing.
-    std::uint32_t counts[LW_RSM_COUNTERS] = {};
-    if (!spans.empty()) impl_->counters.download(0, sizeof counts, counts);
     report.counts.push_back({"rsm_texels", texelCount});
-    report.counts.push_back({"rejected_texels", counts[LW_RSM_REJECTED]});
-    report.counts.push_back({"covered_texels", counts[LW_RSM_COVERED]});
-    for (const auto& choice : impl_->choices) report.choices.push_back({choice.first, choice.second});
+    report.counts.push_back({"rejected_texels", 0});
+    report.counts.push_back({"covered_texels", 0});
+    if (!spans.empty()) {
+        report.read(*impl_->device, "rejected_texels", impl_->counters, LW_RSM_REJECTED * sizeof(cl_uint));
+        report.read(*impl_->device, "covered_texels", impl_->counters, LW_RSM_COVERED * sizeof(cl_uint));
+    }
+    for (const auto& choice : impl_->choices) report.choose(choice.first, choice.second);
 }
 
 std::uint64_t RsmInput::bytes() const {

@@ -52,7 +52,7 @@ public:
     std::uint32_t texelCount = 0;  // valid texels, padding left out (covered cascade texels included)
     std::vector<RsmSpan> spans;
 
-    void report(Report& report) const;  // rejected_texels, covered_texels, choices; after Device::finish
+    void report(Report& report) const;  // rejected_texels, covered_texels, choices
     std::uint64_t bytes() const;
     // What bytes() becomes for maps of so many texels in all (rows a multiple of 16 long).
     static std::uint64_t estimateBytes(std::uint64_t rsmTexels);

@@ -94,23 +94,22 @@ void VplSampling::draw(Executor& executor, const RsmInput& rsms, std::uint32_t s
                  rowSumsBuffer_, uniform, cl_int(sampleCount), rotation(options_.seed), authored_, order_, vpls_);
 }
 
-Planes VplSampling::debugPlanes(Executor& executor) {
-    const std::uint32_t slots = std::uint32_t(order_.subsets * order_.capacity);
-    const std::uint32_t stride = paddedWidth(slots);
-    debug_.reserve(device_, std::size_t(stride) * 40, "debug view of VPLs");
-    executor.run("vpl_sampling.planes", planes_, {slots, 1}, kGroup, vpls_, cl_int(slots), debug_, cl_int(stride));
+Planes VplSampling::debugShape() const {
     Planes planes;
-    planes.memory = debug_.get();
-    planes.rowStride = planes.planeStride = stride;
-    planes.width = slots;
+    planes.width = std::uint32_t(order_.subsets * order_.capacity);
     planes.height = 1;
+    planes.rowStride = planes.planeStride = paddedWidth(planes.width);
     planes.count = 10;
     return planes;
 }
 
+void VplSampling::recordPlanes(Executor& executor, const Planes& planes) {
+    executor.run("vpl_sampling.planes", planes_, {planes.width, 1}, kGroup, vpls_, cl_int(planes.width),
+                 planes.memory, cl_int(planes.planeStride));
+}
+
 std::uint64_t VplSampling::bytes() const {
-    return texelSums_.bytes() + rowTotals_.bytes() + rowSumsBuffer_.bytes() + authored_.bytes() + vpls_.bytes() +
-           debug_.bytes();
+    return texelSums_.bytes() + rowTotals_.bytes() + rowSumsBuffer_.bytes() + authored_.bytes() + vpls_.bytes();
 }
 
 std::uint64_t VplSampling::estimateBytes(const VplSamplingOptions& options, std::uint64_t texels) {

@@ -29,12 +29,12 @@ public:
     // Records passes "vpl_sampling.*". `authored`: the host's own VPLs, appended to those drawn; read
     // before the call returns.
     void record(Executor& executor, const RsmInput& rsms, const LWVpl* authored, std::uint32_t authoredCount);
-    void prewarm(Executor& executor);
 
     const Buffer& vpls() const { return vpls_; }         // lw_vpl by slot
     lw_subset_order order() const { return order_; }
     std::uint32_t vplCount() const { return std::uint32_t(order_.count); }
-    Planes debugPlanes(Executor& executor);               // position, normal, flux, area by slot
+    Planes debugShape() const;  // planes without memory: position, normal, flux, area by slot
+    void recordPlanes(Executor& executor, const Planes& planes);  // fills them
     std::uint64_t bytes() const;
     static std::uint64_t estimateBytes(const VplSamplingOptions& options, std::uint64_t texels);
 
@@ -45,7 +45,7 @@ private:
     Device& device_;
     VplSamplingOptions options_;
     Kernel &rowSums_, &total_, &draw_, &all_, &planes_;
-    Buffer texelSums_, rowTotals_, rowSumsBuffer_, authored_, vpls_, debug_;
+    Buffer texelSums_, rowTotals_, rowSumsBuffer_, authored_, vpls_;
     lw_subset_order order_{};
 };
 

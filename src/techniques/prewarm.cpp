@@ -84,7 +84,14 @@ void exerciseTechnique(Executor& executor, Technique& technique) {
         output.validity = imageOf(inputs.validity, LW_FORMAT_FLOAT1);
         technique.update(executor, frame);
         technique.render(executor, view, gbuffer, output);
-        technique.debugViews(view.get());
+        for (const DebugView& debug : technique.debugViews(view.get()))
+            if (debug.fill) {
+                Planes planes = debug.planes;
+                const Buffer made(executor.device(), std::size_t(planes.planeStride) * planes.count * sizeof(float),
+                                  debug.name);
+                planes.memory = made.get();
+                debug.fill(executor, planes);
+            }
         executor.device().finish();
         // The same view with every light out.
         LWFrame dark{};

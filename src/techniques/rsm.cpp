@@ -2,8 +2,8 @@
 // lines, kept together so that the technique stays one stem; the table moves out with its second user.
 #include "techniques/rsm.h"
 
-#include <array>
 #include <iterator>
+#include <optional>
 
 #include "compute/device.h"
 #include "compute/error.h"
@@ -50,8 +50,9 @@ std::vector<LWChoice> unusedInputs(const LWFrame& frame) {
 class RsmTechnique final : public Technique {
 public:
     RsmTechnique(Device& device, const LWRsmDesc& desc)
-        : device_(device), desc_(desc), sampling_(device, samplingOptions(desc)), gather_(device, desc.interleave),
-          bilateral_(device) {}
+        : device_(device), desc_(desc), sampling_(device, samplingOptions(desc)), gather_(device, desc.interleave) {
+        if (halfResolution(desc)) bilateral_.emplace(device);  // a program built for nothing is also never cached
+    }
 
     void update(Executor& executor, const LWFrame& frame) override {
         rsms_.import(executor, frame);
@@ -110,7 +111,7 @@ private:
     RsmInput rsms_;
     VplSampling sampling_;
     InterleavedGather gather_;
-    JointBilateral bilateral_;
+    std::optional<JointBilateral> bilateral_;  // half resolution only
     PerView<ViewState> states_;
     std::vector<LWChoice> unused_;  // of the last update
 };
@@ -156,7 +157,7 @@ void RsmTechnique::light(Executor& executor, ViewState& state, const Planes& irr
     if (half) {
         const std::uint32_t w = JointBilateral::halved(position.width), h = JointBilateral::halved(position.height);
         const Planes halfPosition = state.halfPosition.planes(w, h), halfNormal = state.halfNormal.planes(w, h);
-        bilateral_.recordDownsample(executor, position, normal, halfPosition, halfNormal);
+        bilateral_->recordDownsample(executor, position, normal, halfPosition, halfNormal);
         position = halfPosition;
         normal = halfNormal;
     }
@@ -168,7 +169,7 @@ void RsmTechnique::light(Executor& executor, ViewState& state, const Planes& irr
         gather_.recordFilter(executor, position, normal, gathered, lit);
     }
     if (half)
-        bilateral_.recordUpsample(executor, state.gbuffer.position, state.gbuffer.normal, position, normal, lit,
+        bilateral_->recordUpsample(executor, state.gbuffer.position, state.gbuffer.normal, position, normal, lit,
                                   irradiance, state.counts);
     state.lastGathered = gathered;
     state.lastFiltered = lit;
@@ -180,36 +181,33 @@ Report RsmTechnique::report() {
     // With every texel a VPL, the list also holds the dark padding of the maps' rows.
     const std::uint32_t padding = desc_.vpls == 0 ? rsms_.texels.width - rsms_.texelCount : 0;
     report.counts.push_back({"vpls", sampling_.vplCount() - padding});
-    std::array<cl_int, 2> total{};
-    report.choices.insert(report.choices.end(), unused_.begin(), unused_.end());
+    for (const LWChoice& choice : unused_) report.choose(choice.name, choice.reason);
+    report.counts.push_back({"rejected_pixels", 0});
+    report.counts.push_back({"upsample_fallbacks", 0});
     states_.each([&](const ViewState& state) {
         if (!state.rendered) return;
         state.gbuffer.report(report);
         state.irradiance.report(report);
         state.validity.report(report);
-        std::array<cl_int, 2> counts{};
-        if (state.lastGathered) state.counts.download(0, sizeof counts, counts.data());
-        for (std::size_t i = 0; i < counts.size(); ++i) total[i] += counts[i];
+        if (!state.lastGathered) return;
+        report.read(device_, "rejected_pixels", state.counts, 0);
+        report.read(device_, "upsample_fallbacks", state.counts, sizeof(cl_int));
     });
-    report.counts.push_back({"rejected_pixels", std::uint64_t(total[0])});
-    report.counts.push_back({"upsample_fallbacks", std::uint64_t(total[1])});
     return report;
 }
 
 std::vector<DebugView> RsmTechnique::debugViews(const View* view) {
     std::vector<DebugView> views;
-    Profile unused;
-    Executor executor(device_, unused);
     if (sampling_.vpls())
         views.push_back({"vpls", "one column per slot: position xyz (m), unit normal xyz, flux rgb (W), area (m^2)",
-                         sampling_.debugPlanes(executor)});
+                         sampling_.debugShape(),
+                         [this](Executor& executor, const Planes& planes) { sampling_.recordPlanes(executor, planes); }});
     if (ViewState* state = states_.find(view); state && state->lastGathered) {
-        views.push_back({"position", "world position (m)", state->gbuffer.position});
-        views.push_back({"normal", "world normal as the host gave it", state->gbuffer.normal});
-        views.push_back({"gathered", "irradiance before the filter (W/m^2)", state->lastGathered});
-        if (filters(desc_)) views.push_back({"filtered", "irradiance after the filter (W/m^2)", state->lastFiltered});
+        views.push_back({"position", "world position (m)", state->gbuffer.position, {}});
+        views.push_back({"normal", "world normal as the host gave it", state->gbuffer.normal, {}});
+        views.push_back({"gathered", "irradiance before the filter (W/m^2)", state->lastGathered, {}});
+        if (filters(desc_)) views.push_back({"filtered", "irradiance after the filter (W/m^2)", state->lastFiltered, {}});
     }
-    device_.finish();
     return views;
 }
 

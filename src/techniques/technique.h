@@ -2,12 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "compute/executor.h"
+#include "compute/report.h"
 #include "lightwell/lightwell.h"
 
 namespace lightwell {
@@ -22,17 +24,13 @@ public:
     std::uint32_t width, height;
 };
 
+// An intermediate buffer as planes. One that has to be made of something else is described by planes without
+// memory, and `fill` records the kernels that make it in the memory it gets for one read.
 struct DebugView {
     const char* name;
     const char* description;
     Planes planes;
-};
-
-// What happened in the frames since update(): counts and choices for LWStats. Names and reasons are
-// string literals.
-struct Report {
-    std::vector<LWCount> counts;
-    std::vector<LWChoice> choices;
+    std::function<void(Executor&, const Planes&)> fill;
 };
 
 class Technique {
@@ -47,8 +45,9 @@ public:
     // Builds and launches every kernel that the parameters can need.
     virtual void prewarm(Executor& executor, const std::shared_ptr<View>& view) = 0;
 
-    virtual Report report() = 0;  // after Device::finish
-    virtual std::vector<DebugView> debugViews(const View* view) = 0;
+    // Of the frames recorded so far. Waits for nothing: what the device knows is left to Report::read.
+    virtual Report report() = 0;
+    virtual std::vector<DebugView> debugViews(const View* view) = 0;  // a query: allocates and enqueues nothing
     virtual std::uint64_t bytes() const = 0;
 };
 

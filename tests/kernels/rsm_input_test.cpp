@@ -91,6 +91,8 @@ Imported importLights(KernelRig& rig, const std::vector<LWLight>& lights, RsmInp
     if (input.texels) readPlanes(rig.device(), input.texels, result.texels.data());
     Report report;
     input.report(report);
+    rig.device().finish();
+    report.resolve();
     for (const LWCount& count : report.counts) {
         if (std::string(count.name) == "rejected_texels") result.rejected = count.value;
         if (std::string(count.name) == "covered_texels") result.covered = count.value;

@@ -1,0 +1,45 @@
+// What happened in the frames since update(): counts and choices for LWStats.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "compute/buffer.h"
+#include "compute/cl.h"
+#include "lightwell/lightwell.h"
+
+namespace lightwell {
+
+// Filled in two steps, so that nobody waits under a lock: a technique notes what it knows and has the rest
+// read without waiting; after the wait, resolve() puts in what was read. Names and reasons are string literals.
+class Report {
+public:
+    Report() = default;
+    ~Report();  // waits for what is still being read
+    Report(Report&&) = default;
+    Report& operator=(Report&&) = default;
+
+    std::vector<LWCount> counts;
+    std::vector<LWChoice> choices;
+
+    // Adds the 32-bit count that `buffer` holds at `byteOffset`, as it stands when the commands enqueued so far
+    // have run, to the count of this name.
+    void read(Device& device, const char* name, const Buffer& buffer, std::size_t byteOffset);
+    // Adds a choice, unless the same was made before (for another view).
+    void choose(const char* name, const char* reason);
+    // After the queue has got past the reads.
+    void resolve();
+
+private:
+    struct Pending {
+        std::size_t count;  // index in counts
+        std::unique_ptr<cl_uint> value;
+    };
+    std::size_t indexOf(const char* name);
+
+    std::vector<Pending> pending_;
+    Device* device_ = nullptr;  // set while something is pending
+};
+
+}  // namespace lightwell
