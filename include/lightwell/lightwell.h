@@ -277,7 +277,8 @@ typedef struct LWRsm {
     LWImage position;  /**< world position, or */
     LWImage depth;     /**< depth with `camera` */
     LWImage normal;    /**< world normal on the lit side; zero = nothing lit */
-    LWImage flux;      /**< reflected flux of the texel, W */
+    LWImage flux;      /**< reflected flux of the texel, W, 0 .. 1e30: texels outside count as rejected and
+                            carry nothing */
     LWCamera camera;   /**< orthographic for a directional light, perspective otherwise */
 } LWRsm;
 
@@ -303,7 +304,7 @@ typedef struct LWVpl {
     float area;       /**< m^2; bounds the light near the emitter; 0: a point */
     float normal[3];  /**< unit */
     float reserved;
-    float flux[3];    /**< W */
+    float flux[3];    /**< W, 0 .. 1e30: more would make sums overflow; lwUpdate refuses the frame */
     float reserved2;
 } LWVpl;
 
@@ -447,7 +448,7 @@ LW_API LWStatus lwEstimateMemory(LWDevice device, const char* name, const void* 
                                  const LWViewDesc* view, uint64_t rsmTexels, uint64_t* bytes);
 
 /** Builds and launches once every kernel that the technique can need for this view, so that no later
- *  frame compiles anything. Blocks. */
+ *  frame compiles anything, of whatever size. Blocks. */
 LW_API LWStatus lwPrewarm(LWTechnique technique, LWView view);
 
 /** Enqueues the world part of a frame: draws VPLs, fills volumes. Errors: INVALID_*, OUT_OF_MEMORY. */

@@ -9,6 +9,11 @@
 #include "shared/vpl_types.h"
 #include "shared/subset_order.h"
 
+// This work-item's place in a list that src/passes/vpl_sampling.cpp folds into rows of work-items: drivers may
+// compile a kernel anew for more than 65,535 groups along an axis, which no frame shall do. (The host sees to
+// it that the rounded-up grid stays below 2^31.)
+LW_FN int lw_list_index(void) { return (int)get_global_id(1) * (int)get_global_size(0) + (int)get_global_id(0); }
+
 // What a texel is drawn by. The mean of the channels, not luminance: a texel that reflects only blue
 // must keep a probability in proportion to what it sends.
 LW_FN float texel_weight(__global const float* texels, int planeStride, int texel, int uniformWeights) {
@@ -22,7 +27,7 @@ LW_FN float texel_weight(__global const float* texels, int planeStride, int texe
 __kernel void vpl_sampling_row_sums(__global const float* texels, int4 layout, __global const int4* rows,
                                     int rowCount, int uniformWeights, __global float* texelSums,
                                     __global float* rowTotals) {
-    const int r = (int)get_global_id(0);
+    const int r = lw_list_index();
     if (r >= rowCount) return;
     const int4 row = rows[r];
     __global const float* base = texels + layout.x;
@@ -99,7 +104,7 @@ __kernel void vpl_sampling_draw(__global const float* texels, int4 layout, __glo
                                 int rowCount, __global const float* texelSums, __global const float* rowSums,
                                 int uniformWeights, int sampleCount, float2 shift,
                                 __global const lw_vpl* authored, lw_subset_order order, __global lw_vpl* vpls) {
-    const int slot = (int)get_global_id(0);
+    const int slot = lw_list_index();
     if (slot >= order.subsets * order.capacity) return;
     const int k = lw_subset_index(order, slot);
     if (k < 0) { vpls[slot] = no_vpl(); return; }
@@ -122,7 +127,7 @@ __kernel void vpl_sampling_draw(__global const float* texels, int4 layout, __glo
 // The same list when every texel is a VPL of its own, with its flux and area as they are.
 __kernel void vpl_sampling_all(__global const float* texels, int4 layout, int texelCount,
                                __global const lw_vpl* authored, lw_subset_order order, __global lw_vpl* vpls) {
-    const int slot = (int)get_global_id(0);
+    const int slot = lw_list_index();
     if (slot >= order.subsets * order.capacity) return;
     const int k = lw_subset_index(order, slot);
     if (k < 0) vpls[slot] = no_vpl();
@@ -132,7 +137,7 @@ __kernel void vpl_sampling_all(__global const float* texels, int4 layout, int te
 
 // For debugging: the list as ten planes (position, normal, flux, area).
 __kernel void vpl_sampling_planes(__global const lw_vpl* vpls, int count, __global float* planes, int planeStride) {
-    const int i = (int)get_global_id(0);
+    const int i = lw_list_index();
     if (i >= count) return;
     const lw_vpl vpl = vpls[i];
     const float values[10] = {vpl.positionArea.x, vpl.positionArea.y, vpl.positionArea.z,

@@ -5,6 +5,7 @@
 
 #include "api/call.h"
 #include "api/structs.h"
+#include "shared/rsm_types.h"
 
 namespace lightwell {
 namespace {
@@ -111,14 +112,18 @@ void FrameArgument::checkNumbers() const {
     checkFinite(frame_.environment, 3, "frame.environment", true);
     for (std::uint32_t i = 0; i < frame_.vplCount; ++i) {
         const LWVpl& vpl = frame_.vpls[i];
-        const bool good = std::isfinite(vpl.position[0] + vpl.position[1] + vpl.position[2] +
-                                        vpl.normal[0] + vpl.normal[1] + vpl.normal[2]);
-        const bool lit = vpl.area >= 0.0f && vpl.flux[0] >= 0.0f && vpl.flux[1] >= 0.0f &&
-                         vpl.flux[2] >= 0.0f &&
-                         std::isfinite(vpl.area + vpl.flux[0] + vpl.flux[1] + vpl.flux[2]);
-        if (!good || !lit)
+        const float* p = vpl.position;
+        // Squared, as the kernels meet it.
+        const bool good = std::isfinite(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + vpl.normal[0] +
+                                        vpl.normal[1] + vpl.normal[2] + vpl.area) &&
+                          vpl.area >= 0.0f;
+        if (!good)
             fail(LW_ERROR_INVALID_ARGUMENT, "frame.vpls[", i,
-                 "]: expected finite numbers, area and flux of 0 or more, got something else");
+                 "]: expected finite numbers, positions below 1e19 and an area of 0 or more, got something else");
+        for (const float flux : vpl.flux)
+            if (!(flux >= 0.0f && flux <= LW_LARGEST_FLUX))
+                fail(LW_ERROR_INVALID_ARGUMENT, "frame.vpls[", i, "].flux: expected 0 .. ", LW_LARGEST_FLUX,
+                     ", got ", flux);
         const float* n = vpl.normal;
         const float squared = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
         // Two per cent: normals that a host stored in 8 bits per component.

@@ -13,6 +13,13 @@ namespace {
 constexpr Range kGroup{64, 1};
 constexpr const char* kProgram = "vpl_sampling/vpl_sampling";
 
+// A list of work-items in rows of at most 2^18 (a multiple of every group): as many groups as a grid may have
+// without a driver telling it from a small one, whatever the list's length. See lw_list_index.
+Range gridOver(std::size_t count) {
+    constexpr std::size_t kRow = std::size_t(1) << 18;
+    return {std::min(count, kRow), (count + kRow - 1) / kRow};
+}
+
 // Two decorrelated numbers in [0,1) of a seed (Murmur's finaliser); (0, 0) for seed 0.
 cl_float2 rotation(std::uint32_t seed) {
     auto unit = [](std::uint32_t x) {
@@ -78,7 +85,7 @@ void VplSampling::record(Executor& executor, const RsmInput& rsms, const LWVpl* 
 }
 
 void VplSampling::draw(Executor& executor, const RsmInput& rsms, std::uint32_t sampleCount) {
-    const Range slots{std::size_t(order_.subsets) * std::size_t(order_.capacity), 1};
+    const Range slots = gridOver(std::size_t(order_.subsets) * std::size_t(order_.capacity));
     if (options_.count == 0 || sampleCount == 0) {
         // Without texels the list holds the host's VPLs alone; the texel planes are then not read.
         Planes texels = rsms.texels;
@@ -87,7 +94,7 @@ void VplSampling::draw(Executor& executor, const RsmInput& rsms, std::uint32_t s
         return;
     }
     const cl_int rowCount = cl_int(rsms.rowCount), uniform = options_.uniform ? 1 : 0;
-    executor.run("vpl_sampling.row_sums", rowSums_, {rsms.rowCount, 1}, {4, 1}, rsms.texels, rsms.rows, rowCount,
+    executor.run("vpl_sampling.row_sums", rowSums_, gridOver(rsms.rowCount), {4, 1}, rsms.texels, rsms.rows, rowCount,
                  uniform, texelSums_, rowTotals_);
     executor.run("vpl_sampling.total", total_, {1, 1}, {1, 1}, rowTotals_, rowCount, rowSumsBuffer_);
     executor.run("vpl_sampling.draw", draw_, slots, kGroup, rsms.texels, rsms.rows, rowCount, texelSums_,
@@ -104,7 +111,7 @@ Planes VplSampling::debugShape() const {
 }
 
 void VplSampling::recordPlanes(Executor& executor, const Planes& planes) {
-    executor.run("vpl_sampling.planes", planes_, {planes.width, 1}, kGroup, vpls_, cl_int(planes.width),
+    executor.run("vpl_sampling.planes", planes_, gridOver(planes.width), kGroup, vpls_, cl_int(planes.width),
                  planes.memory, cl_int(planes.planeStride));
 }
 

@@ -106,6 +106,11 @@ TEST_CASE("refused frames name the argument and change nothing", "[api]") {
     CHECK_THAT(refusal(&frame), Contains("frame.vpls[0]"));
     vpl = LWVpl{};
     vpl.normal[1] = 1;
+    vpl.flux[2] = 2e30f;  // finite, but sums of such are not; of RSM texels the same is refused
+    CHECK_THAT(refusal(&frame), Contains("frame.vpls[0].flux") && Contains("1e+30"));
+    vpl.flux[2] = 0;
+    vpl.position[2] = 1e20f;  // its square is not finite
+    CHECK_THAT(refusal(&frame), Contains("frame.vpls[0]") && Contains("finite"));
     vpl.position[2] = std::nanf("");
     CHECK_THAT(refusal(&frame), Contains("frame.vpls[0]") && Contains("finite"));
     vpl.position[2] = 0;
@@ -310,6 +315,47 @@ TEST_CASE("prewarmed techniques compile nothing more, through resizes", "[api]")
     CHECK(before.programsBuilt == after.programsBuilt);
     CHECK(before.programsLoaded == after.programsLoaded);
     CHECK(before.kernelsSpecialised == after.kernelsSpecialised);
+}
+
+TEST_CASE("prewarmed techniques compile nothing more for millions of VPLs", "[api]") {
+    // More than 65,535 groups of 64: drivers tell such grids apart.
+    constexpr std::uint32_t kVpls = 5u << 20;
+    ApiScene scene(1, 1);
+    const LWDevice device = makeDevice(16);
+    LWRsmDesc desc;
+    lwDefaultRsm(&desc);
+    desc.vpls = kVpls;
+    desc.interleave = 1;
+    LWTechnique technique = nullptr;
+    LWView view = nullptr;
+    const LWViewDesc viewDesc = scene.viewDesc();
+    REQUIRE(lwCreateView(device, &viewDesc, &view) == LW_SUCCESS);
+    REQUIRE(lwCreateRsm(device, &desc, &technique) == LW_SUCCESS);
+    REQUIRE(lwPrewarm(technique, view) == LW_SUCCESS);
+    LWDeviceInfo before{}, after{};
+    before.structSize = after.structSize = sizeof before;
+    REQUIRE(lwGetDeviceInfo(device, &before) == LW_SUCCESS);
+    REQUIRE(lwUpdate(technique, &scene.frame) == LW_SUCCESS);
+    REQUIRE(lwRender(technique, view, &scene.gbuffer, &scene.output) == LW_SUCCESS);
+    LWDebugView info{};
+    info.structSize = sizeof info;
+    REQUIRE(lwDescribeDebugView(technique, nullptr, 0, &info) == LW_SUCCESS);
+    REQUIRE(info.width >= kVpls);
+    std::vector<float> list(std::size_t(info.width) * info.channels);
+    REQUIRE(lwReadDebugView(technique, nullptr, "vpls", list.data(), list.size()) == LW_SUCCESS);
+    REQUIRE(lwGetDeviceInfo(device, &after) == LW_SUCCESS);
+    CHECK(before.programsBuilt == after.programsBuilt);
+    CHECK(before.kernelsSpecialised == after.kernelsSpecialised);
+    // Every slot is written: all VPLs have the same flux here.
+    const float* red = list.data() + std::size_t(info.width) * 6;
+    const float each = float(1.0 / kVpls);
+    std::uint32_t right = 0;
+    for (std::uint32_t i = 0; i < kVpls; ++i) right += std::abs(red[i] / each - 1.0f) < 1e-4f;
+    CHECK(right == kVpls);
+    CHECK(scene.lit());
+    lwReleaseTechnique(technique);
+    lwReleaseView(view);
+    lwReleaseDevice(device);
 }
 
 TEST_CASE("debug views are listed, described and read", "[api]") {
