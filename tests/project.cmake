@@ -57,6 +57,8 @@ add_test(NAME getting_started_test COMMAND minimal)
 
 # --- a frame that shares no convention and no code with us
 lightwell_test(foreign_test SOURCES foreign/foreign_test.cpp LIBS lightwell LABELS images)
+add_test(NAME foreign_test_uploads COMMAND foreign_test)
+set_tests_properties(foreign_test_uploads PROPERTIES LABELS images ENVIRONMENT LIGHTWELL_UNIFIED_MEMORY=0)
 target_compile_definitions(foreign_test PRIVATE
   LIGHTWELL_FOREIGN_FRAME="${CMAKE_CURRENT_SOURCE_DIR}/foreign/frame")
 

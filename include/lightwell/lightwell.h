@@ -442,10 +442,16 @@ LW_API LWStatus lwCreateRsm(LWDevice device, const LWRsmDesc* desc, LWTechnique*
 LW_API LWStatus lwRetainTechnique(LWTechnique technique);
 LW_API LWStatus lwReleaseTechnique(LWTechnique technique);
 
-/** Device bytes that the technique will hold for one view of this size and RSMs of `rsmTexels` texels
- *  in all, input conversion included, without creating anything. */
+/** Device bytes that the technique will hold for one view of this size at its maximum and one square RSM of
+ *  `rsmTexels` texels, without creating anything: the most it can be, for inputs and outputs that all have to
+ *  be unpacked (and, on a device that does not share memory with the host, copied; without gaps between their
+ *  rows). More texels than frames may have are refused alike. */
 LW_API LWStatus lwEstimateMemory(LWDevice device, const char* name, const void* desc,
                                  const LWViewDesc* view, uint64_t rsmTexels, uint64_t* bytes);
+/** The same for this frame's RSMs, whose sizes are those of their flux images, and its own VPLs. The frame is
+ *  checked as lwUpdate checks it, images apart: their pixels are not read and may be absent. */
+LW_API LWStatus lwEstimateFrameMemory(LWDevice device, const char* name, const void* desc,
+                                      const LWViewDesc* view, const LWFrame* frame, uint64_t* bytes);
 
 /** Builds and launches once every kernel that the technique can need for this view, so that no later
  *  frame compiles anything, of whatever size. Blocks. */

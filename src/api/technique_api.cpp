@@ -1,4 +1,6 @@
 // Entry points: techniques and frames.
+#include <cmath>
+
 #include "api/call.h"
 #include "api/frame_arguments.h"
 #include "api/parameters.h"
@@ -36,6 +38,21 @@ void checkOutput(const LWOutput& output) {
                                  &output.specularRadiance, &output.shadow})
         if (image->format != LW_FORMAT_NONE || image->host || image->clMem) return;
     fail(LW_ERROR_INVALID_ARGUMENT, "output: expected at least one image, got none");
+}
+
+constexpr std::uint32_t kMaxSide = 16384;  // of views and RSMs
+
+void estimate(Call& call, const char* name, const void* desc, const LWViewDesc* view, FrameShape shape,
+              std::uint64_t* bytes) {
+    if (!bytes) fail(LW_ERROR_INVALID_ARGUMENT, "bytes: expected an address, got null");
+    const TechniqueEntry& entry = findTechniqueEntry(name);
+    const auto descriptor = readDescriptor(entry, desc);
+    const LWViewDesc own = readStruct(view, "view");
+    if (own.maxWidth == 0 || own.maxHeight == 0 || own.maxWidth > kMaxSide || own.maxHeight > kMaxSide)
+        fail(LW_ERROR_INVALID_ARGUMENT, "view: expected 1 .. ", kMaxSide, " pixels a side, got ",
+             own.maxWidth, " x ", own.maxHeight);
+    shape.uploads = !call.owner()->device.unifiedMemory();
+    *bytes = entry.estimateBytes(descriptor.data(), own, shape);
 }
 
 }  // namespace
@@ -80,20 +97,34 @@ LWStatus lwEstimateMemory(LWDevice device, const char* name, const void* desc, c
                           std::uint64_t rsmTexels, std::uint64_t* bytes) {
     return enter("lwEstimateMemory", [&](Call& call) {
         call.device(device);
-        if (!bytes) fail(LW_ERROR_INVALID_ARGUMENT, "bytes: expected an address, got null");
-        const TechniqueEntry& entry = findTechniqueEntry(name);
-        const auto descriptor = readDescriptor(entry, desc);
-        const LWViewDesc own = readStruct(view, "view");
-        constexpr std::uint32_t kMaxSide = 16384;
-        if (own.maxWidth == 0 || own.maxHeight == 0 || own.maxWidth > kMaxSide ||
-            own.maxHeight > kMaxSide)
-            fail(LW_ERROR_INVALID_ARGUMENT, "view: expected 1 .. ", kMaxSide, " pixels a side, got ",
-                 own.maxWidth, " x ", own.maxHeight);
         constexpr std::uint64_t kMaxTexels = std::uint64_t(1) << 40;  // products with it stay in 64 bits
         if (rsmTexels > kMaxTexels)
-            fail(LW_ERROR_INVALID_ARGUMENT, "rsmTexels: expected at most ", kMaxTexels, ", got ",
+            fail(LW_ERROR_INVALID_ARGUMENT, "rsmTexels: expected fewer texels than a frame may have, got ",
                  rsmTexels);
-        *bytes = entry.estimateBytes(descriptor.data(), own, rsmTexels);
+        FrameShape shape;
+        // A square map, or the next smaller square and the rows for the rest.
+        const auto side = std::uint64_t(std::ceil(std::sqrt(double(rsmTexels))));
+        if (side) shape.addMap(side, (rsmTexels + side - 1) / side);
+        estimate(call, name, desc, view, shape, bytes);
+    });
+}
+
+LWStatus lwEstimateFrameMemory(LWDevice device, const char* name, const void* desc, const LWViewDesc* view,
+                               const LWFrame* frame, std::uint64_t* bytes) {
+    return enter("lwEstimateFrameMemory", [&](Call& call) {
+        call.device(device);
+        const FrameArgument own(call, frame);
+        FrameShape shape;
+        shape.vplCount = own.get().vplCount;
+        for (std::uint32_t l = 0; l < own.get().lightCount; ++l)
+            for (std::uint32_t r = 0; r < own.get().lights[l].rsmCount; ++r) {
+                const LWImage& flux = own.get().lights[l].rsms[r].flux;
+                if (flux.width > kMaxSide || flux.height > kMaxSide)
+                    fail(LW_ERROR_INVALID_ARGUMENT, "frame.lights[", l, "].rsms[", r, "].flux: expected at most ",
+                         kMaxSide, " pixels a side, got ", flux.width, " x ", flux.height);
+                shape.addMap(flux.width, flux.height);
+            }
+        estimate(call, name, desc, view, shape, bytes);
     });
 }
 

@@ -25,6 +25,16 @@ T queueValue(cl_command_queue queue, cl_command_queue_info what) {
     return value;
 }
 
+// LIGHTWELL_UNIFIED_MEMORY=0 sends host memory through copies on the device, as where it is not shared: for
+// tests. 1, or nothing: the driver's word.
+bool unifiedMemoryDenied() {
+    const char* text = std::getenv("LIGHTWELL_UNIFIED_MEMORY");
+    if (!text || !*text || std::string(text) == "1") return false;
+    if (std::string(text) != "0")
+        fail(LW_ERROR_INVALID_ARGUMENT, "LIGHTWELL_UNIFIED_MEMORY: expected 0 or 1, got \"", text, "\"");
+    return true;
+}
+
 // A sub-device with `units` of the device's compute units.
 cl_device_id subDeviceOf(cl_device_id device, std::uint32_t units) {
     const cl_device_partition_property byCounts[] = {CL_DEVICE_PARTITION_BY_COUNTS,
@@ -145,7 +155,7 @@ void Device::adopt(const LWDeviceDesc& desc) {
 
 void Device::readLimits() {
     computeUnits_ = deviceValue<cl_uint>(id_, CL_DEVICE_MAX_COMPUTE_UNITS);
-    unifiedMemory_ = deviceValue<cl_bool>(id_, CL_DEVICE_HOST_UNIFIED_MEMORY) != 0;
+    unifiedMemory_ = deviceValue<cl_bool>(id_, CL_DEVICE_HOST_UNIFIED_MEMORY) != 0 && !unifiedMemoryDenied();
     hasFma_ = (deviceValue<cl_device_fp_config>(id_, CL_DEVICE_SINGLE_FP_CONFIG) & CL_FP_FMA) != 0;
     maxAllocation_ = deviceValue<cl_ulong>(id_, CL_DEVICE_MAX_MEM_ALLOC_SIZE);
     globalMemory_ = deviceValue<cl_ulong>(id_, CL_DEVICE_GLOBAL_MEM_SIZE);
@@ -204,6 +214,7 @@ void Device::warnOfCache(const std::string& problem) {
 void Device::describe(LWDeviceInfo& info) const {
     describeHardware(id_, info);
     info.width = width_;
+    info.hostUnifiedMemory = unifiedMemory_;
     info.hasProfiling = profiling_;
     info.allocatedBytes = allocatedBytes_;
     info.programsBuilt = programs_->built();

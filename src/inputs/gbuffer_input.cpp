@@ -102,6 +102,7 @@ struct GBufferInput::Impl {
     std::array<PlanarImage, kFieldCount> own;
     std::array<DeviceImage, kFieldCount> opened;  // keeps memory used in place alive
     DeviceImage depth;
+    std::array<Buffer, kFieldCount> staging;  // uploads; a depth's is the position's
     std::array<const char*, kFieldCount> choices{};
 
     // Our planes for a field, made on first use for the view's largest size.
@@ -135,7 +136,8 @@ void GBufferInput::import(Executor& executor, const View& view, const LWGBuffer&
         const auto& image = checked.images[std::size_t(f)];
         if (!image) continue;
         DeviceImage& opened = impl_->opened[std::size_t(f)];
-        opened = openForReading(executor, *image, *field.role, kUploadPass);
+        reserveStaging(impl_->staging[std::size_t(f)], device, *image, view);
+        opened = openForReading(executor, *image, *field.role, kUploadPass, impl_->staging[std::size_t(f)]);
         impl_->choices[std::size_t(f)] = opened.choice;
         if (checked.depth && f == kNormal) continue;  // below, with the positions
         if (!opened.planes) {
@@ -145,7 +147,8 @@ void GBufferInput::import(Executor& executor, const View& view, const LWGBuffer&
         this->*field.planes = opened.planes;
     }
     if (!checked.depth) return;
-    impl_->depth = openForReading(executor, *checked.depth, kDepthRole, kUploadPass);
+    reserveStaging(impl_->staging[kPosition], device, *checked.depth, view);
+    impl_->depth = openForReading(executor, *checked.depth, kDepthRole, kUploadPass, impl_->staging[kPosition]);
     position = impl_->ownPlanes(device, view, kPosition);
     normal = impl_->ownPlanes(device, view, kNormal);
     unproject(executor, "gbuffer_input.unproject", impl_->depth, impl_->opened[kNormal],
@@ -162,14 +165,19 @@ void GBufferInput::report(Report& report) const {
 std::uint64_t GBufferInput::bytes() const {
     std::uint64_t total = 0;
     for (const PlanarImage& image : impl_->own) total += image.bytes();
+    for (const Buffer& buffer : impl_->staging) total += buffer.bytes();
     return total;
 }
 
-std::uint64_t GBufferInput::estimateBytes(const LWViewDesc& view, std::uint32_t needs) {
-    std::uint64_t planes = 0;
+std::uint64_t GBufferInput::estimateBytes(const LWViewDesc& view, std::uint32_t needs, bool uploads) {
+    std::uint64_t planes = 0, packed = 0;
     for (const FieldFacts& field : kFields)
-        if (wanted(field, needs)) planes += field.role->channels;
-    return planes * sizeof(float) * paddedWidth(view.maxWidth) * view.maxHeight;
+        if (wanted(field, needs)) {
+            planes += field.role->channels;
+            packed += largestPixelBytes(*field.role);
+        }
+    return planes * sizeof(float) * paddedWidth(view.maxWidth) * view.maxHeight +
+           (uploads ? packed * view.maxWidth * view.maxHeight : 0);
 }
 
 }  // namespace lightwell

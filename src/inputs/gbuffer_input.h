@@ -38,8 +38,9 @@ public:
 
     void report(Report& report) const;  // one choice per image: in place, or unpacked from what
     std::uint64_t bytes() const;
-    // The most that bytes() becomes for a view, whatever formats the host hands over.
-    static std::uint64_t estimateBytes(const LWViewDesc& view, std::uint32_t needs);
+    // The most that bytes() becomes for a view, whatever formats the host hands over (without gaps between
+    // pixels and rows). `uploads`: FrameShape::uploads.
+    static std::uint64_t estimateBytes(const LWViewDesc& view, std::uint32_t needs, bool uploads);
 
 private:
     struct Impl;

@@ -1,5 +1,7 @@
 #include "inputs/image_access.h"
 
+#include <algorithm>
+
 #include "compute/device.h"
 #include "compute/error.h"
 
@@ -34,7 +36,24 @@ const char* unpackedChoice(const LWImage& image) {
     }
 }
 
+// The host's memory from its first byte on; with the last row's padding when it serves as planes.
+std::size_t spanBytes(const CheckedImage& checked) {
+    return std::size_t((checked.planesLayout ? checked.paddedEndByte : checked.endByte) - checked.firstByte);
+}
+
 }  // namespace
+
+std::size_t stagingBytes(const Device& device, const CheckedImage& checked) {
+    return checked.image.host && !device.unifiedMemory() ? spanBytes(checked) : 0;
+}
+
+void reserveStaging(Buffer& staging, Device& device, const CheckedImage& checked, const View& view) {
+    const std::size_t bytes = stagingBytes(device, checked);
+    if (!bytes) return;
+    const std::size_t width = checked.planesLayout ? paddedWidth(view.maxWidth) : view.maxWidth;
+    const std::size_t largest = width * view.maxHeight * checked.pixelBytes * checked.planes;
+    staging.reserve(device, std::max(bytes, largest), "an image's copy on the device");
+}
 
 Range rowGroup(const Device& device) {
     return {device.width() == 1 ? std::size_t(64) : std::size_t(16), 1};
@@ -52,7 +71,7 @@ Planes subPlanes(const Planes& planes, std::uint32_t first, std::uint32_t count)
 }
 
 DeviceImage openForReading(Executor& executor, const CheckedImage& checked, const ImageRole& role,
-                           const char* uploadPass) {
+                           const char* uploadPass, Buffer& staging) {
     Device& device = executor.device();
     const LWImage& image = checked.image;
     DeviceImage result;
@@ -64,17 +83,15 @@ DeviceImage openForReading(Executor& executor, const CheckedImage& checked, cons
         planes = planes && checked.paddedEndByte <= result.memory.bytes();
         result.choice = "device memory, used in place";
     } else {
-        // The host's memory from its first byte on; with the last row's padding when it serves as
-        // planes.
-        const std::uint64_t end = planes ? checked.paddedEndByte : checked.endByte;
-        const std::size_t bytes = std::size_t(end - checked.firstByte);
+        const std::size_t bytes = spanBytes(checked);
         const char* start = static_cast<const char*>(image.host) + checked.firstByte;
         if (device.unifiedMemory()) {
             result.memory = Buffer::overHost(device, const_cast<char*>(start), bytes, false);
             result.choice = "planar, used in place";
         } else {
-            result.memory = Buffer(device, bytes, "an image's copy on the device");
-            executor.write(uploadPass, result.memory, 0, bytes, start);
+            staging.reserve(device, bytes, "an image's copy on the device");
+            result.memory = Buffer::retained(device, staging.get());
+            executor.write(uploadPass, staging, 0, bytes, start);
             result.choice = "planar, uploaded";
         }
         result.pixels.byteOffset -= std::int64_t(checked.firstByte);

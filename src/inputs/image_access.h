@@ -7,6 +7,7 @@
 #include "compute/executor.h"
 #include "inputs/image_check.h"
 #include "shared/unproject_types.h"
+#include "techniques/technique.h"
 
 namespace lightwell {
 
@@ -24,9 +25,16 @@ struct DeviceImage {
     int decode = LW_ROLE_VALUE;
 };
 
-// Opens an image for reading. On a device without shared memory host pixels are uploaded (`uploadPass`).
+// Opens an image for reading. On a device without shared memory host pixels are uploaded (`uploadPass`) to
+// `staging`, which the caller keeps from frame to frame: it grows on need, and a later upload waits in the
+// queue for what reads the one before.
 DeviceImage openForReading(Executor& executor, const CheckedImage& checked, const ImageRole& role,
-                           const char* uploadPass);
+                           const char* uploadPass, Buffer& staging);
+// Bytes of `staging` for this image; 0 where none is needed.
+std::size_t stagingBytes(const Device& device, const CheckedImage& checked);
+// Makes room for this image, and for the next in its format up to the view's largest size: a changed size must
+// not allocate.
+void reserveStaging(Buffer& staging, Device& device, const CheckedImage& checked, const View& view);
 
 // Unpacks into planes of ours.
 void unpack(Executor& executor, const char* pass, const DeviceImage& image, const Planes& to);

@@ -184,6 +184,13 @@ const char* formatName(LWFormat format) {
     return unsigned(format) < kFormatCount ? kFormats[format].name : "unknown";
 }
 
+std::uint32_t largestPixelBytes(const ImageRole& role) {
+    std::uint32_t most = 0;
+    for (unsigned format = 0; format < kFormatCount; ++format)
+        if (role.formats & (1u << format)) most = std::max(most, kFormats[format].pixelBytes * kFormats[format].planes);
+    return most;
+}
+
 bool imageAbsent(const LWImage& image) {
     return image.format == LW_FORMAT_NONE && !image.host && !image.clMem;
 }

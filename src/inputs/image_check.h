@@ -35,6 +35,9 @@ extern const ImageRole kPositionRole, kDepthRole, kNormalRole, kAlbedoRole, kRad
 
 const char* formatName(LWFormat format);
 
+// The most bytes of a pixel, without gaps, that an image of this role can have.
+std::uint32_t largestPixelBytes(const ImageRole& role);
+
 // True when nothing in the image is set.
 bool imageAbsent(const LWImage& image);
 

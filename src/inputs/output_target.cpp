@@ -45,6 +45,7 @@ struct OutputTarget::Impl {
     enum class Mode { kNone, kInPlace, kPack };
     Mode mode = Mode::kNone;
     PlanarImage own;
+    Buffer staging;  // the packed image on a device without shared memory; kept, grown on need
     std::uint32_t ownWidth = 0, ownHeight = 0, ownCount = 0;
     Planes planes;
     Buffer target;            // the host's memory, or our copy of it
@@ -88,7 +89,8 @@ Planes OutputTarget::begin(Executor& executor, const View& view, const LWImage& 
         char* start = static_cast<char*>(const_cast<void*>(image.host)) + checked.firstByte;
         const std::size_t bytes =
             std::size_t((planes ? checked.paddedEndByte : checked.endByte) - checked.firstByte);
-        target = staged ? Buffer(device, bytes, name) : Buffer::overHost(device, start, bytes, true);
+        if (staged) reserveStaging(impl.staging, device, checked, view);
+        target = staged ? Buffer::retained(device, impl.staging.get()) : Buffer::overHost(device, start, bytes, true);
         const bool pixelGaps = checked.pixels.bytePixelStride != checked.pixelBytes;
         if (staged && pixelGaps) executor.write("output.upload", target, 0, bytes, start);
     }
@@ -148,11 +150,13 @@ void OutputTarget::report(Report& report) const {
 }
 
 std::uint64_t OutputTarget::bytes() const {
-    return impl_->own.bytes();
+    return impl_->own.bytes() + impl_->staging.bytes();
 }
 
-std::uint64_t OutputTarget::estimateBytes(const LWViewDesc& view, std::uint32_t planeCount) {
-    return std::uint64_t(planeCount) * sizeof(float) * paddedWidth(view.maxWidth) * view.maxHeight;
+std::uint64_t OutputTarget::estimateBytes(const LWViewDesc& view, std::uint32_t planeCount, bool uploads) {
+    const std::uint64_t packed = largestPixelBytes(roleOf(planeCount));
+    return std::uint64_t(planeCount) * sizeof(float) * paddedWidth(view.maxWidth) * view.maxHeight +
+           (uploads ? packed * view.maxWidth * view.maxHeight : 0);
 }
 
 }  // namespace lightwell

@@ -30,8 +30,9 @@ public:
 
     void report(Report& report) const;
     std::uint64_t bytes() const;
-    // The most that bytes() becomes for a view, whatever format the host asks for.
-    static std::uint64_t estimateBytes(const LWViewDesc& view, std::uint32_t planeCount);
+    // The most that bytes() becomes for a view, whatever format the host asks for (without gaps). `uploads`:
+    // FrameShape::uploads.
+    static std::uint64_t estimateBytes(const LWViewDesc& view, std::uint32_t planeCount, bool uploads);
 
 private:
     struct Impl;

@@ -2,6 +2,8 @@
 // are checked before anything is enqueued, so that a refused frame leaves the last one in force.
 #include "inputs/rsm_input.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <set>
@@ -89,6 +91,12 @@ CheckedRsm checkRsm(Device& device, const LWRsm& rsm, bool perspective, const st
     return checked;
 }
 
+void checkTexels(std::uint64_t padded, const char* name) {
+    if (padded > kMaxTexels)
+        fail(LW_ERROR_INVALID_ARGUMENT, name, ": expected RSMs of at most ", kMaxTexels,
+             " texels in all (rows count as multiples of 16), got more");
+}
+
 void checkLight(const LWLight& light, const std::string& name) {
     const auto kind = static_cast<std::uint32_t>(light.kind);
     if (kind > LW_LIGHT_SPOT)
@@ -151,9 +159,7 @@ std::vector<CheckedRsm> checkLights(Device& device, const LWFrame& frame, std::v
                              std::uint32_t(span.height)});
             texels += std::uint64_t(paddedWidth(std::uint32_t(span.width))) * std::uint32_t(span.height);
             rows += std::uint32_t(span.height);
-            if (texels > kMaxTexels)
-                fail(LW_ERROR_INVALID_ARGUMENT, "frame.lights: expected RSMs of at most ", kMaxTexels,
-                     " texels in all, got more");
+            checkTexels(texels, "frame.lights");
         }
         if (!perspective) nestCascades(light, rsms, first, name);
     }
@@ -165,6 +171,7 @@ std::vector<CheckedRsm> checkLights(Device& device, const LWFrame& frame, std::v
 struct RsmInput::Impl {
     Device* device = nullptr;  // of the last import
     Buffer texelMemory, counters;
+    std::array<Buffer, 3> staging;  // uploads of position or depth, normal, flux: one map after the other
     std::vector<DeviceImage> opened;
     std::set<std::pair<const char*, const char*>> choices;  // of all maps, each once; literals
 
@@ -178,25 +185,25 @@ struct RsmInput::Impl {
             part.rowStride = paddedWidth(part.width);
             return part;
         };
-        const auto open = [&](const CheckedImage& image, const ImageRole& role,
+        const auto open = [&](const CheckedImage& image, const ImageRole& role, std::size_t slot,
                               const char* what) -> DeviceImage& {
-            opened.push_back(openForReading(executor, image, role, "rsm_input.upload"));
+            opened.push_back(openForReading(executor, image, role, "rsm_input.upload", staging[slot]));
             choices.emplace(
                 what, opened.back().planes ? "planar, copied among the texels" : opened.back().choice);
             return opened.back();
         };
         opened.reserve(opened.size() + 3);  // references stay valid
-        DeviceImage& normal = open(rsm.normal, kNormalRole, "rsm_normal");
+        DeviceImage& normal = open(rsm.normal, kNormalRole, 1, "rsm_normal");
         if (rsm.depth) {
-            DeviceImage& depth = open(*rsm.depth, kDepthRole, "rsm_depth");
+            DeviceImage& depth = open(*rsm.depth, kDepthRole, 0, "rsm_depth");
             unproject(executor, "rsm_input.unproject", depth, normal, rsm.unprojection,
                       target(kPositionX), target(kNormalX));
         } else {
-            unpack(executor, "rsm_input.unpack", open(*rsm.position, kPositionRole, "rsm_position"),
+            unpack(executor, "rsm_input.unpack", open(*rsm.position, kPositionRole, 0, "rsm_position"),
                    target(kPositionX));
             unpack(executor, "rsm_input.unpack", normal, target(kNormalX));
         }
-        unpack(executor, "rsm_input.unpack", open(rsm.flux, kRadianceRole, "rsm_flux"), target(kFluxR));
+        unpack(executor, "rsm_input.unpack", open(rsm.flux, kRadianceRole, 2, "rsm_flux"), target(kFluxR));
     }
 };
 
@@ -220,6 +227,14 @@ void RsmInput::import(Executor& executor, const LWFrame& frame) {
                                    "RSM texels");
         rows.reserve(device, std::size_t(newRows) * 4 * sizeof(std::int32_t), "RSM rows");
         impl_->counters.reserve(device, LW_RSM_COUNTERS * sizeof(std::uint32_t), "RSM counters");
+        // For the largest map at once, so that no map of the frame replaces what an earlier one still needs.
+        std::array<std::size_t, 3> bytes{};
+        for (const CheckedRsm& rsm : rsms) {
+            const CheckedImage* images[3] = {rsm.depth ? &*rsm.depth : &*rsm.position, &rsm.normal, &rsm.flux};
+            for (std::size_t i = 0; i < 3; ++i) bytes[i] = std::max(bytes[i], stagingBytes(device, *images[i]));
+        }
+        for (std::size_t i = 0; i < 3; ++i)
+            if (bytes[i]) impl_->staging[i].reserve(device, bytes[i], "an RSM's copy on the device");
     }
     impl_->opened.clear();
     impl_->choices.clear();
@@ -258,14 +273,18 @@ void RsmInput::report(Report& report) const {
 }
 
 std::uint64_t RsmInput::bytes() const {
-    return impl_->texelMemory.bytes() + impl_->counters.bytes() + rows.bytes();
+    std::uint64_t total = impl_->texelMemory.bytes() + impl_->counters.bytes() + rows.bytes();
+    for (const Buffer& buffer : impl_->staging) total += buffer.bytes();
+    return total;
 }
 
-std::uint64_t RsmInput::estimateBytes(std::uint64_t rsmTexels) {
-    // Rows: at most one per texel in theory; square maps need the square root, so 16 bytes per 16 texels
-    // is ample.
-    const std::uint64_t padded = (rsmTexels + 15) / 16 * 16;
-    return padded * kPlaneCount * sizeof(float) + padded + LW_RSM_COUNTERS * sizeof(std::uint32_t);
+std::uint64_t RsmInput::estimateBytes(const FrameShape& shape) {
+    checkTexels(shape.paddedTexels, "rsmTexels, frame.lights");
+    if (shape.texels == 0) return 0;
+    const std::uint64_t packed =
+        largestPixelBytes(kPositionRole) + largestPixelBytes(kNormalRole) + largestPixelBytes(kRadianceRole);
+    return shape.paddedTexels * kPlaneCount * sizeof(float) + shape.rows * 4 * sizeof(std::int32_t) +
+           LW_RSM_COUNTERS * sizeof(std::uint32_t) + (shape.uploads ? packed * shape.largestMap : 0);
 }
 
 }  // namespace lightwell

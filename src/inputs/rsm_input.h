@@ -54,8 +54,8 @@ public:
 
     void report(Report& report) const;  // rejected_texels, covered_texels, choices
     std::uint64_t bytes() const;
-    // What bytes() becomes for maps of so many texels in all (rows a multiple of 16 long).
-    static std::uint64_t estimateBytes(std::uint64_t rsmTexels);
+    // What bytes() becomes for such a frame, and the refusal of more texels than a frame may have.
+    static std::uint64_t estimateBytes(const FrameShape& shape);
 
 private:
     struct Impl;

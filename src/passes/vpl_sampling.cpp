@@ -1,7 +1,6 @@
 #include "passes/vpl_sampling.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "compute/device.h"
@@ -119,15 +118,14 @@ std::uint64_t VplSampling::bytes() const {
     return texelSums_.bytes() + rowTotals_.bytes() + rowSumsBuffer_.bytes() + authored_.bytes() + vpls_.bytes();
 }
 
-std::uint64_t VplSampling::estimateBytes(const VplSamplingOptions& options, std::uint64_t texels) {
-    const std::uint64_t drawn = options.count ? options.count : texels;
-    if (drawn > std::numeric_limits<std::uint32_t>::max())
-        fail(LW_ERROR_UNSUPPORTED, "rsmTexels: ", drawn, " VPLs exceed the 32-bit indices of the kernels");
-    const lw_subset_order order = subsetOrder(std::uint32_t(drawn), options.subsets);
+std::uint64_t VplSampling::estimateBytes(const VplSamplingOptions& options, const FrameShape& shape) {
+    const std::uint64_t drawn = shape.texels == 0 ? 0 : options.count ? options.count : shape.paddedTexels;
+    if (drawn + shape.vplCount > std::numeric_limits<std::uint32_t>::max())
+        fail(LW_ERROR_UNSUPPORTED, "vpls: ", drawn + shape.vplCount, " VPLs exceed the 32-bit indices of the kernels");
+    const lw_subset_order order = subsetOrder(std::uint32_t(drawn + shape.vplCount), options.subsets);
     const std::uint64_t list = std::uint64_t(order.subsets) * std::uint64_t(order.capacity) * sizeof(lw_vpl);
-    // Rows are not known before the RSMs are: a square map's are the most common.
-    const std::uint64_t rows = std::uint64_t(std::ceil(std::sqrt(double(texels))));
-    return list + sizeof(lw_vpl) + (options.count ? texels * 4 + rows * 8 : 0);
+    const std::uint64_t sums = drawn && options.count ? shape.paddedTexels * 4 + shape.rows * 8 : 0;
+    return list + std::max(shape.vplCount, 1u) * sizeof(lw_vpl) + sums;
 }
 
 }  // namespace lightwell

@@ -36,7 +36,7 @@ public:
     Planes debugShape() const;  // planes without memory: position, normal, flux, area by slot
     void recordPlanes(Executor& executor, const Planes& planes);  // fills them
     std::uint64_t bytes() const;
-    static std::uint64_t estimateBytes(const VplSamplingOptions& options, std::uint64_t texels);
+    static std::uint64_t estimateBytes(const VplSamplingOptions& options, const FrameShape& shape);
 
 private:
     void reserve(const RsmInput& rsms, std::uint32_t authoredCount);

@@ -230,11 +230,12 @@ std::unique_ptr<Technique> create(Device& device, const void* desc) {
     return std::make_unique<RsmTechnique>(device, *static_cast<const LWRsmDesc*>(desc));
 }
 
-std::uint64_t estimateBytes(const void* desc, const LWViewDesc& view, std::uint64_t rsmTexels) {
+std::uint64_t estimateBytes(const void* desc, const LWViewDesc& view, const FrameShape& shape) {
     const LWRsmDesc& rsm = *static_cast<const LWRsmDesc*>(desc);
-    return RsmInput::estimateBytes(rsmTexels) + VplSampling::estimateBytes(samplingOptions(rsm), rsmTexels) +
-           GBufferInput::estimateBytes(view, 0) + OutputTarget::estimateBytes(view, 3) +
-           OutputTarget::estimateBytes(view, 1) + RsmTechnique::ViewState::imageBytes(rsm, view.maxWidth, view.maxHeight);
+    return RsmInput::estimateBytes(shape) + VplSampling::estimateBytes(samplingOptions(rsm), shape) +
+           GBufferInput::estimateBytes(view, 0, shape.uploads) + OutputTarget::estimateBytes(view, 3, shape.uploads) +
+           OutputTarget::estimateBytes(view, 1, shape.uploads) +
+           RsmTechnique::ViewState::imageBytes(rsm, view.maxWidth, view.maxHeight);
 }
 
 constexpr const char* kSamplingNames[] = {"flux", "uniform", nullptr};

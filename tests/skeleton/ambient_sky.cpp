@@ -83,8 +83,8 @@ std::unique_ptr<Technique> create(Device& device, const void* desc) {
     return std::make_unique<AmbientSky>(device, *static_cast<const AmbientSkyDesc*>(desc));
 }
 
-std::uint64_t estimateBytes(const void*, const LWViewDesc& view, std::uint64_t) {
-    return GBufferInput::estimateBytes(view, 0) + OutputTarget::estimateBytes(view, 3);
+std::uint64_t estimateBytes(const void*, const LWViewDesc& view, const FrameShape& shape) {
+    return GBufferInput::estimateBytes(view, 0, shape.uploads) + OutputTarget::estimateBytes(view, 3, shape.uploads);
 }
 
 const LWParameter kParameters[] = {{"gain", "factor on the sky's radiance", LW_PARAMETER_FLOAT,
