@@ -21,6 +21,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::uint32_t kGlbMagic = 0x46546C67, kJsonChunk = 0x4E4F534A;
+constexpr int kDeepest = 1000;  // levels of nodes: readers, Assimp's too, call themselves once a level
 constexpr float kBlendCutoff = 0.5f;  // blended materials are cut where less than half covers
 
 std::uint32_t word(const std::vector<char>& bytes, std::size_t at) {
@@ -55,8 +56,11 @@ GltfMaterial readMaterial(const Json& json) {
     m.name = json.value("name", "");
     const Json pbr = json.value("pbrMetallicRoughness", Json::object());
     m.albedo = vec3(pbr, "baseColorFactor", glm::vec3(1.0f));
-    const float alpha =
-        pbr.contains("baseColorFactor") ? pbr["baseColorFactor"].at(3).get<float>() : 1.0f;
+    const Json factor = pbr.value("baseColorFactor", Json::array({1, 1, 1, 1}));
+    if (!factor.is_array() || factor.size() != 4)
+        throw std::runtime_error(fmt::format(
+            "material \"{}\": baseColorFactor: expected four numbers, got {}", m.name, factor.dump()));
+    const float alpha = factor[3].get<float>();
 
     m.emission = vec3(json, "emissiveFactor", glm::vec3(0.0f)) *
                  extension(json, "KHR_materials_emissive_strength").value("emissiveStrength", 1.0f);
@@ -66,8 +70,11 @@ GltfMaterial readMaterial(const Json& json) {
     const bool textured = pbr.contains("baseColorTexture");
     if (mode == "MASK") m.alphaCutoff = json.value("alphaCutoff", 0.5f);
     if (mode == "BLEND" && textured) m.alphaCutoff = kBlendCutoff;
-    result.dropped = m.name.find("[glass]") != std::string::npos ||
-                     (mode == "BLEND" && !textured && alpha < kBlendCutoff);
+    // Coverage is the factor's alpha times the texture's.
+    const float cutoff = mode == "BLEND" ? kBlendCutoff : m.alphaCutoff;
+    const bool nothingLeft = mode != "OPAQUE" && alpha < cutoff;
+    if (textured && alpha > 0.0f) m.alphaCutoff /= alpha;
+    result.dropped = m.name.find("[glass]") != std::string::npos || nothingLeft;
 
     if (textured) {
         const Json& texture = pbr["baseColorTexture"];
@@ -134,7 +141,17 @@ Light readLight(const Json& json, const glm::mat4& world, const std::string& nam
     return light;
 }
 
-void readNode(const Json& gltf, std::size_t index, const glm::mat4& parent, GltfExtras& out) {
+// `visited`: nodes form trees, so that each comes once; a ring would be walked for ever.
+void readNode(const Json& gltf, std::size_t index, const glm::mat4& parent, int depth,
+              std::vector<bool>& visited, GltfExtras& out) {
+    if (index >= visited.size())
+        throw std::runtime_error(
+            fmt::format("node index: expected 0 .. {}, got {}", long(visited.size()) - 1, long(index)));
+    if (visited[index])
+        throw std::runtime_error(fmt::format("node {}: expected one parent, got a second", index));
+    if (depth > kDeepest)
+        throw std::runtime_error(fmt::format("nodes: expected a tree of at most {} levels", kDeepest));
+    visited[index] = true;
     const Json& node = gltf.at("nodes").at(index);
     const glm::mat4 world = parent * localMatrix(node);
     const std::string name = node.value("name", fmt::format("node_{}", index));
@@ -147,7 +164,7 @@ void readNode(const Json& gltf, std::size_t index, const glm::mat4& parent, Gltf
             extension(gltf, "KHR_lights_punctual").at("lights").at(punctual["light"].get<std::size_t>()),
             world, name));
     for (const Json& child : node.value("children", Json::array()))
-        readNode(gltf, child.get<std::size_t>(), world, out);
+        readNode(gltf, child.get<std::size_t>(), world, depth + 1, visited, out);
 }
 
 // Nodes "suggested_*" were added to the assets to have something; a file's own come before them.
@@ -201,10 +218,11 @@ GltfExtras readGltfExtras(const std::string& path) {
         for (const Json& material : gltf.value("materials", Json::array()))
             result.materials.push_back(readMaterial(material));
         const Json scenes = gltf.value("scenes", Json::array());
+        std::vector<bool> visited(gltf.value("nodes", Json::array()).size(), false);
         if (!scenes.empty())
             for (const Json& root :
                  scenes.at(gltf.value("scene", std::size_t(0))).value("nodes", Json::array()))
-                readNode(gltf, root.get<std::size_t>(), glm::mat4(1.0f), result);
+                readNode(gltf, root.get<std::size_t>(), glm::mat4(1.0f), 0, visited, result);
         result.renamedFile = withRenamedMaterials(gltf, file, binary, end);
     } catch (const std::exception& error) {
         throw std::runtime_error(fmt::format("{}: {}", path, error.what()));

@@ -73,6 +73,24 @@ void checkDevice(RTCDevice device, const std::string& what) {
         throw std::runtime_error(fmt::format("Embree: {}: error {}", what, int(error)));
 }
 
+// Fourth powers of distances appear in estimates of light: beyond these sizes floats can't hold them.
+constexpr double kSmallestDiagonal = 1e-8, kLargestDiagonal = 1e9;
+
+float diagonalOf(RTCScene scene, const std::string& name) {
+    RTCBounds b;
+    rtcGetSceneBounds(scene, &b);
+    if (!(b.lower_x <= b.upper_x))  // bounds of nothing
+        throw std::runtime_error(
+            fmt::format("scene \"{}\": expected at least one triangle, coordinates below 1e18", name));
+    const double diagonal = glm::length(glm::dvec3(b.upper_x, b.upper_y, b.upper_z) -
+                                        glm::dvec3(b.lower_x, b.lower_y, b.lower_z));
+    if (!(diagonal >= kSmallestDiagonal && diagonal <= kLargestDiagonal))
+        throw std::runtime_error(
+            fmt::format("scene \"{}\": expected a bounding box of diagonal {} to {} m, got {}", name,
+                        kSmallestDiagonal, kLargestDiagonal, diagonal));
+    return float(diagonal);
+}
+
 }  // namespace
 
 struct RayScene::Impl {
@@ -142,14 +160,7 @@ RayScene::RayScene(std::shared_ptr<const Scene> scene, float time) : impl_(std::
     rtcCommitScene(s.embree);
     checkDevice(s.device, "building the scene");
 
-    RTCBounds bounds;
-    rtcGetSceneBounds(s.embree, &bounds);
-    const glm::vec3 size(bounds.upper_x - bounds.lower_x, bounds.upper_y - bounds.lower_y,
-                         bounds.upper_z - bounds.lower_z);
-    s.diagonal = glm::length(size);
-    if (!std::isfinite(s.diagonal) || s.diagonal <= 0.0f)
-        throw std::runtime_error(
-            fmt::format("scene \"{}\": expected at least one triangle", s.scene->name));
+    s.diagonal = diagonalOf(s.embree, s.scene->name);
     for (std::size_t i = 0; i < s.scene->lights.size(); ++i)
         s.lights.push_back(s.scene->lightAt(int(i), time));
 }

@@ -144,7 +144,14 @@ LightArrival arrivalOf(const Light& light, const glm::vec3& position) {
 }
 
 Camera Scene::cameraAt(int index, float time) const {
-    return trackAt(cameraTracks, index, checked(cameras, index, "camera"), time);
+    const Camera camera = trackAt(cameraTracks, index, checked(cameras, index, "camera"), time);
+    // Keys that are right may meet between: a camera that flies through its target.
+    const glm::vec3 way = camera.target - camera.position;
+    if (!(glm::length(glm::cross(way, camera.up)) > 1e-4f * glm::length(way) * glm::length(camera.up)))
+        throw std::runtime_error(fmt::format(
+            "camera \"{}\" at {} s: expected a target away from the position and off the up axis",
+            camera.name, time));
+    return camera;
 }
 
 Light Scene::lightAt(int index, float time) const {

@@ -24,6 +24,10 @@ Texture readTexture(const std::string& path);
 // Throws when positions are not finite or indices out of range.
 void finishMesh(Mesh& mesh);
 
+// Throws unless every number of the scene has a meaning: reflectances in [0,1], light and emission finite
+// and not negative, cones and views of possible angles. Files may say anything.
+void checkScene(const Scene& scene);
+
 // Sensible cameras for a scene that has none: one named "overview" looking at its bounds.
 Camera overviewCamera(const Scene& scene);
 

@@ -89,6 +89,7 @@ Scene loadScene(const std::string& nameOrPath) {
         throw std::runtime_error(
             fmt::format("{}: expected at least one triangle, got none", scene.path));
     if (scene.cameras.empty()) scene.cameras.push_back(overviewCamera(scene));
+    checkScene(scene);
     return scene;
 }
 

@@ -266,6 +266,20 @@ TEST_CASE("no acne and no leak: floors lit at grazing angles far from the origin
     }
 }
 
+TEST_CASE("scenes without extent, or beyond what floats can hold, are refused", "[ray]") {
+    const auto built = [](float side) {
+        Scene scene;
+        scene.name = "s";
+        add(scene, floorQuad(side, 0), addMaterial(scene, glm::vec3(0.5f)));
+        return failure([&] { RayScene(shared(scene), 0.0f); });
+    };
+    CHECK(built(1.0f).empty());
+    CHECK_THAT(built(1e10f), Catch::Contains("\"s\"") && Catch::Contains("diagonal"));
+    CHECK_THAT(built(1e-10f), Catch::Contains("diagonal"));
+    CHECK_THAT(built(1e37f), Catch::Contains("at least one triangle"));  // Embree leaves them out
+    CHECK_THAT(failure([] { RayScene(shared(Scene()), 0.0f); }), Catch::Contains("at least one triangle"));
+}
+
 TEST_CASE("two runs give the same bits", "[gbuffer]") {
     const auto scene = shared(loadScene("cornell"));
     const Camera camera = scene->cameras[0];

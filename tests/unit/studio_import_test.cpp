@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "image.h"
+#include "scene_import.h"
 #include "support/studio_scenes.h"
 
 using namespace studio;
@@ -117,6 +118,95 @@ TEST_CASE("broken files are named with the reason", "[import]") {
                        "t.obj", "mtllib t.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"));
                }),
                Contains("gone.png"));
+}
+
+TEST_CASE("numbers without a meaning are refused, whatever the format", "[import]") {
+    const auto refused = [](const std::string& node, const std::string& parts, const char* field,
+                            const char* came) {
+        const std::string all = R"("scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0)" + node +
+                                R"(}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0},
+                                   "material": 0}]}])" +
+                                parts;
+        INFO(all);
+        CHECK_THAT(failure([&] { loadGlb(all); }),
+                   Contains("file.glb") && Contains(field) && Contains(came));
+    };
+    const auto material = [&](const std::string& fields, const char* field, const char* came) {
+        refused("", R"(, "materials": [{"name": "m", )" + fields + "}]", field, came);
+    };
+    material(R"("pbrMetallicRoughness": {"baseColorFactor": [1, 5, 1, 1]})", "base colour", "(1, 5, 1)");
+    material(R"("pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1]})", "baseColorFactor", "[1,1,1]");
+    material(R"("emissiveFactor": [0, -1, 0])", "emission", "(0, -1, 0)");
+    material(R"("emissiveFactor": [1, 1, 1], "extensions": {"KHR_materials_emissive_strength":
+                {"emissiveStrength": 1e39}})",
+             "emission", "inf");
+    const auto light = [&](const std::string& fields, const char* field, const char* came) {
+        refused(R"(, "extensions": {"KHR_lights_punctual": {"light": 0}})",
+                R"(, "materials": [{}], "extensionsUsed": ["KHR_lights_punctual"],
+                   "extensions": {"KHR_lights_punctual": {"lights": [{)" +
+                    fields + "}]}}",
+                field, came);
+    };
+    light(R"("type": "point", "intensity": -3)", "intensity", "-3");
+    light(R"("type": "spot", "spot": {"innerConeAngle": 1, "outerConeAngle": 0.5})", "inner cone", "1");
+    light(R"("type": "spot", "spot": {"outerConeAngle": 3})", "outer cone", "3");
+    const auto camera = [&](const std::string& fields, const char* field, const char* came) {
+        refused(R"(, "camera": 0)",
+                R"(, "materials": [{}], "cameras": [{"type": "perspective", "perspective": {)" + fields +
+                    "}}]",
+                field, came);
+    };
+    camera(R"("yfov": 0, "znear": 0.1)", "field of view", "got 0");
+    camera(R"("yfov": 4, "znear": 0.1)", "field of view", "got 4");
+    camera(R"("yfov": 1, "znear": 0)", "near plane", "got 0");
+    camera(R"("yfov": 1, "znear": 2, "zfar": 1)", "far plane", "got 1");
+    const TempFolder folder;
+    folder.write("m.mtl", "newmtl m\nKd nan -1 0.5\n");
+    CHECK_THAT(failure([&] {
+                   loadScene(folder.write(
+                       "m.obj", "mtllib m.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"));
+               }),
+               Contains("m.obj") && Contains("base colour") && Contains("nan"));
+}
+
+TEST_CASE("glTF nodes that form no tree are refused instead of walked for ever", "[import]") {
+    const auto nodes = [](const std::string& list) {
+        return failure([&] {
+            loadGlb(R"("scenes": [{"nodes": [0]}], "nodes": [)" + list + "], " + kMeshes + ", " +
+                    kMaterials);
+        });
+    };
+    CHECK_THAT(nodes(R"({"mesh": 0, "children": [0]})"), Contains("node 0") && Contains("one parent"));
+    CHECK_THAT(nodes(R"({"mesh": 0, "children": [1]}, {"children": [0]})"), Contains("node 0"));
+    CHECK_THAT(nodes(R"({"mesh": 0, "children": [7]})"), Contains("0 .. 0") && Contains("got 7"));
+    std::string chain;
+    for (int i = 1; i < 1100; ++i) chain += R"({"children": [)" + std::to_string(i) + "]}, ";
+    CHECK_THAT(nodes(chain + R"({"mesh": 0})"), Contains("1000 levels"));
+}
+
+TEST_CASE("glTF coverage is the factor's alpha times the texture's", "[import]") {
+    const auto load = [](const std::string& material) {
+        return loadGlb(R"("scenes": [{"nodes": [0, 1]}], "nodes": [{"mesh": 0}, {"mesh": 1}],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]},
+                       {"primitives": [{"attributes": {"POSITION": 0}, "material": 1}]}],
+            "materials": [{"name": "m", )" +
+                       material + R"(}, {"name": "other"}])");
+    };
+    const auto masked = [&](float alpha) {
+        return load(R"("alphaMode": "MASK", "alphaCutoff": 0.4, "pbrMetallicRoughness":
+                       {"baseColorFactor": [1, 1, 1, )" +
+                    std::to_string(alpha) + "]}");
+    };
+    CHECK(masked(0.5f).meshes.size() == 2);
+    CHECK(masked(0.3f).meshes.size() == 1);  // nothing of it is left
+    const std::string texture = R"("alphaMode": "MASK", "alphaCutoff": 0.4, "pbrMetallicRoughness":
+        {"baseColorTexture": {"index": 0}, "baseColorFactor": [1, 1, 1, 0.5]})";
+    // Assimp refuses the absent picture; the reader of the JSON has come before it.
+    const TempFolder folder;
+    const GltfExtras extras = readGltfExtras(folder.write(
+        "t.glb", makeGlb(gltfJson(R"("scenes": [], "materials": [{"name": "m", )" + texture + "}]"))));
+    CHECK(extras.materials.at(0).material.alphaCutoff == 0.8f);
+    CHECK_FALSE(extras.materials.at(0).dropped);
 }
 
 TEST_CASE("OBJ: colours, emission, texture the right way up, mask as holes", "[import]") {

@@ -189,6 +189,12 @@ TEST_CASE("cameras and lights follow their keys", "[scene][keys]") {
     CHECK(scene.cameraAt(1, 1.0f).position == glm::vec3(2, 0, 5));
     CHECK(scene.cameraAt(1, 1.0f).name == "c");
     CHECK(scene.cameraAt(1, 7.0f).position == glm::vec3(4, 0, 5));
+    CHECK_THAT(failure([&] {
+                   Scene through = scene;
+                   through.cameraTracks[0].keys[1].second.position = {0, 0, -5};
+                   through.cameraAt(1, 1.0f);
+               }),
+               Contains("\"c\" at 1 s") && Contains("target"));
     CHECK(scene.lightAt(0, 1.0f).emitted == glm::vec3(3, 3.5f, 4));
     CHECK(scene.lightAt(0, 1.0f).position == glm::vec3(1, 1, 0));
     CHECK(scene.lightAt(0, 1.0f).kind == LightKind::Point);
