@@ -1,14 +1,19 @@
 // Readers of arguments shared by the commands; see cli.h.
 #include "cli.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <map>
 
 #include "scene.h"
 
@@ -42,6 +47,15 @@ double parseNumber(std::string_view option, std::string_view text) {
     if (!parseWhole(text, value) || !std::isfinite(value))
         throw UsageError(fmt::format("{} '{}': expected a number", option, text));
     return value;
+}
+
+float parsePositive(std::string_view option, std::string_view text) {
+    double value = 0.0;
+    const bool isNumber = parseWhole(text, value);
+    const float narrow = float(value);
+    if (!isNumber || !std::isfinite(narrow) || !(narrow > 0.0f))
+        throw UsageError(fmt::format("{} '{}': expected a number above 0", option, text));
+    return narrow;
 }
 
 std::uint64_t parseUnsigned(std::string_view option, std::string_view text) {
@@ -79,14 +93,51 @@ void requireOutputPath(std::string_view option, const std::string& path,
     if (!extensions.empty() && std::none_of(extensions.begin(), extensions.end(), matches))
         throw UsageError(fmt::format("{} '{}': expected a file name ending in {}", option, path,
                                      joinNames(extensions)));
-    if (std::filesystem::is_directory(path))
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path, ignored))
         throw UsageError(fmt::format("{} '{}': expected a file, this is a directory", option, path));
     const std::filesystem::path parent = std::filesystem::absolute(path).parent_path();
-    if (!std::filesystem::is_directory(parent))
+    if (!std::filesystem::is_directory(parent, ignored))
         throw UsageError(fmt::format("{} '{}': no directory {}", option, path, parent.string()));
-    if (access(parent.c_str(), W_OK) != 0)
+    // Rights, read-only file systems, names too long: only opening it tells. What it holds stays.
+    const bool isNew = access(path.c_str(), F_OK) != 0;
+    const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NONBLOCK, 0666);
+    if (file < 0)
         throw UsageError(
-            fmt::format("{} '{}': directory {} is not writable", option, path, parent.string()));
+            fmt::format("{} '{}': cannot be written: {}", option, path, std::strerror(errno)));
+    close(file);
+    if (isNew) unlink(path.c_str());
+}
+
+void requireDistinct(const std::vector<std::pair<std::string, std::string>>& outputs) {
+    std::map<std::filesystem::path, std::string> writers;
+    for (const auto& [option, path] : outputs) {
+        if (path.empty()) continue;
+        const auto [writer, isFirst] = writers.emplace(std::filesystem::weakly_canonical(path), option);
+        if (!isFirst)
+            throw UsageError(
+                fmt::format("{} '{}': expected another file than {}'s", option, path, writer->second));
+    }
+}
+
+namespace {
+
+// Of the machine, or of the control group that this process is in.
+double memoryBytes() {
+    const double machine = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE));
+    std::ifstream file("/sys/fs/cgroup/memory.max");
+    double limit = 0.0;
+    return file >> limit && limit > 0.0 ? std::min(machine, limit) : machine;  // "max": no limit
+}
+
+}  // namespace
+
+void requireMemory(std::string_view option, std::string_view text, double bytes) {
+    const double present = memoryBytes();
+    if (bytes > present)
+        throw UsageError(fmt::format(
+            "{} '{}': expected what fits in this machine's {:.1f} GB of memory, got about {:.1f} GB",
+            option, text, present * 1e-9, bytes * 1e-9));
 }
 
 CLI::Option* ViewOptions::declare(CLI::App& command) {
@@ -102,7 +153,9 @@ CLI::Option* ViewOptions::declare(CLI::App& command) {
 }
 
 std::shared_ptr<studio::Scene> loadScene(const ViewOptions& options) {
-    if (!std::isfinite(options.time)) throw UsageError("--time: expected a finite number of seconds");
+    if (!std::isfinite(float(options.time)))
+        throw UsageError(
+            fmt::format("--time '{}': expected seconds that a float can hold", options.time));
     return asUsage([&] { return std::make_shared<studio::Scene>(studio::loadScene(options.scene)); });
 }
 

@@ -5,7 +5,9 @@
 // that is not a result goes to stderr; with --json stdout holds one JSON document and nothing else.
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -33,7 +35,11 @@ template <class F>
 auto asUsage(F&& load) {
     try {
         return load();
-    } catch (const std::runtime_error& error) {
+    } catch (const UsageError&) {
+        throw;
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const std::exception& error) {
         throw UsageError(error.what());
     }
 }
@@ -46,6 +52,7 @@ constexpr int kMaxSize = 16384;  // pixels along a side, as lightwell.h's views
 // "1280x720". The other readers name `option` in their error; whole text, no trailing letters.
 Size parseSize(std::string_view text);
 double parseNumber(std::string_view option, std::string_view text);
+float parsePositive(std::string_view option, std::string_view text);  // that a float can hold
 std::uint64_t parseUnsigned(std::string_view option, std::string_view text);
 
 // "key=value" in two; a value may hold further "=".
@@ -55,10 +62,14 @@ std::string joinNames(const std::vector<std::string>& names);
 // `name` must be one of `valid`: "unknown camera 'x'; valid: a, b".
 void requireOneOf(std::string_view what, const std::string& name, const std::vector<std::string>& valid);
 
-// Ends with one of `extensions` (".exr") and lies in a directory that exists: found out before an hour
-// of rendering, not after it.
+// Ends with one of `extensions` (".exr") and can be opened for writing: found out before an hour of
+// rendering, not after it.
 void requireOutputPath(std::string_view option, const std::string& path,
                        const std::vector<std::string>& extensions);
+// Output files of one command must differ: pairs of option and path, "" where none is written.
+void requireDistinct(const std::vector<std::pair<std::string, std::string>>& outputs);
+// Refuses what would need more bytes than this machine has, instead of dying half-way.
+void requireMemory(std::string_view option, std::string_view text, double bytes);
 bool hasExtension(const std::string& path, std::string_view extension);
 
 // Which view of which scene a command looks at; declared alike by every command that renders.

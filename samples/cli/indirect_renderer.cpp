@@ -51,12 +51,18 @@ std::unique_ptr<IndirectRenderer> makeRenderer(const Parameters& parameters, con
 
 FrameFigures measure(IndirectRenderer& renderer, const RenderInputs& inputs, int warmUpCount,
                      int count) {
-    for (int i = 0; i < warmUpCount; ++i) renderer.renderFrame(inputs, i == 0);
+    return measure(
+        renderer, [&](int) -> const RenderInputs& { return inputs; }, warmUpCount, count);
+}
+
+FrameFigures measure(IndirectRenderer& renderer, const FrameInputs& inputsOf, int warmUpCount,
+                     int count) {
+    for (int i = 0; i < warmUpCount; ++i) renderer.renderFrame(inputsOf(i), i == 0);
     FrameFigures figures;
     figures.estimatedBytes = renderer.estimatedBytes();
     std::vector<PassSamples> passes;
     for (int i = 0; i < count; ++i) {
-        FrameSample frame = renderer.renderFrame(inputs, warmUpCount == 0 && i == 0);
+        FrameSample frame = renderer.renderFrame(inputsOf(warmUpCount + i), warmUpCount == 0 && i == 0);
         figures.frameTotals.push_back(frame.totalMilliseconds);
         figures.frameWalls.push_back(frame.wallMilliseconds);
         addPasses(passes, frame);

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -91,5 +92,10 @@ struct FrameFigures {
 // `warmUpCount` unmeasured frames of one view, in which caches and clocks settle, then `count` measured
 // ones; the first of all is a reset.
 FrameFigures measure(IndirectRenderer& renderer, const RenderInputs& inputs, int warmUpCount, int count);
+// The same over a sequence: `inputsOf(frame)`, frame = 0 .. warmUpCount + count - 1, is called before
+// each frame, outside of its time, and serves until the next call.
+using FrameInputs = std::function<const RenderInputs&(int frame)>;
+FrameFigures measure(IndirectRenderer& renderer, const FrameInputs& inputsOf, int warmUpCount,
+                     int count);
 
 }  // namespace cli

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cstdlib>
+
 #include "cli.h"
 
 namespace cli {
@@ -28,7 +30,11 @@ lightwell::Device openDevice(const std::string& selector, std::uint32_t width) {
     try {
         return lightwell::Device(desc);
     } catch (const lightwell::Error& error) {
-        if (error.status() != LW_ERROR_NO_DEVICE || selector.empty()) throw;
+        // Without --device the message speaks of the variable, LIGHTWELL_DEVICE or LIGHTWELL_WIDTH.
+        if (error.status() == LW_ERROR_INVALID_ARGUMENT ||
+            (selector.empty() && std::getenv("LIGHTWELL_DEVICE") != nullptr))
+            throw UsageError(error.what());
+        if (error.status() != LW_ERROR_NO_DEVICE) throw;
         throw UsageError(
             fmt::format("--device '{}': no such device; valid: gpu, cpu, PLATFORM:DEVICE indices, or "
                         "part of a name; present: {}",

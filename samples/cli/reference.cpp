@@ -16,6 +16,9 @@
 namespace cli {
 namespace {
 
+// For each pixel: double sums of four layers and two halves, the layers of the picture, twice on
+// writing.
+constexpr double kPixelBytes = 900.0;
 constexpr int kMostSamples = 1 << 20;  // per pixel; more only hides a mistake
 
 struct ReferenceOptions {
@@ -120,9 +123,13 @@ studio::Image traceWithProgress(const studio::RayScene& rayScene, const studio::
         if (InterruptGuard::wasRaised())
             throw Interrupted("interrupted; the same command goes on from " + tracer.checkpoint);
     };
-    studio::Image traced = studio::tracePaths(rayScene, gbuffer, tracer);
-    line.finish();
-    return traced;
+    try {
+        studio::Image traced = studio::tracePaths(rayScene, gbuffer, tracer);
+        line.finish();
+        return traced;
+    } catch (const studio::CheckpointError& error) {
+        throw UsageError(fmt::format("{}; delete it or name another with --checkpoint", error.what()));
+    }
 }
 
 void traceReference(const ReferenceOptions& options) {
@@ -131,6 +138,9 @@ void traceReference(const ReferenceOptions& options) {
     const Size size = parseSize(options.view.size);
     requireOutputPath("--out", options.out, {".exr"});
     requireOutputPath("--checkpoint", tracer.checkpoint, {});
+    requireDistinct(
+        {{"--vpls", options.vpls}, {"--checkpoint", tracer.checkpoint}, {"--out", options.out}});
+    requireMemory("--size", options.view.size, kPixelBytes * size.width * size.height);
     std::vector<studio::VplRecord> vpls;
     if (!options.vpls.empty()) {
         vpls = asUsage([&] { return studio::readVpls(options.vpls); });
@@ -140,7 +150,9 @@ void traceReference(const ReferenceOptions& options) {
     const studio::Camera camera = findCamera(*scene, options.view);
 
     const float time = float(options.view.time);
-    const studio::RayScene rayScene(scene, time);
+    const auto rayScenePointer =
+        asUsage([&] { return std::make_unique<studio::RayScene>(scene, time); });
+    const studio::RayScene& rayScene = *rayScenePointer;
     const studio::GBuffer gbuffer =
         studio::renderGBuffer(rayScene, camera, size.width, size.height, camera, time);
     const studio::Image traced = traceWithProgress(rayScene, gbuffer, tracer);

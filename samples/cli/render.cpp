@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -11,6 +12,7 @@
 #include "path_tracer.h"
 #include "render_inputs.h"
 #include "render_report.h"
+#include "render_sequence.h"
 
 namespace cli {
 namespace {
@@ -21,12 +23,34 @@ constexpr std::uint32_t kVplChannels = 10;  // position, normal, flux, area
 
 struct RenderOptions {
     ViewOptions view;
-    std::string technique, seed, vplsOut, device, debugView;
+    std::string technique, seed, vplsOut, device, debugView, exposure, scale = "1", step = "0";
     std::vector<std::string> assignments, outs;
     int frames = 9, warmup = 3, width = 0, rsmSize = 512, cascades = 1;
-    double exposure = 0.0, scale = 1.0;
     bool asJson = false, printsHash = false;
 };
+
+void checkDistinctOutputs(const RenderOptions& options) {
+    std::vector<std::pair<std::string, std::string>> outputs{{"--vpls-out", options.vplsOut}};
+    if (!options.debugView.empty())
+        outputs.emplace_back("--debug-view", splitAssignment("--debug-view", options.debugView).second);
+    for (const std::string& out : options.outs) outputs.emplace_back("--out", out);
+    requireDistinct(outputs);
+}
+
+// Bytes for each pixel and RSM texel: the studio's buffers, the layers of the picture and their copy on
+// writing, the device's buffers; for orientation, not a bound.
+constexpr double kPixelBytes = 300.0, kTexelBytes = 72.0;
+
+void checkMemory(const RenderOptions& options, const Size& size, const studio::Scene& scene) {
+    requireMemory("--size", options.view.size, kPixelBytes * size.width * size.height);
+    double maps = 0.0;
+    for (const studio::Light& light : scene.lights)
+        maps += light.kind == studio::LightKind::Sun     ? options.cascades
+                : light.kind == studio::LightKind::Point ? 6
+                                                         : 1;
+    requireMemory("--rsm-size", std::to_string(options.rsmSize),
+                  maps * kTexelBytes * options.rsmSize * options.rsmSize);
+}
 
 void checkOptions(const RenderOptions& options) {
     std::vector<std::string> techniques = techniqueNames();
@@ -36,11 +60,21 @@ void checkOptions(const RenderOptions& options) {
     requireOneOf("technique", options.technique, techniques);
     if (options.width != 0)
         requireOneOf("--width", std::to_string(options.width), {"1", "4", "8", "16"});
+    for (const std::string& assignment : options.assignments) splitAssignment("--set", assignment);
+    if (!options.exposure.empty()) parsePositive("--exposure", options.exposure);
+    parsePositive("--scale", options.scale);
+    const double step = parseNumber("--step", options.step);
+    if (step < 0.0 || !std::isfinite(float(step)))
+        throw UsageError(fmt::format("--step '{}': expected seconds, 0 or more", options.step));
+    if (options.cascades > 1 && options.rsmSize % 2 != 0)
+        throw UsageError(
+            fmt::format("--rsm-size '{}': expected an even number with --cascades", options.rsmSize));
     for (const std::string& out : options.outs) requireOutputPath("--out", out, {".exr", ".png"});
     if (!options.vplsOut.empty()) requireOutputPath("--vpls-out", options.vplsOut, {});
     if (!options.debugView.empty())
         requireOutputPath("--debug-view", splitAssignment("--debug-view", options.debugView).second,
                           {".exr"});
+    checkDistinctOutputs(options);
     const bool hasResult =
         !options.outs.empty() || !options.vplsOut.empty() || options.asJson || options.printsHash;
     if (!hasResult) throw UsageError("--out is required: a file name ending in .exr or .png");
@@ -129,8 +163,9 @@ void writeOutputs(const RenderOptions& options, const studio::Image& image, Rend
             studio::writeExr(out, image);
         } else {
             const studio::Image lit = studio::composite(image);
-            const float exposure =
-                options.exposure > 0.0 ? float(options.exposure) : studio::autoExposure(lit);
+            const float exposure = options.exposure.empty()
+                                       ? studio::autoExposure(lit)
+                                       : parsePositive("--exposure", options.exposure);
             studio::writePng(out, studio::toneMap(lit, exposure));
             report.exposure = exposure;
         }
@@ -139,13 +174,15 @@ void writeOutputs(const RenderOptions& options, const studio::Image& image, Rend
 }
 
 // The technique's picture into `report` and `image`.
-studio::Image renderWithTechnique(const RenderOptions& options, const RenderInputs& inputs,
+studio::Image renderWithTechnique(const RenderOptions& options, Sequence& sequence,
                                   RenderReport& report) {
     const Parameters parameters = parseParameters(options);
-    const auto renderer =
-        makeRenderer(parameters, inputs, DeviceOptions{options.device, std::uint32_t(options.width)});
+    const auto renderer = makeRenderer(parameters, sequence.at(0),
+                                       DeviceOptions{options.device, std::uint32_t(options.width)});
     report.parameters = parameters.resolved();
-    report.figures = measure(*renderer, inputs, options.warmup, options.frames);
+    report.figures = measure(
+        *renderer, [&](int frame) -> const RenderInputs& { return sequence.at(frame); }, options.warmup,
+        options.frames);
     report.frames = options.frames;
     if (renderer->device() != nullptr) {
         report.hasDevice = true;
@@ -157,7 +194,7 @@ studio::Image renderWithTechnique(const RenderOptions& options, const RenderInpu
         report.outputs.push_back(options.vplsOut);
     }
     if (!options.debugView.empty()) writeDebugView(*renderer, options.debugView);
-    return assemble(inputs, renderer->irradiance(), renderer->validity(), report);
+    return assemble(sequence.last(), renderer->irradiance(), renderer->validity(), report);
 }
 
 studio::Image renderDirectOnly(const RenderInputs& inputs, RenderReport& report) {
@@ -178,6 +215,11 @@ void takeSceneFromAssignments(RenderOptions& options) {
         throw UsageError("render: SCENE is required; `lightwell scenes` lists them");
 }
 
+bool hasSun(const studio::Scene& scene) {
+    return std::any_of(scene.lights.begin(), scene.lights.end(),
+                       [](const studio::Light& light) { return light.kind == studio::LightKind::Sun; });
+}
+
 void render(RenderOptions& options) {
     takeSceneFromAssignments(options);
     checkOptions(options);
@@ -185,25 +227,32 @@ void render(RenderOptions& options) {
     report.size = parseSize(options.view.size);
     if (options.technique != kNoTechnique) parseParameters(options);  // refuse before loading anything
     const auto scene = loadScene(options.view);
-    if (options.scale != 1.0) scaleScene(*scene, float(options.scale));
-    const studio::Camera camera = findCamera(*scene, options.view);
+    if (options.cascades > 1 && !hasSun(*scene))
+        throw UsageError(fmt::format("--cascades '{}': expected 1, scene {} has no sun",
+                                     options.cascades, scene->name));
+    checkMemory(options, report.size, *scene);
+    const float scale = parsePositive("--scale", options.scale);
+    if (scale != 1.0f) scaleScene(*scene, scale);
     report.scene = scene->name;
-    report.camera = camera.name;
+    report.camera = findCamera(*scene, options.view).name;
     report.technique = options.technique;
+
+    SequenceOptions sequenceOptions;
+    sequenceOptions.camera = options.view.camera;
+    sequenceOptions.time = options.view.time;
+    sequenceOptions.step = parseNumber("--step", options.step);
+    sequenceOptions.frames = options.technique == kNoTechnique ? 1 : options.warmup + options.frames;
+    sequenceOptions.inputs.width = report.size.width;
+    sequenceOptions.inputs.height = report.size.height;
+    sequenceOptions.inputs.rsm.size = options.rsmSize;
+    sequenceOptions.inputs.rsm.cascades = options.cascades;
+    Sequence sequence(scene, sequenceOptions);
+    sequence.at(0);
     if (scene->lights.empty())
         fmt::print(stderr, "note: scene {} has no sun, spot or point light\n", scene->name);
-
-    InputOptions inputOptions;
-    inputOptions.width = report.size.width;
-    inputOptions.height = report.size.height;
-    inputOptions.time = float(options.view.time);
-    inputOptions.rsm.size = options.rsmSize;
-    inputOptions.rsm.cascades = options.cascades;
-    const studio::RayScene rayScene(scene, inputOptions.time);
-    const RenderInputs inputs(rayScene, camera, inputOptions);
     const studio::Image image = options.technique == kNoTechnique
-                                    ? renderDirectOnly(inputs, report)
-                                    : renderWithTechnique(options, inputs, report);
+                                    ? renderDirectOnly(sequence.last(), report)
+                                    : renderWithTechnique(options, sequence, report);
     writeOutputs(options, image, report);
     if (options.asJson)
         fmt::print("{}", toJson(report));
@@ -224,15 +273,17 @@ void declareExtras(CLI::App& command, RenderOptions& options) {
     command.add_option("--cascades", options.cascades, "Nested RSMs of a sun")
         ->check(CLI::Range(1, 8))
         ->capture_default_str();
-    command
-        .add_option(
-            "--exposure", options.exposure,
-            "PNG: factor on radiance before Reinhard's L/(1+L); default: log-average luminance to 0.18")
-        ->check(CLI::PositiveNumber);
+    command.add_option(
+        "--exposure", options.exposure,
+        "PNG: factor on radiance before Reinhard's L/(1+L); default: log-average luminance to 0.18");
     command
         .add_option("--scale", options.scale,
                     "Scene in another unit: lengths times S, point and spot intensities times S^2")
-        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    command
+        .add_option("--step", options.step,
+                    "Seconds from frame to frame: the frames run up to --time, with true motion vectors "
+                    "and previous cameras; 0: all frames are at --time")
         ->capture_default_str();
     command.add_flag("--hash", options.printsHash,
                      "Print a hash of the irradiance's bits (always in JSON)");

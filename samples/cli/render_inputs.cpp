@@ -87,13 +87,16 @@ LWImage describePlanes(const studio::PlanarBuffer& buffer) {
 RenderInputs::RenderInputs(const studio::RayScene& scene, const studio::Camera& camera,
                            const InputOptions& options)
     : scene_(scene),
-      gbuffer_(
-          studio::renderGBuffer(scene, camera, options.width, options.height, camera, options.time)),
+      gbuffer_(studio::renderGBuffer(
+          scene, camera, options.width, options.height,
+          options.previousCamera != nullptr ? *options.previousCamera : camera,
+          options.previousCamera != nullptr ? options.previousTime : options.time)),
       lwGBuffer_(describeGBuffer(gbuffer_)) {
     studio::RsmOptions rsmOptions = options.rsm;
     rsmOptions.view = &gbuffer_;
     for (std::size_t i = 0; i < scene.scene().lights.size(); ++i) {
         const studio::Light light = scene.scene().lightAt(int(i), options.time);
+        rsmOptions.cascades = light.kind == studio::LightKind::Sun ? options.rsm.cascades : 1;
         rsms_.push_back(studio::renderRsms(scene, light, rsmOptions));
         std::vector<LWRsm> described;
         for (const studio::Rsm& rsm : rsms_.back()) described.push_back(describeRsm(rsm));

@@ -13,7 +13,10 @@ namespace cli {
 struct InputOptions {
     int width = 0, height = 0;
     float time = 0.0f;
-    studio::RsmOptions rsm;
+    studio::RsmOptions rsm;  // cascades: of suns; other lights have none
+    // The frame before, for motion vectors and the previous camera; null: nothing has moved.
+    const studio::Camera* previousCamera = nullptr;
+    float previousTime = 0.0f;
 };
 
 // The structs point into the buffers beside them: made once, never moved. `scene` must live as long.

@@ -11,7 +11,7 @@ namespace cli {
 namespace {
 
 void printScenes(bool asJson) {
-    const std::vector<studio::SceneEntry> scenes = studio::listScenes();
+    const std::vector<studio::SceneEntry> scenes = asUsage([] { return studio::listScenes(); });
     if (asJson) {
         nlohmann::ordered_json list = nlohmann::ordered_json::array();
         for (const auto& scene : scenes)

@@ -16,7 +16,7 @@ constexpr int kGap = 4;  // white pixels between the panels
 
 struct TriptychOptions {
     std::string render, reference, out;
-    double exposure = 0.0;
+    std::string exposure;
 };
 
 studio::Image withoutIndirect(studio::Image image) {
@@ -43,6 +43,7 @@ studio::Image sideBySide(const std::array<studio::Image, 3>& panels) {
 
 void writeTriptych(const TriptychOptions& options) {
     requireOutputPath("--out", options.out, {".png"});
+    const float given = options.exposure.empty() ? 0.0f : parsePositive("--exposure", options.exposure);
     const studio::Image render = asUsage([&] { return studio::readImage(options.render); });
     const studio::Image reference = asUsage([&] { return studio::readImage(options.reference); });
     if (render.width != reference.width || render.height != reference.height)
@@ -51,8 +52,7 @@ void writeTriptych(const TriptychOptions& options) {
                                      reference.width, reference.height));
     const studio::Image truth = asUsage([&] { return studio::composite(reference); });
     const studio::Image lit = asUsage([&] { return studio::composite(render); });
-    const float exposure =
-        options.exposure > 0.0 ? float(options.exposure) : studio::autoExposure(truth);
+    const float exposure = options.exposure.empty() ? studio::autoExposure(truth) : given;
     const std::array<studio::Image, 3> panels{
         studio::toneMap(studio::composite(withoutIndirect(render)), exposure),
         studio::toneMap(lit, exposure), studio::toneMap(truth, exposure)};
@@ -70,11 +70,9 @@ void addTriptych(CLI::App& app) {
     command->add_option("REFERENCE", options->reference, "EXR written by `lightwell reference`")
         ->required();
     command->add_option("--out", options->out, "PNG to write")->required();
-    command
-        ->add_option("--exposure", options->exposure,
-                     "Factor on radiance before Reinhard's L/(1+L); default: puts the truth's "
-                     "log-average luminance at 0.18")
-        ->check(CLI::PositiveNumber);
+    command->add_option("--exposure", options->exposure,
+                        "Factor on radiance before Reinhard's L/(1+L); default: puts the truth's "
+                        "log-average luminance at 0.18");
     command->callback([options] { writeTriptych(*options); });
 }
 

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "film.h"
+#include "path_tracer.h"
 #include "sampler.h"
 
 namespace studio {
@@ -133,7 +134,7 @@ void saveCheckpoint(const std::string& path, const CheckpointKey& key, const Fil
 bool loadCheckpoint(const std::string& path, const CheckpointKey& key, Film& film) {
     if (!std::filesystem::exists(path)) return false;
     const auto refuse = [&](const std::string& reason) {
-        throw std::runtime_error(fmt::format("checkpoint \"{}\": {}", path, reason));
+        throw CheckpointError(fmt::format("checkpoint \"{}\": {}", path, reason));
     };
     std::ifstream file(path, std::ios::binary);
     Header header{};

@@ -43,7 +43,7 @@ std::uint64_t hashBytes(const void* data, std::size_t bytes, std::uint64_t seed)
 
 // Replaces `path` in one step, so that a run cut off while saving leaves the checkpoint before.
 void saveCheckpoint(const std::string& path, const CheckpointKey& key, const Film& film);
-// False when there is no such file. Throws std::runtime_error naming the path when the file is not a
+// False when there is no such file. Throws CheckpointError naming the path when the file is not a
 // checkpoint, is cut short, or belongs to another scene, view or set of options.
 bool loadCheckpoint(const std::string& path, const CheckpointKey& key, Film& film);
 

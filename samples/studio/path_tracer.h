@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,11 @@ struct VplRecord {
 // std::runtime_error naming the path, the line, what was expected and what came.
 std::vector<VplRecord> readVpls(const std::string& path);
 void writeVpls(const std::string& path, const std::vector<VplRecord>& vpls);
+
+// A checkpoint that cannot be gone on from: another kind of file, damaged, or of another run.
+struct CheckpointError : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
 
 struct PathTracerOptions {
     int samplesPerPixel = 64;  // of both halves together; even

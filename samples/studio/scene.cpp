@@ -146,8 +146,9 @@ LightArrival arrivalOf(const Light& light, const glm::vec3& position) {
 Camera Scene::cameraAt(int index, float time) const {
     const Camera camera = trackAt(cameraTracks, index, checked(cameras, index, "camera"), time);
     // Keys that are right may meet between: a camera that flies through its target.
-    const glm::vec3 way = camera.target - camera.position;
-    if (!(glm::length(glm::cross(way, camera.up)) > 1e-4f * glm::length(way) * glm::length(camera.up)))
+    // In double: squares of small lengths are beyond floats.
+    const glm::dvec3 way = glm::dvec3(camera.target) - glm::dvec3(camera.position), up(camera.up);
+    if (!(glm::length(glm::cross(way, up)) > 1e-4 * glm::length(way) * glm::length(up)))
         throw std::runtime_error(fmt::format(
             "camera \"{}\" at {} s: expected a target away from the position and off the up axis",
             camera.name, time));

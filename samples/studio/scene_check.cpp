@@ -59,9 +59,10 @@ void checkCamera(const Scene& scene, const Camera& c) {
     part.requireFinite("position", c.position);
     part.requireFinite("target", c.target);
     part.requireFinite("up", c.up);
-    const glm::vec3 way = c.target - c.position;
-    part.require(glm::length(glm::cross(way, c.up)) > 1e-4f * glm::length(way) * glm::length(c.up),
-                 "target", "a point away from the position and off the up axis", text(c.target));
+    // In double: squares of small lengths are beyond floats.
+    const glm::dvec3 way = glm::dvec3(c.target) - glm::dvec3(c.position), up(c.up);
+    part.require(glm::length(glm::cross(way, up)) > 1e-4 * glm::length(way) * glm::length(up), "target",
+                 "a point away from the position and off the up axis", text(c.target));
     part.require(c.verticalFov > 0.0f && c.verticalFov <= kWidestView, "vertical field of view",
                  fmt::format("an angle above 0 and at most {:.4g}", kWidestView), c.verticalFov);
     part.require(c.aspect >= 0.0f && std::isfinite(c.aspect), "aspect ratio",

@@ -13,6 +13,7 @@ import sys
 import tempfile
 import time
 import unittest
+import unittest.mock
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import exr  # noqa: E402
@@ -24,6 +25,14 @@ COMPARE_KEYS = {"relMSE", "nrmse", "bias", "p99", "rmse", "ssim", "score", "scor
 SUM_ROUNDING = 1e-9
 # relMSE of one picture in another unit of length: rounding alone.
 SCALE_ROUNDING = 1e-9
+RING = ('{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],'
+        ' "nodes": [{"children": [1]}, {"children": [0]}]}')
+# Something to fly through: the camera reaches a plain wall sideways.
+MOVING = """{"materials": {"wall": {"albedo": 0.5}},
+ "meshes": [{"quad": [[-9, -9, 0], [9, -9, 0], [9, 9, 0], [-9, 9, 0]], "material": "wall"}],
+ "cameras": [{"name": "c", "position": [0, 0, 3], "target": [0, 0, 0], "vertical_fov_degrees": 40,
+              "keys": [{"time": 0}, {"time": 2, "position": [1, 0, 3], "target": [1, 0, 0]}]}],
+ "lights": [{"name": "sun", "kind": "sun", "direction": [0, -1, -1], "irradiance": 1}]}"""
 
 
 def run(*arguments):
@@ -88,6 +97,46 @@ class WrongArguments(CommandLine):
         self.refused([*rsm, "--width", "3", *out], "3", "1, 4, 8, 16")
         self.refused([*rsm, "--device", "no such device", *out], "no such device", "cpu", "present:")
         self.refused([*rsm, "--seed=-1", *out], "--seed", "-1")
+        for option, value in (("--exposure", "nan"), ("--exposure", "0"), ("--scale", "-1"), ("--scale", "1e300")):
+            self.refused([*rsm, option + "=" + value, *out], option, "'%s'" % value, "above 0")
+        self.refused([*rsm, "--time", "1e300", *out], "--time", "seconds")
+        for value in ("-1", "nan"):
+            self.refused([*rsm, "--step=" + value, *out], "--step", "'%s'" % value)
+        self.refused([*rsm, "--cascades", "2", *out], "--cascades", "'2'", "no sun")
+        self.refused([*rsm, "--cascades", "2", "--rsm-size", "511", *out], "--rsm-size", "'511'", "even")
+
+    def test_sizes_beyond_memory_and_floats(self):
+        out = ["--out", self.path("never.exr")]
+        rsm = ["render", "cornell", "--technique", "rsm"]
+        if os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") < 60e9:
+            self.refused([*rsm, "--size", "16384x16384", *out], "--size", "'16384x16384'", "memory")
+            self.refused(["reference", "cornell", "--bounces", "1", "--size", "16384x16384", *out], "--size", "memory")
+        for factor in ("1e-30", "1e30"):
+            self.refused([*rsm, *SIZE, "--scale", factor, *out], "cornell", "expected")
+
+    def test_outputs(self):
+        rsm = ["render", "cornell", "--technique", "rsm"]
+        same, long = self.path("same.exr"), self.path("a" * 300 + ".exr")
+        self.refused([*rsm, "--out", "/proc/never.exr"], "/proc/never.exr", "written")
+        self.refused([*rsm, "--out", long], "--out", "too long")
+        self.refused([*rsm, "--out", self.folder.name + "/"], self.folder.name)
+        self.refused([*rsm, "--out", same, "--vpls-out", same], same, "another file")
+        self.refused([*rsm, "--out", same, "--out", os.path.join(self.folder.name, ".", "same.exr")], "another file")
+        # A checkpoint is deleted in the end: it must not be the picture.
+        self.refused(["reference", "cornell", "--bounces", "1", "--out", same, "--checkpoint", same], "--checkpoint")
+        self.assertFalse(os.path.exists(same))
+        with open(same, "w", encoding="ascii") as file:
+            file.write("kept")
+        self.refused([*rsm, "--out", same, "--device", "no such device"], "no such device")
+        with open(same, encoding="ascii") as file:
+            self.assertEqual(file.read(), "kept")
+
+    def test_environment(self):
+        out = ["render", "cornell", "--technique", "rsm", *SIZE, "--out", self.path("never.exr")]
+        for name, value, arguments in (("LIGHTWELL_SCENES", "/no/such/folder", ["scenes"]),
+                                       ("LIGHTWELL_WIDTH", "3", out), ("LIGHTWELL_DEVICE", "no such device", out)):
+            with unittest.mock.patch.dict(os.environ, {name: value}):
+                self.refused(arguments, name, value)
 
     def test_parameters(self):
         start = ["render", "cornell", "--technique", "rsm", "--out", self.path("never.exr"), "--set"]
@@ -100,6 +149,7 @@ class WrongArguments(CommandLine):
         self.refused([*start, "sampling=best"], "best", "flux, uniform")
         self.refused([*start, "filter=maybe"], "maybe", "on, off, true, false, 1, 0")
         self.refused([*start, "vpls", "seed=1"], "'vpls'", "key=value")
+        self.refused([*start, "--size"], "'--size'", "key=value")
 
     def test_reference(self):
         out = ["--out", self.path("never.exr")]
@@ -131,6 +181,19 @@ class WrongArguments(CommandLine):
             file.write('{"mesh": ')
         self.refused(["compare", damaged, damaged], "damaged.exr")
         self.refused(["render", scene, "--technique", "none", "--out", self.path("never.exr")], "broken.json")
+
+    def test_damaged_meshes(self):
+        """Cut short or with bytes changed, a mesh file loads or is refused; it never brings the program down."""
+        never = ["--technique", "none", "--size", "4x4", "--out", self.path("never.exr")]
+        obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\n"
+        for name, content, word in (("face.obj", obj + "f 1 2 9\n", "face.obj"), ("nan.obj", "v nan 0 0\n" + obj + "f 1 2 3\n", "finite"),
+                                    ("none.obj", obj, "triangle"), ("gone.obj", "mtllib m.mtl\nusemtl m\n" + obj + "f 1 2 3\n", "gone.png"),
+                                    ("ring.gltf", RING, "ring.gltf"), ("list.gltf", "[]", "list.gltf"), ("cut.glb", "glTF", "cut.glb")):
+            with open(self.path(name), "w", encoding="ascii") as file:
+                file.write(content)
+            with open(self.path("m.mtl"), "w", encoding="ascii") as file:
+                file.write("newmtl m\nmap_Kd gone.png\n")
+            self.refused(["render", self.path(name), *never], word)
 
 
 class Lists(CommandLine):
@@ -237,6 +300,21 @@ class Render(CommandLine):
                       "nothing=" + view], "nothing", "vpls")
 
 
+    def test_sequence_ends_at_its_time(self):
+        """A sequence that moves ends with the picture that one frame alone at its time has."""
+        scene = self.path("moving.json")
+        with open(scene, "w", encoding="ascii") as file:
+            file.write(MOVING)
+        arguments = ["render", scene, "--technique", "rsm", *SIZE, "--time", "1.5", "--json"]
+        still = self.json(*arguments, "--frames", "1", "--warmup", "0")
+        moving = self.json(*arguments, "--frames", "2", "--warmup", "1", "--step", "0.25")
+        early = self.json(*arguments[:-3], "--time", "1.25", "--json", "--frames", "1", "--warmup", "0",
+                          "--out", self.path("early.exr"))
+        self.assertEqual(still["hash"], moving["hash"])
+        self.assertEqual(early["scene"], "moving")
+        self.refused([*arguments, "--camera", "d"], '"d"', "one of: c")
+
+
 class Reference(CommandLine):
     def test_layers(self):
         picture = self.path("two.exr")
@@ -286,6 +364,17 @@ class Reference(CommandLine):
         self.assertEqual(process.returncode, 130, message)
         self.assertIn(picture + ".part", message)
         self.assertFalse(os.path.exists(picture))
+        # Nobody else's: other options, scene or size.
+        self.refused([*arguments, "--spp", "2", "--seed", "2"], picture + ".part", "other options")
+        self.refused(["reference", "rooms", *arguments[2:], "--spp", "2"], picture + ".part", "another scene")
+        self.refused([word.replace("96x54", "96x56") for word in arguments] + ["--spp", "2"], "camera or size")
+        damaged = self.path("damaged.part")
+        with open(picture + ".part", "rb") as file:
+            beginning = file.read(3000)
+        for content in (b"hello", beginning):
+            with open(damaged, "wb") as file:
+                file.write(content)
+            self.refused([*arguments, "--spp", "2", "--checkpoint", damaged], damaged, "delete it")
         self.done(*arguments, "--spp", "2")  # what was traced before counts
         self.assertGreater(int(exr.read(picture)[3]["spp"]), 2)
         self.assertFalse(os.path.exists(picture + ".part"))

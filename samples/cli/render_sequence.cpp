@@ -1,0 +1,32 @@
+#include "render_sequence.h"
+
+#include "cli.h"
+#include "ray_scene.h"
+
+namespace cli {
+
+Sequence::Sequence(std::shared_ptr<const studio::Scene> scene, const SequenceOptions& options)
+    : scene_(std::move(scene)),
+      options_(options),
+      camera_(asUsage([&] { return scene_->findCamera(options.camera); })) {}
+
+studio::Camera Sequence::cameraAt(float time) const {
+    return asUsage([&] { return scene_->cameraAt(camera_, time); });
+}
+
+const RenderInputs& Sequence::at(int frame) {
+    if (inputs_ != nullptr && (options_.step == 0.0 || frame == frame_)) return *inputs_;
+    inputs_.reset();  // one frame's memory at a time
+    frame_ = frame;
+    const double time = options_.time - options_.step * (options_.frames - 1 - frame);
+    InputOptions inputs = options_.inputs;
+    inputs.time = float(time);
+    inputs.previousTime = float(time - options_.step);
+    const studio::Camera camera = cameraAt(inputs.time), before = cameraAt(inputs.previousTime);
+    inputs.previousCamera = &before;
+    rayScene_ = asUsage([&] { return std::make_unique<studio::RayScene>(scene_, inputs.time); });
+    inputs_ = std::make_unique<RenderInputs>(*rayScene_, camera, inputs);
+    return *inputs_;
+}
+
+}  // namespace cli
