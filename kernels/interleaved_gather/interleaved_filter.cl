@@ -42,10 +42,7 @@ __kernel void interleaved_gather_filter(__global const float* position, int4 pos
                                         __global float* filtered, int4 filteredLayout) {
     const int x = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);
     if (x >= width || y >= height) return;
-    const int p = positionLayout.x + y * positionLayout.y + x, n = normalLayout.x + y * normalLayout.y + x;
-    const int pz = positionLayout.z, nz = normalLayout.z;
-    const lw_surface s = make_surface(load(position, p), load(position, p + pz), load(position, p + 2 * pz),
-                                      load(normal, n), load(normal, n + nz), load(normal, n + 2 * nz));
+    const lw_surface s = load_surface(position, positionLayout, normal, normalLayout, x, y);
     const int start = x - LW_BACK, firstRow = clamp(y - LW_BACK, 0, max(height - LW_INTERLEAVE, 0));
     const int rows = min(LW_INTERLEAVE, height), columns = min(LW_INTERLEAVE, width);
     const int inside = start >= 0 && start + LW_INTERLEAVE - 1 + LW_WIDTH <= width;
@@ -58,7 +55,7 @@ __kernel void interleaved_gather_filter(__global const float* position, int4 pos
             const lw_window_row row = {positionLayout.x + (firstRow + j) * positionLayout.y + shift,
                                        normalLayout.x + (firstRow + j) * normalLayout.y + shift,
                                        irradianceLayout.x + (firstRow + j) * irradianceLayout.y + shift,
-                                       pz, nz, irradianceLayout.z};
+                                       positionLayout.z, normalLayout.z, irradianceLayout.z};
             if (inside) add_row(&sum, s, position, normal, irradiance, row, 1, first, LW_INTERLEAVE);
             else add_row(&sum, s, position, normal, irradiance, row, 0, first, columns);
         }

@@ -142,9 +142,6 @@ __kernel void interleaved_gather_validity(__global const float* position, int4 p
                                           __global float* validity, int4 validityLayout) {
     const int x = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);
     if (x >= width || y >= height) return;
-    const int p = positionLayout.x + y * positionLayout.y + x, n = normalLayout.x + y * normalLayout.y + x;
-    const int pz = positionLayout.z, nz = normalLayout.z;
-    const lw_surface s = make_surface(load(position, p), load(position, p + pz), load(position, p + 2 * pz),
-                                      load(normal, n), load(normal, n + nz), load(normal, n + 2 * nz));
+    const lw_surface s = load_surface(position, positionLayout, normal, normalLayout, x, y);
     store(ones_(s.valid), validity, validityLayout.x + y * validityLayout.y + x);
 }

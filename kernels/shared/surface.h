@@ -12,7 +12,6 @@ typedef struct {
     mask rejected;    // not a surface although the host did not mark it as background (zero normal)
 } lw_surface;
 
-
 // Normals of compact formats are off unit length by quantisation: they are normalised, not refused.
 // Shorter than 1/2 or longer than 2 is no normal at all.
 LW_FN lw_surface make_surface(real px, real py, real pz, real nx, real ny, real nz) {
@@ -28,6 +27,15 @@ LW_FN lw_surface make_surface(real px, real py, real pz, real nx, real ny, real 
     s.ny = select_((real)0.0f, ny * s.scale, s.valid);
     s.nz = select_((real)0.0f, nz * s.scale, s.valid);
     return s;
+}
+
+// The surfaces of LW_WIDTH pixels of row y from column x on, of a G-buffer's planes (layouts as `Planes`).
+LW_FN lw_surface load_surface(__global const float* position, int4 positionLayout, __global const float* normal,
+                              int4 normalLayout, int x, int y) {
+    const int p = positionLayout.x + y * positionLayout.y + x, n = normalLayout.x + y * normalLayout.y + x;
+    const int pz = positionLayout.z, nz = normalLayout.z;
+    return make_surface(load(position, p), load(position, p + pz), load(position, p + 2 * pz), load(normal, n),
+                        load(normal, n + nz), load(normal, n + 2 * nz));
 }
 
 #endif

@@ -49,15 +49,6 @@ glm::dmat4 invert(const glm::dmat4& m, const std::string& name) {
     return inverse;
 }
 
-lw_float4 float4(double x, double y, double z, double w) {
-    lw_float4 result;
-    result.s[0] = float(x);
-    result.s[1] = float(y);
-    result.s[2] = float(z);
-    result.s[3] = float(w);
-    return result;
-}
-
 // Coefficients of (clip x, clip y, 1) turned into those of a pixel's position.
 template <class T>
 ImageLinear<T> overImage(const T& perX, const T& perY, const T& constant, double width, double height) {

@@ -19,6 +19,16 @@ struct ImageLinear {
     T at(double i, double j) const { return perI * (i + 0.5) + perJ * (j + 0.5) + constant; }
 };
 
+// As kernels take it.
+inline lw_float4 float4(double x, double y, double z, double w) {
+    lw_float4 result;
+    result.s[0] = float(x);
+    result.s[1] = float(y);
+    result.s[2] = float(z);
+    result.s[3] = float(w);
+    return result;
+}
+
 class Camera {
 public:
     // Throws INVALID_ARGUMENT naming `name`.view or `name`.projection when a matrix is not finite or not

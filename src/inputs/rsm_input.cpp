@@ -39,15 +39,6 @@ struct CheckedRsm {
     LwRsmSpan span{};
 };
 
-lw_float4 float4(double x, double y, double z, double w) {
-    lw_float4 result;
-    result.s[0] = float(x);
-    result.s[1] = float(y);
-    result.s[2] = float(z);
-    result.s[3] = float(w);
-    return result;
-}
-
 CheckedRsm checkRsm(Device& device, const LWRsm& rsm, bool perspective, const std::string& name) {
     const bool fromDepth = !imageAbsent(rsm.depth);
     if (fromDepth == !imageAbsent(rsm.position))

@@ -1,8 +1,6 @@
-// Frame part, per-view state, report, and the registration with its parameter table: a little over 300
-// lines, kept together so that the technique stays one stem; the table moves out with its second user.
+// Frame part, per-view state, report and registration; the table of parameters is rsm_parameters.cpp's.
 #include "techniques/rsm.h"
 
-#include <iterator>
 #include <optional>
 
 #include "compute/device.h"
@@ -14,6 +12,7 @@
 #include "passes/joint_bilateral.h"
 #include "passes/vpl_sampling.h"
 #include "techniques/prewarm.h"
+#include "techniques/rsm_parameters.h"
 
 namespace lightwell {
 namespace {
@@ -238,61 +237,14 @@ std::uint64_t estimateBytes(const void* desc, const LWViewDesc& view, const Fram
            RsmTechnique::ViewState::imageBytes(rsm, view.maxWidth, view.maxHeight);
 }
 
-constexpr const char* kSamplingNames[] = {"flux", "uniform", nullptr};
-constexpr const char* kResolutionNames[] = {"full", "half", nullptr};
-constexpr double kInterleaveValues[] = {1, 2, 4, 8};
-constexpr double kInterleaveSweep[] = {1, 4};
-constexpr double kVplSweep[] = {64, 256, 1024, 4096};
-
-LWParameter parameter(const char* name, const char* description, LWParameterKind kind, std::size_t byteOffset,
-                      double minimum, double maximum, double defaultValue) {
-    LWParameter p{};
-    p.name = name;
-    p.description = description;
-    p.kind = kind;
-    p.byteOffset = std::uint32_t(byteOffset);
-    p.minimum = minimum;
-    p.maximum = maximum;
-    p.defaultValue = defaultValue;
-    return p;
-}
-
-const std::vector<LWParameter>& parameters() {
-    static const std::vector<LWParameter> table = [] {
-        std::vector<LWParameter> all = {
-            parameter("vpls", "virtual point lights drawn from all RSMs together; 0: every texel. Error falls and time grows with it",
-                      LW_PARAMETER_UINT, offsetof(LWRsmDesc, vpls), 0, 1u << 24, 256),
-            parameter("sampling", "what VPLs are drawn by: reflected flux, or every texel alike", LW_PARAMETER_ENUM,
-                      offsetof(LWRsmDesc, sampling), 0, 1, LW_SAMPLING_FLUX),
-            parameter("interleave", "n of n x n pixels that share out the VPLs: time falls with n^2, noise at edges grows",
-                      LW_PARAMETER_UINT, offsetof(LWRsmDesc, interleave), 1, 8, 4),
-            parameter("filter", "edge-aware n x n filter after an interleaved gather", LW_PARAMETER_BOOL,
-                      offsetof(LWRsmDesc, filter), 0, 1, 1),
-            parameter("resolution", "pixels that are gathered; half: every second column and row, up-sampled after",
-                      LW_PARAMETER_ENUM, offsetof(LWRsmDesc, resolution), 0, 1, LW_RESOLUTION_FULL),
-            parameter("seed", "shift of the sample set; 0: unshifted", LW_PARAMETER_UINT, offsetof(LWRsmDesc, seed), 0,
-                      4294967295.0, 0)};
-        all[0].sweep = kVplSweep;
-        all[0].sweepCount = std::uint32_t(std::size(kVplSweep));
-        all[1].choices = kSamplingNames;
-        all[2].allowed = kInterleaveValues;
-        all[2].allowedCount = std::uint32_t(std::size(kInterleaveValues));
-        all[2].sweep = kInterleaveSweep;
-        all[2].sweepCount = std::uint32_t(std::size(kInterleaveSweep));
-        all[4].choices = kResolutionNames;
-        return all;
-    }();
-    return table;
-}
-
 TechniqueEntry makeEntry() {
     TechniqueEntry entry{};
     entry.info.structSize = sizeof(LWTechniqueInfo);
     entry.info.descSize = sizeof(LWRsmDesc);
     entry.info.name = "rsm";
     entry.info.summary = "virtual point lights from reflective shadow maps, gathered without visibility";
-    entry.info.parameters = parameters().data();
-    entry.info.parameterCount = std::uint32_t(parameters().size());
+    entry.info.parameters = rsmParameters().data();
+    entry.info.parameterCount = std::uint32_t(rsmParameters().size());
     entry.info.setDefaults = setDefaults;
     entry.create = create;
     entry.estimateBytes = estimateBytes;
@@ -307,14 +259,3 @@ const TechniqueEntry& rsmEntry() {
 }
 
 }  // namespace lightwell
-
-extern "C" void lwDefaultRsm(LWRsmDesc* desc) {
-    if (!desc) return;
-    *desc = LWRsmDesc{};
-    desc->structSize = sizeof *desc;
-    desc->vpls = 256;
-    desc->sampling = LW_SAMPLING_FLUX;
-    desc->interleave = 4;
-    desc->filter = 1;
-    desc->resolution = LW_RESOLUTION_FULL;
-}

@@ -1,0 +1,12 @@
+// What tools know of technique rsm's descriptor.
+#pragma once
+
+#include <vector>
+
+#include "lightwell/lightwell.h"
+
+namespace lightwell {
+
+const std::vector<LWParameter>& rsmParameters();
+
+}  // namespace lightwell
