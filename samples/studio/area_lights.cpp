@@ -96,4 +96,18 @@ glm::vec3 AreaLights::sampleIrradiance(const RayScene& scene, const Surface& at,
     return weighted(at, direction, hit);
 }
 
+glm::vec3 extendedIrradiance(const RayScene& scene, const AreaLights& lights, const Surface& at,
+                             Sampler& sampler) {
+    const glm::vec3 sky = scene.scene().sky;
+    if (lights.empty() && sky == glm::vec3(0.0f)) return glm::vec3(0.0f);
+
+    const glm::vec3 irradiance = lights.sampleIrradiance(scene, at, sampler);
+    const glm::vec3 direction = sampleCosine(at.normal, sampler.next());
+    if (glm::dot(at.geometricNormal, direction) <= 0.0f) return irradiance;
+    Hit hit;
+    const glm::vec3 origin = scene.offset(at.position, at.geometricNormal);
+    if (!scene.trace(origin, direction, 0.0f, kFar, hit)) return irradiance + kPi * sky;
+    return irradiance + lights.emissionOfRay(at, direction, hit);
+}
+
 }  // namespace studio

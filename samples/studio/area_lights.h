@@ -38,4 +38,9 @@ private:
     float perRadiance_ = 0.0f;  // density per area of a triangle of mean radiance 1
 };
 
+// One estimate of the irradiance from emissive surfaces and sky straight to `at`: a point on an emitter
+// and a cosine-distributed ray, shadows included.
+glm::vec3 extendedIrradiance(const RayScene& scene, const AreaLights& lights, const Surface& at,
+                             Sampler& sampler);
+
 }  // namespace studio

@@ -147,19 +147,6 @@ glm::vec3 Integrator::connect(const Surface& at, Sampler& sampler) const {
     return point.albedo * lamp.irradiance * (lampCosine * rayShare(byRay, point.density));
 }
 
-glm::vec3 Integrator::extendedIrradiance(const Surface& at, Sampler& sampler) const {
-    const glm::vec3 sky = scene_.scene().sky;
-    if (areaLights_.empty() && largest(sky) <= 0.0f) return glm::vec3(0.0f);
-
-    const glm::vec3 irradiance = areaLights_.sampleIrradiance(scene_, at, sampler);
-    const glm::vec3 direction = sampleCosine(at.normal, sampler.next());
-    if (glm::dot(at.geometricNormal, direction) <= 0.0f) return irradiance;
-    Hit hit;
-    const glm::vec3 origin = scene_.offset(at.position, at.geometricNormal);
-    if (!scene_.trace(origin, direction, 0.0f, kInfinity, hit)) return irradiance + kPi * sky;
-    return irradiance + areaLights_.emissionOfRay(at, direction, hit);
-}
-
 // The limit of a gather from virtual point lights without visibility, in that gather's own measure.
 //
 // A VPL that stands for the area dA of a surface (geometric normal g on the lit side, lobe's normal n,
@@ -196,7 +183,8 @@ glm::vec3 Integrator::lightThrough(const Surface& pixel, const glm::vec3& direct
     const float facing = -glm::dot(hit.normal, direction);
     const glm::vec3 lobeSide = facing > 0.0f ? hit.geometricNormal : -hit.geometricNormal;
     glm::vec3 light =
-        extendedIrradiance({hit.position, lobeSide, lobeSide}, sampler) * (std::abs(facing) / projected);
+        extendedIrradiance(scene_, areaLights_, {hit.position, lobeSide, lobeSide}, sampler) *
+        (std::abs(facing) / projected);
     for (std::size_t l = 0; l < scene_.lights().size(); ++l) {
         const Light& lamp = scene_.lights()[l];
         const glm::vec3 toLamp = arrivalOf(lamp, hit.position).toLight;

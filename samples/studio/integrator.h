@@ -35,8 +35,6 @@ private:
     glm::vec3 lightThrough(const Surface& pixel, const glm::vec3& direction, const Hit& hit,
                            Sampler& sampler) const;
     glm::vec3 connectUnshadowed(const Surface& at, Sampler& sampler) const;
-    // Emissive surfaces and sky.
-    glm::vec3 extendedIrradiance(const Surface& at, Sampler& sampler) const;
 
     const RayScene& scene_;
     AreaLights areaLights_;
