@@ -4,6 +4,7 @@
 
 #include "library_renderer.h"
 #include "open_device.h"
+#include "rival_renderer.h"
 
 namespace cli {
 namespace {
@@ -43,6 +44,7 @@ std::unique_ptr<IndirectRenderer> makeRenderer(const Parameters& parameters, con
 
 std::unique_ptr<IndirectRenderer> makeRenderer(const Parameters& parameters, const RenderInputs& inputs,
                                                const lightwell::Device* device) {
+    if (!parameters.needsDevice()) return makeRival(parameters, inputs);
     if (device == nullptr)
         throw std::runtime_error("technique " + parameters.technique() +
                                  ": expected a device, got none");

@@ -7,6 +7,7 @@
 
 #include "cli.h"
 #include "open_device.h"
+#include "rival_renderer.h"
 
 namespace cli {
 namespace {
@@ -72,6 +73,7 @@ std::vector<LWTechniqueInfo> describeTechniques() {
     std::vector<LWTechniqueInfo> infos(lwCountTechniques(), lightwell::make<LWTechniqueInfo>());
     for (std::size_t i = 0; i < infos.size(); ++i)
         lightwell::check(lwDescribeTechnique(std::uint32_t(i), &infos[i]));
+    infos.push_back(rivalInfo());
     return infos;
 }
 
@@ -103,7 +105,7 @@ Parameters::Parameters(const std::string& technique) : technique_(technique) {
 }
 
 bool Parameters::needsDevice() const {
-    return true;
+    return technique_ != rivalInfo().name;
 }
 
 const LWParameter* Parameters::find(const std::string& name) const {

@@ -21,13 +21,10 @@
 namespace studio {
 namespace {
 
-// Ray origins move off their surface by this share of their largest coordinate, or of the diagonal
+// Ray origins move off their surface by kRelativeOffset of their largest coordinate, or of the diagonal
 // where that is larger times kDiagonalShare. A float's spacing is 6e-8 of its value and a hit carries
-// a few roundings: a tenth of this begins to show acne, ten times as much detaches contact shadows.
-constexpr float kRelativeOffset = 1e-5f;
+// a few roundings: a tenth of it begins to show acne, ten times as much detaches contact shadows.
 constexpr float kDiagonalShare = 0.1f;
-// Shadow rays stop short of a punctual light by this share of their length.
-constexpr float kLightGap = 1e-5f;
 
 struct WorldMesh {
     const Mesh* mesh = nullptr;
@@ -248,9 +245,16 @@ bool RayScene::occluded(const glm::vec3& origin, const glm::vec3& direction, flo
     return ray.tfar < 0.0f;
 }
 
+RTCSceneTy* RayScene::embree() const {
+    return impl_->embree;
+}
+float RayScene::offsetFloor() const {
+    return kDiagonalShare * impl_->diagonal;
+}
+
 glm::vec3 RayScene::offset(const glm::vec3& position, const glm::vec3& geometricNormal) const {
     const glm::vec3 size = glm::abs(position);
-    const float scale = std::max({size.x, size.y, size.z, kDiagonalShare * impl_->diagonal});
+    const float scale = std::max({size.x, size.y, size.z, offsetFloor()});
     return position + geometricNormal * (kRelativeOffset * scale);
 }
 

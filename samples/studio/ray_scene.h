@@ -7,6 +7,8 @@
 
 #include "scene.h"
 
+struct RTCSceneTy;
+
 namespace studio {
 
 struct Hit {
@@ -37,8 +39,15 @@ public:
     // Nearest surface along a unit direction, from `from` (m) on; false when the ray leaves the scene.
     bool trace(const glm::vec3& origin, const glm::vec3& direction, float from, float to, Hit& hit) const;
     bool occluded(const glm::vec3& origin, const glm::vec3& direction, float from, float to) const;
+    // Embree's scene, for callers that trace packets; geometry i is Scene::meshes[i].
+    RTCSceneTy* embree() const;
     // Origin moved off a surface along its geometric normal, by a bias relative to its coordinates.
     glm::vec3 offset(const glm::vec3& position, const glm::vec3& geometricNormal) const;
+    // Shadow rays stop short of a punctual light by this share of their length.
+    static constexpr float kLightGap = 1e-5f;
+    // offset() moves by kRelativeOffset of the largest of the coordinates and offsetFloor().
+    static constexpr float kRelativeOffset = 1e-5f;
+    float offsetFloor() const;
 
     // The scene's punctual lights at this time.
     const std::vector<Light>& lights() const;

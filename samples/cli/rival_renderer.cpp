@@ -1,0 +1,97 @@
+#include "rival_renderer.h"
+
+#include <cstddef>
+
+#include "cli.h"
+#include "rival.h"
+
+namespace cli {
+namespace {
+
+using studio::RivalOptions;
+
+class RivalRenderer final : public IndirectRenderer {
+public:
+    RivalRenderer(const RivalOptions& options, const RenderInputs& inputs)
+        : rival_(options, inputs.gbuffer().width, inputs.gbuffer().height),
+          irradiance_(inputs.gbuffer().width, inputs.gbuffer().height, 3),
+          validity_(inputs.gbuffer().width, inputs.gbuffer().height, 1),
+          estimatedBytes_(rival_.bytes()) {}
+
+    FrameSample renderFrame(const RenderInputs& inputs, bool) override {
+        const studio::RivalTimes times =
+            rival_.render(inputs.scene(), inputs.gbuffer(), irradiance_, validity_);
+        FrameSample frame;
+        for (const auto& [name, milliseconds] : times.passes)
+            frame.passes.push_back({name, milliseconds, 1});
+        frame.totalMilliseconds = frame.wallMilliseconds = times.total;
+        frame.deviceBytes = rival_.bytes();
+        frame.counts = {{"rays", times.rays},
+                        {"shadow_rays", times.shadowRays},
+                        {"left_over_pixels", times.leftOver}};
+        return frame;
+    }
+    const studio::PlanarBuffer& irradiance() const override { return irradiance_; }
+    const studio::PlanarBuffer& validity() const override { return validity_; }
+    std::uint64_t estimatedBytes() const override { return estimatedBytes_; }
+    const LWDeviceInfo* device() const override { return nullptr; }
+    DebugPlanes readDebugView(const std::string& name) const override {
+        throw UsageError("unknown debug view '" + name + "'; technique rival has none");
+    }
+
+private:
+    studio::Rival rival_;
+    studio::PlanarBuffer irradiance_, validity_;
+    std::uint64_t estimatedBytes_;
+};
+
+const double kBounces[] = {1, 2}, kSamples[] = {1, 2, 4, 8, 16, 32, 64}, kPatterns[] = {0, 1, 2, 4, 8};
+const char* const kResolutions[] = {"full", "half", "quarter", nullptr};
+const char* const kRays[] = {"packets", "single", nullptr};
+const double kResolutionSweep[] = {0, 1, 2}, kSwitch[] = {0, 1};
+
+#define FIELD(name) std::uint32_t(offsetof(RivalOptions, name))
+const LWParameter kParameters[] = {
+    {"bounces", "1: one indirect bounce; 2: the first and the second", LW_PARAMETER_UINT, FIELD(bounces),
+     1, 2, 1, nullptr, kBounces, 2, kBounces, 2},
+    {"spp", "paths per traced pixel; time grows in proportion", LW_PARAMETER_UINT, FIELD(spp), 1, 1024,
+     1, nullptr, nullptr, 0, kSamples, 7},
+    {"resolution", "traced on every pixel, every second or every fourth, then up-sampled",
+     LW_PARAMETER_ENUM, FIELD(resolution), 0, 2, 0, kResolutions, nullptr, 0, kResolutionSweep, 3},
+    {"filter", "edge-aware filter; off: the traced image", LW_PARAMETER_BOOL, FIELD(filter), 0, 1, 1,
+     nullptr, nullptr, 0, kSwitch, 2},
+    {"levels", "of the filter, each doubles its reach", LW_PARAMETER_UINT, FIELD(levels), 0, 6, 3,
+     nullptr, nullptr, 0, nullptr, 0},
+    {"pattern", "pixels this many apart share sample points, so that rays are coherent; 0: none do",
+     LW_PARAMETER_UINT, FIELD(pattern), 0, 8, 4, nullptr, kPatterns, 5, nullptr, 0},
+    {"rays", "how rays go to Embree: 16 at a time or one by one", LW_PARAMETER_ENUM, FIELD(rays), 0, 1,
+     0, kRays, nullptr, 0, nullptr, 0},
+    {"seed", "of the sample points", LW_PARAMETER_UINT, FIELD(seed), 0, 4294967295.0, 0, nullptr,
+     nullptr, 0, nullptr, 0},
+};
+#undef FIELD
+
+void setDefaults(void* options) {
+    *static_cast<RivalOptions*>(options) = RivalOptions{};
+}
+
+}  // namespace
+
+const LWTechniqueInfo& rivalInfo() {
+    static const LWTechniqueInfo info = {
+        sizeof(LWTechniqueInfo),
+        sizeof(RivalOptions),
+        "rival",
+        "path tracing with Embree on the host's cores, not of the library: what to compare with",
+        kParameters,
+        std::uint32_t(std::size(kParameters)),
+        setDefaults};
+    return info;
+}
+
+std::unique_ptr<IndirectRenderer> makeRival(const Parameters& parameters, const RenderInputs& inputs) {
+    return std::make_unique<RivalRenderer>(*static_cast<const RivalOptions*>(parameters.descriptor()),
+                                           inputs);
+}
+
+}  // namespace cli
