@@ -63,7 +63,7 @@ const LWParameter kParameters[] = {
     {"levels", "of the filter, each doubles its reach", LW_PARAMETER_UINT, FIELD(levels), 0, 6, 3,
      nullptr, nullptr, 0, nullptr, 0},
     {"pattern", "pixels this many apart share sample points, so that rays are coherent; 0: none do",
-     LW_PARAMETER_UINT, FIELD(pattern), 0, 8, 4, nullptr, kPatterns, 5, nullptr, 0},
+     LW_PARAMETER_UINT, FIELD(pattern), 0, 8, 0, nullptr, kPatterns, 5, nullptr, 0},
     {"rays", "how rays go to Embree: 16 at a time or one by one", LW_PARAMETER_ENUM, FIELD(rays), 0, 1,
      0, kRays, nullptr, 0, nullptr, 0},
     {"seed", "of the sample points", LW_PARAMETER_UINT, FIELD(seed), 0, 4294967295.0, 0, nullptr,

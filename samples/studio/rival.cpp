@@ -5,10 +5,12 @@
 #include <chrono>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "rival_filter.h"
 #include "rival_paths.h"
 #include "rival_scene.h"
+#include "rival_tile.h"
 #include "sampler.h"
 
 namespace studio {
@@ -19,45 +21,9 @@ using Clock = std::chrono::steady_clock;
 // Pixels that no neighbour on their surface could light take this many times the paths: they are few,
 // and nothing smooths them.
 constexpr std::uint32_t kLeftOverPaths = 4;
-// A normal estimated from neighbouring positions is believed within this cosine of the shading normal.
-constexpr float kFaceCosine = 0.6f;
 
 double millisecondsSince(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
-
-// Bits of x and y in turn: neighbours in both directions stay neighbours.
-std::uint32_t morton(std::uint32_t x, std::uint32_t y) {
-    const auto spread = [](std::uint32_t v) {
-        v = (v | (v << 8)) & 0x00ff00ffu;
-        v = (v | (v << 4)) & 0x0f0f0f0fu;
-        v = (v | (v << 2)) & 0x33333333u;
-        return (v | (v << 1)) & 0x55555555u;
-    };
-    return spread(x) | (spread(y) << 1);
-}
-
-// The side of the surface that the G-buffer shows, from the positions beside the pixel; `position` and
-// `normal` are the pixel's. Its shading normal where the neighbours belong to something else.
-glm::vec3 faceAt(const GBuffer& g, int x, int y, const glm::vec3& position, const glm::vec3& normal) {
-    const auto step = [&](int dx, int dy) {
-        glm::vec3 best(0.0f);
-        float flattest = 0.7f;
-        for (const int sign : {1, -1}) {
-            const int nx = x + sign * dx, ny = y + sign * dy;
-            if (nx < 0 || ny < 0 || nx >= g.width || ny >= g.height) continue;
-            if (g.normal.rgb(nx, ny) == glm::vec3(0.0f)) continue;
-            const glm::vec3 way = float(sign) * (g.position.rgb(nx, ny) - position);
-            const float slope = std::abs(glm::dot(way, normal)) / (glm::length(way) + 1e-30f);
-            if (slope < flattest) flattest = slope, best = way;
-        }
-        return best;
-    };
-    const glm::vec3 face = glm::cross(step(1, 0), step(0, 1));
-    const float length = glm::length(face);
-    if (!(length > 0.0f)) return normal;
-    const float cosine = glm::dot(face, normal) / length;
-    return std::abs(cosine) > kFaceCosine ? face * ((cosine < 0.0f ? -1.0f : 1.0f) / length) : normal;
 }
 
 void require(bool isTrue, const char* name, const char* expectation, std::uint64_t came) {
@@ -70,164 +36,112 @@ void require(bool isTrue, const char* name, const char* expectation, std::uint64
 
 struct Rival::Impl {
     RivalOptions options;
-    int factor, width, height;  // of the traced image
+    TracedGrid grid;
     int tileSide;
     WorkerPool pool;
     std::unique_ptr<RivalScene> scene;
     std::vector<PixelPlace> order;  // of a tile's pixels
     struct Worker {
         std::unique_ptr<PathBatch> batch = std::make_unique<PathBatch>();
+        std::unique_ptr<TilePixels> pixels = std::make_unique<TilePixels>();
         RivalPaths paths;
         std::vector<float> sums[3];
         Worker(const RivalOptions& o) : paths(int(o.bounces), o.rays == RivalRays::Packets) {}
     };
     std::vector<Worker> workers;
-    PlanarBuffer position, normal;  // of traced pixels, when not every pixel is
-    PlanarBuffer images[2];
+    TracedSurfaces surfaces;
+    PaddedPlanes images[2];
 
     Impl(const RivalOptions& o, int fullWidth, int fullHeight);
-    PixelPlace sourceOf(const GBuffer& g, int x, int y) const;
-    bool place(const GBuffer& g, const PixelPlace& pixel, PathBatch& batch, std::uint32_t index,
-               int target);
-    void traceTile(const GBuffer& g, int tile, Worker& worker, PlanarBuffer& to);
+    void tracePixels(Worker& worker, std::uint32_t spp);  // sums of worker.pixels
+    void traceTile(const GBuffer& g, int tile, Worker& worker, PaddedPlanes& to);
+    void writeOutput(const GBuffer& g, const PaddedPlanes& from, PlanarBuffer& irradiance,
+                     PlanarBuffer& validity);
     void traceLeftOver(const GBuffer& g, const std::vector<PixelPlace>& pixels, PlanarBuffer& to);
 };
 
-Rival::Impl::Impl(const RivalOptions& o, int fullWidth, int fullHeight)
-    : options(o), factor(1 << int(o.resolution)) {
+Rival::Impl::Impl(const RivalOptions& o, int fullWidth, int fullHeight) : options(o) {
+    const int factor = 1 << int(o.resolution);
     require(o.bounces == 1 || o.bounces == 2, "bounces", "1 or 2", o.bounces);
     require(o.spp >= 1, "spp", "at least 1", o.spp);
     require(o.pattern <= 8 && (o.pattern & (o.pattern - 1)) == 0, "pattern", "0, 1, 2, 4 or 8",
             o.pattern);
-    width = (fullWidth + factor - 1) / factor;
-    height = (fullHeight + factor - 1) / factor;
+    grid = {factor, (fullWidth + factor - 1) / factor, (fullHeight + factor - 1) / factor};
     tileSide = o.pattern == 8 ? 32 : 16;
     for (int i = 0; i < pool.threads(); ++i) {
         workers.emplace_back(o);
         for (auto& plane : workers.back().sums) plane.resize(std::size_t(tileSide * tileSide));
     }
-    if (factor > 1) {
-        position = PlanarBuffer(width, height, 3);
-        normal = PlanarBuffer(width, height, 3);
-    }
-    for (PlanarBuffer& image : images) image = PlanarBuffer(width, height, 3);
+    surfaces = TracedSurfaces(grid.width, grid.height);
+    for (PaddedPlanes& image : images) image = PaddedPlanes(grid.width, grid.height, 3);
 
     for (int y = 0; y < tileSide; ++y)
         for (int x = 0; x < tileSide; ++x) order.push_back({x, y});
     // Rays with the same sample point side by side; without a pattern, pixels near each other.
     const int n = int(o.pattern);
     const auto key = [n](const PixelPlace& p) {
-        const std::uint32_t near = morton(std::uint32_t(p.x), std::uint32_t(p.y));
-        return n == 0 ? near : (std::uint32_t(p.y % n * n + p.x % n) << 16) + near;
+        const int within = p.y * 64 + p.x;
+        return n == 0 ? (p.y / 4 * 64 + p.x / 4) * 64 + p.y % 4 * 4 + p.x % 4
+                      : (p.y % n * n + p.x % n) * 4096 + within;
     };
     std::sort(order.begin(), order.end(),
               [&](const PixelPlace& a, const PixelPlace& b) { return key(a) < key(b); });
 }
 
-// The pixel that stands for its block: in the middle, or the first with a surface.
-PixelPlace Rival::Impl::sourceOf(const GBuffer& g, int x, int y) const {
-    const auto isSurface = [&](int px, int py) {
-        return px < g.width && py < g.height && g.normal.rgb(px, py) != glm::vec3(0.0f);
-    };
-    const PixelPlace middle{x * factor + factor / 2, y * factor + factor / 2};
-    if (isSurface(middle.x, middle.y)) return middle;
-    for (int j = 0; j < factor; ++j)
-        for (int i = 0; i < factor; ++i)
-            if (isSurface(x * factor + i, y * factor + j)) return {x * factor + i, y * factor + j};
-    return {-1, -1};
-}
-
-bool Rival::Impl::place(const GBuffer& g, const PixelPlace& pixel, PathBatch& batch, std::uint32_t index,
-                        int target) {
-    const glm::vec3 at = g.position.rgb(pixel.x, pixel.y), n = g.normal.rgb(pixel.x, pixel.y);
-    const glm::vec3 face = faceAt(g, pixel.x, pixel.y, at, n);
-    const glm::vec3 origin = scene->rays().offset(at, face);
-    const int i = batch.count++;
-    for (int c = 0; c < 3; ++c) {
-        batch.position[c][i] = origin[c];
-        batch.face[c][i] = face[c];
-        batch.normal[c][i] = n[c];
-        batch.throughput[c][i] = 1.0f;
-    }
-    batch.index[i] = index;
-    batch.target[i] = target;
-    return true;
-}
-
-void Rival::Impl::traceTile(const GBuffer& g, int tile, Worker& worker, PlanarBuffer& to) {
-    const int across = (width + tileSide - 1) / tileSide;
-    const int left = tile % across * tileSide, top = tile / across * tileSide;
+void Rival::Impl::tracePixels(Worker& worker, std::uint32_t spp) {
     PathBatch& batch = *worker.batch;
-    float* const sums[3] = {worker.sums[0].data(), worker.sums[1].data(), worker.sums[2].data()};
+    const TilePixels& pixels = *worker.pixels;
     for (auto& plane : worker.sums) std::fill(plane.begin(), plane.end(), 0.0f);
-    const std::uint64_t seed = mixBits(options.seed);
-    const int n = int(options.pattern);
+    if (pixels.count == 0) return;
+    float* const sums[3] = {worker.sums[0].data(), worker.sums[1].data(), worker.sums[2].data()};
+    for (std::uint32_t sample = 0; sample < spp;) {
+        for (batch.count = 0; sample < spp && batch.count + pixels.count <= PathBatch::kSize; ++sample)
+            pixels.addTo(batch, spp, sample);
+        worker.paths.trace(*scene, mixBits(options.seed), batch, sums);
+    }
+}
 
-    struct Traced {
-        PixelPlace pixel;
-        int target;
-        std::uint32_t index;
-    };
-    std::vector<Traced> traced;
-    for (const PixelPlace& inTile : order) {
-        const int x = left + inTile.x, y = top + inTile.y;
-        if (x >= width || y >= height) continue;
-        const PixelPlace source = sourceOf(g, x, y);
-        const bool isSurface = source.x >= 0;
-        if (factor > 1) {
-            position.setRgb(x, y, isSurface ? g.position.rgb(source.x, source.y) : glm::vec3(0.0f));
-            normal.setRgb(x, y, isSurface ? g.normal.rgb(source.x, source.y) : glm::vec3(0.0f));
-        }
-        if (!isSurface) continue;
-        const std::uint32_t index = n == 0 ? morton(std::uint32_t(x), std::uint32_t(y))
-                                           : morton(std::uint32_t(x % n), std::uint32_t(y % n));
-        traced.push_back({source, inTile.y * tileSide + inTile.x, index});
-    }
-    // As many samples at a time as the batch holds; the surface is looked up once for each.
-    const auto fits =
-        std::max<std::size_t>(1, PathBatch::kSize / std::max<std::size_t>(1, traced.size()));
-    for (std::uint32_t s = 0; s < options.spp;) {
-        batch.count = 0;
-        for (std::size_t j = 0; j < fits && s < options.spp; ++j, ++s)
-            for (const Traced& each : traced)
-                place(g, each.pixel, batch, each.index * options.spp + s, each.target);
-        worker.paths.trace(*scene, seed, batch, sums);
-    }
+void Rival::Impl::traceTile(const GBuffer& g, int tile, Worker& worker, PaddedPlanes& to) {
+    const int across = (grid.width + tileSide - 1) / tileSide;
+    const int left = tile % across * tileSide, top = tile / across * tileSide;
+    worker.pixels->take(scene->rays(), g, grid, left, top, tileSide, int(options.pattern), order,
+                        surfaces);
+    tracePixels(worker, options.spp);
     const float perSample = 1.0f / float(options.spp);
-    for (int y = 0; y < tileSide && top + y < height; ++y)
-        for (int x = 0; x < tileSide && left + x < width; ++x) {
-            const std::size_t at = std::size_t(y * tileSide + x);
-            to.setRgb(left + x, top + y,
-                      glm::vec3(worker.sums[0][at], worker.sums[1][at], worker.sums[2][at]) * perSample);
+    for (int c = 0; c < 3; ++c)
+        for (int y = 0; y < tileSide && top + y < grid.height; ++y) {
+            const float* from = worker.sums[c].data() + y * tileSide;
+            float* row = to.row(c, top + y) + left;
+            for (int x = 0; x < tileSide && left + x < grid.width; ++x) row[x] = from[x] * perSample;
         }
 }
 
 void Rival::Impl::traceLeftOver(const GBuffer& g, const std::vector<PixelPlace>& pixels,
                                 PlanarBuffer& to) {
     const std::uint32_t spp = options.spp * kLeftOverPaths;
-    const std::size_t perJob = 16;
-    pool.run((pixels.size() + perJob - 1) / perJob, [&](std::size_t job, int thread) {
+    constexpr std::size_t kPerJob = 64;
+    pool.run((pixels.size() + kPerJob - 1) / kPerJob, [&](std::size_t job, int thread) {
         Worker& worker = workers[std::size_t(thread)];
-        PathBatch& batch = *worker.batch;
-        float* const sums[3] = {worker.sums[0].data(), worker.sums[1].data(), worker.sums[2].data()};
-        for (auto& plane : worker.sums) std::fill(plane.begin(), plane.end(), 0.0f);
-        const std::size_t first = job * perJob, last = std::min(first + perJob, pixels.size());
-        for (std::uint32_t s = 0; s < spp;) {
-            batch.count = 0;
-            for (; s < spp && batch.count + int(perJob) <= PathBatch::kSize; ++s)
-                for (std::size_t i = first; i < last; ++i) {
-                    const PixelPlace& p = pixels[i];
-                    const std::uint32_t index = morton(std::uint32_t(p.x), std::uint32_t(p.y));
-                    place(g, p, batch, index * spp + s, int(i - first));
-                }
-            worker.paths.trace(*scene, mixBits(options.seed), batch, sums);
-        }
-        for (std::size_t i = first; i < last; ++i) {
-            const std::size_t at = i - first;
-            to.setRgb(
-                pixels[i].x, pixels[i].y,
-                glm::vec3(worker.sums[0][at], worker.sums[1][at], worker.sums[2][at]) / float(spp));
-        }
+        const std::size_t first = job * kPerJob, count = std::min(kPerJob, pixels.size() - first);
+        worker.pixels->take(scene->rays(), g, &pixels[first], int(count));
+        tracePixels(worker, spp);
+        for (std::size_t i = 0; i < count; ++i)
+            for (int c = 0; c < 3; ++c)
+                to.row(c, pixels[first + i].y)[pixels[first + i].x] = worker.sums[c][i] / float(spp);
+    });
+}
+
+// Validity, and the irradiance of full resolution, which no up-sampling has written.
+void Rival::Impl::writeOutput(const GBuffer& g, const PaddedPlanes& from, PlanarBuffer& irradiance,
+                              PlanarBuffer& validity) {
+    pool.run(std::size_t(g.height), [&](std::size_t row, int) {
+        const int y = int(row);
+        const float *nx = g.normal.row(0, y), *ny = g.normal.row(1, y), *nz = g.normal.row(2, y);
+        float* valid = validity.row(0, y);
+        for (int x = 0; x < g.width; ++x)
+            valid[x] = nx[x] != 0.0f || ny[x] != 0.0f || nz[x] != 0.0f ? 1.0f : 0.0f;
+        for (int c = 0; c < 3 && grid.factor == 1; ++c)
+            std::copy_n(from.row(c, y), g.width, irradiance.row(c, y));
     });
 }
 
@@ -255,41 +169,29 @@ RivalTimes Rival::render(const RayScene& rayScene, const GBuffer& g, PlanarBuffe
         for (std::uint32_t level = 0; level < s.options.levels; ++level)
             windows.push_back(splineWindow(1 << level));
     }
-    const bool isFull = s.factor == 1;
-    PlanarBuffer* from = isFull && windows.empty() ? &irradiance : &s.images[0];
-    const int across = (s.width + s.tileSide - 1) / s.tileSide;
-    const int down = (s.height + s.tileSide - 1) / s.tileSide;
+    const int across = (s.grid.width + s.tileSide - 1) / s.tileSide;
+    const int down = (s.grid.height + s.tileSide - 1) / s.tileSide;
     s.pool.run(std::size_t(across * down), [&](std::size_t tile, int thread) {
-        s.traceTile(g, int(tile), s.workers[std::size_t(thread)], *from);
+        s.traceTile(g, int(tile), s.workers[std::size_t(thread)], s.images[0]);
     });
     finishPass("rival.trace");
 
-    const SurfacePlanes full{&g.position, &g.normal};
-    const SurfacePlanes traced = isFull ? full : SurfacePlanes{&s.position, &s.normal};
-    for (std::size_t i = 0; i < windows.size(); ++i) {
-        PlanarBuffer* to = isFull && i + 1 == windows.size() ? &irradiance
-                           : from == &s.images[0]            ? &s.images[1]
-                                                             : &s.images[0];
-        filterImage(s.pool, traced, windows[i], *from, *to);
-        from = to;
+    PaddedPlanes *from = &s.images[0], *to = &s.images[1];
+    for (const std::vector<Tap>& window : windows) {
+        filterImage(s.pool, s.surfaces, window, *from, *to);
+        std::swap(from, to);
     }
     if (!windows.empty()) finishPass("rival.filter");
-    if (!isFull) {
+    if (s.grid.factor > 1) {
         const std::vector<PixelPlace> leftOver =
-            upsampleImage(s.pool, s.factor, traced, *from, full, irradiance);
+            upsampleImage(s.pool, s.grid.factor, s.surfaces, *from, g, irradiance);
         finishPass("rival.upsample");
         s.traceLeftOver(g, leftOver, irradiance);
         finishPass("rival.left_over");
         times.leftOver = leftOver.size();
     }
-    s.pool.run(std::size_t(g.height), [&](std::size_t y, int) {
-        float* to = validity.row(0, int(y));
-        const float *nx = g.normal.row(0, int(y)), *ny = g.normal.row(1, int(y)),
-                    *nz = g.normal.row(2, int(y));
-        for (int x = 0; x < g.width; ++x)
-            to[x] = nx[x] != 0.0f || ny[x] != 0.0f || nz[x] != 0.0f ? 1.0f : 0.0f;
-    });
-    finishPass("rival.validity");
+    s.writeOutput(g, *from, irradiance, validity);
+    finishPass("rival.output");
     times.total = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
     for (const Impl::Worker& worker : s.workers) {
         times.rays += worker.paths.rays;
@@ -300,9 +202,8 @@ RivalTimes Rival::render(const RayScene& rayScene, const GBuffer& g, PlanarBuffe
 
 std::uint64_t Rival::bytes() const {
     std::uint64_t sum = impl_->scene == nullptr ? 0 : impl_->scene->bytes();
-    for (const PlanarBuffer* buffer :
-         {&impl_->position, &impl_->normal, &impl_->images[0], &impl_->images[1]})
-        sum += buffer->planeFloats() * std::size_t(buffer->planes()) * sizeof(float);
+    sum += impl_->surfaces.position.bytes() + impl_->surfaces.normal.bytes();
+    for (const PaddedPlanes& image : impl_->images) sum += image.bytes();
     return sum;
 }
 

@@ -24,7 +24,7 @@ struct RivalOptions {
     RivalResolution resolution = RivalResolution::Full;
     std::uint32_t filter = 1;   // 1: edge-aware filter; 0: the traced image
     std::uint32_t levels = 3;   // of the filter: each doubles its reach
-    std::uint32_t pattern = 4;  // n: pixels n apart share sample points; 0: no two pixels do
+    std::uint32_t pattern = 0;  // n: pixels n apart share sample points; 0: no two pixels do
     RivalRays rays = RivalRays::Packets;
     std::uint32_t seed = 0;
 };

@@ -28,17 +28,68 @@ struct Row {
     const float* colour[3];
 };
 
-Row rowOf(const SurfacePlanes& surface, const PlanarBuffer* colour, int y) {
+template <class Surfaces>
+Row rowOf(const Surfaces& surface, int y) {
     Row row{};
     for (int c = 0; c < 3; ++c) {
-        row.position[c] = surface.position->row(c, y);
-        row.normal[c] = surface.normal->row(c, y);
-        if (colour != nullptr) row.colour[c] = colour->row(c, y);
+        row.position[c] = surface.position.row(c, y);
+        row.normal[c] = surface.normal.row(c, y);
     }
     return row;
 }
+Row rowOf(const TracedSurfaces& surface, const PaddedPlanes& colour, int y) {
+    Row row = rowOf(surface, y);
+    for (int c = 0; c < 3; ++c) row.colour[c] = colour.row(c, y);
+    return row;
+}
 
-// sums[3] holds the weights' sum. `q` is read at x + dx; weights[x] counts besides `weight` when given.
+// Taps of one row of the window, added in one sweep so that the pixel's own values and the sums are
+// loaded once for all of them. Windows with fewer get taps of weight 0.
+constexpr int kTogether = 5;
+struct RowTaps {
+    int dx[kTogether] = {};
+    float weight[kTogether] = {};
+};
+
+// sums[3] holds the weights' sum.
+STUDIO_SIMD void addTaps(const Row& p, const Row& q, const RowTaps& taps, int width,
+                         float* const* sums) {
+    const float *px = p.position[0], *py = p.position[1], *pz = p.position[2];
+    const float *nx = p.normal[0], *ny = p.normal[1], *nz = p.normal[2];
+    const float *qx = q.position[0], *qy = q.position[1], *qz = q.position[2];
+    const float *mx = q.normal[0], *my = q.normal[1], *mz = q.normal[2];
+    const float *red = q.colour[0], *green = q.colour[1], *blue = q.colour[2];
+    float* __restrict sr = sums[0], * __restrict sg = sums[1], * __restrict sb = sums[2], * __restrict sw = sums[3];
+    const int d0 = taps.dx[0], d1 = taps.dx[1], d2 = taps.dx[2], d3 = taps.dx[3], d4 = taps.dx[4];
+    constexpr float kSteep = 1.0f / (1.0f - kNormalCosine);
+    const float w0 = taps.weight[0] * kSteep, w1 = taps.weight[1] * kSteep, w2 = taps.weight[2] * kSteep,
+                w3 = taps.weight[3] * kSteep, w4 = taps.weight[4] * kSteep;
+#pragma GCC ivdep
+    for (int x = 0; x < width; ++x) {
+        float r = sr[x], g = sg[x], b = sb[x], sum = sw[x];
+        const float ax = px[x], ay = py[x], az = pz[x], bx = nx[x], by = ny[x], bz = nz[x];
+        const auto add = [&](int at, float weight) {
+            const float ox = qx[at] - ax, oy = qy[at] - ay, oz = qz[at] - az;
+            const float squared = ox * ox + oy * oy + oz * oz;
+            const float off = ox * bx + oy * by + oz * bz;
+            const float agreement = mx[at] * bx + my[at] * by + mz[at] * bz;
+            float w = agreement - kNormalCosine;
+            w = w > 0.0f ? w * weight : 0.0f;
+            w = off * off <= kSlope * kSlope * squared ? w : 0.0f;
+            r += w * red[at];
+            g += w * green[at];
+            b += w * blue[at];
+            sum += w;
+        };
+        add(x + d0, w0);
+        add(x + d1, w1);
+        add(x + d2, w2);
+        add(x + d3, w3);
+        add(x + d4, w4);
+        sr[x] = r, sg[x] = g, sb[x] = b, sw[x] = sum;
+    }
+}
+// sums[3] holds the weights' sum. `q` is read at x + dx; weights[x] counts besides `weight`.
 STUDIO_SIMD void addTap(const Row& p, const Row& q, int dx, int begin, int end, float weight,
                         const float* weights, float* const* sums) {
     const float *px = p.position[0], *py = p.position[1], *pz = p.position[2];
@@ -56,7 +107,7 @@ STUDIO_SIMD void addTap(const Row& p, const Row& q, int dx, int begin, int end, 
         float w = (agreement - kNormalCosine) * (1.0f / (1.0f - kNormalCosine));
         w = w > 0.0f ? w : 0.0f;
         w = off * off <= kSlope * kSlope * squared ? w * weight : 0.0f;
-        w = weights != nullptr ? w * weights[x] : w;
+        w *= weights[x];
         sr[x] += w * r[x];
         sg[x] += w * g[x];
         sb[x] += w * b[x];
@@ -64,7 +115,8 @@ STUDIO_SIMD void addTap(const Row& p, const Row& q, int dx, int begin, int end, 
     }
 }
 
-STUDIO_SIMD void divideRow(float* const* sums, int width, float* r, float* g, float* b) {
+STUDIO_SIMD void divideRow(float* const* sums, int width, float* __restrict r, float* __restrict g,
+                           float* __restrict b) {
     for (int x = 0; x < width; ++x) {
         const float scale = sums[3][x] > 0.0f ? 1.0f / sums[3][x] : 0.0f;
         r[x] = sums[0][x] * scale;
@@ -90,13 +142,13 @@ struct StretchedRow {
     Row row{};
     int y = -1;
 
-    void stretch(const SurfacePlanes& coarse, const PlanarBuffer& colour, int coarseY,
+    void stretch(const TracedSurfaces& coarse, const PaddedPlanes& colour, int coarseY,
                  const std::vector<int>& from) {
         if (y == coarseY) return;
         y = coarseY;
         const std::size_t length = from.size();
         values.resize(9 * length);
-        const Row source = rowOf(coarse, &colour, y);
+        const Row source = rowOf(coarse, colour, y);
         const float* planes[9];
         const float** targets[9];
         for (int c = 0; c < 3; ++c) {
@@ -135,28 +187,31 @@ std::vector<Tap> splineWindow(int step) {
     return taps;
 }
 
-void filterImage(WorkerPool& pool, const SurfacePlanes& surface, const std::vector<Tap>& taps,
-                 const PlanarBuffer& from, PlanarBuffer& to) {
+void filterImage(WorkerPool& pool, const TracedSurfaces& surface, const std::vector<Tap>& taps,
+                 const PaddedPlanes& from, PaddedPlanes& to) {
     const int width = from.width(), height = from.height();
     pool.run(std::size_t((height + kBandRows - 1) / kBandRows), [&](std::size_t band, int) {
         Sums sums(width);
         const int first = int(band) * kBandRows;
         for (int y = first; y < std::min(first + kBandRows, height); ++y) {
             sums.clear();
-            const Row pixel = rowOf(surface, nullptr, y);
-            for (const Tap& tap : taps) {
-                if (y + tap.dy < 0 || y + tap.dy >= height) continue;
-                addTap(pixel, rowOf(surface, &from, y + tap.dy), tap.dx, std::max(0, -tap.dx),
-                       std::min(width, width - tap.dx), tap.weight, nullptr, sums.rows);
+            for (std::size_t t = 0; t < taps.size();) {
+                const int dy = taps[t].dy;
+                RowTaps together;
+                for (int i = 0; i < kTogether && t < taps.size() && taps[t].dy == dy; ++i, ++t) {
+                    together.dx[i] = taps[t].dx;
+                    together.weight[i] = taps[t].weight;
+                }
+                if (y + dy >= 0 && y + dy < height)
+                    addTaps(rowOf(surface, y), rowOf(surface, from, y + dy), together, width, sums.rows);
             }
             divideRow(sums.rows, width, to.row(0, y), to.row(1, y), to.row(2, y));
         }
     });
 }
 
-std::vector<PixelPlace> upsampleImage(WorkerPool& pool, int factor, const SurfacePlanes& coarse,
-                                      const PlanarBuffer& from, const SurfacePlanes& fine,
-                                      PlanarBuffer& to) {
+std::vector<PixelPlace> upsampleImage(WorkerPool& pool, int factor, const TracedSurfaces& coarse,
+                                      const PaddedPlanes& from, const GBuffer& fine, PlanarBuffer& to) {
     const int width = to.width(), height = to.height();
     const int shift = factor / 2;  // of a coarse pixel in its block
     const auto left = [&](int at) { return at < shift ? -1 : (at - shift) / factor; };
@@ -177,7 +232,7 @@ std::vector<PixelPlace> upsampleImage(WorkerPool& pool, int factor, const Surfac
         const int first = int(band) * kBandRows;
         for (int y = first; y < std::min(first + kBandRows, height); ++y) {
             sums.clear();
-            const Row pixel = rowOf(fine, nullptr, y);
+            const Row pixel = rowOf(fine, y);
             const int above = left(y);
             const float lower = nearRight[std::size_t(y % factor)];
             for (int j = 0; j < 2; ++j) {

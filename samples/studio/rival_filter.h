@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "gbuffer.h"
+#include "rival_planes.h"
 #include "worker_pool.h"
 
 namespace studio {
@@ -18,23 +19,17 @@ std::vector<Tap> patternWindow(int n);
 // The 5 x 5 B3 spline with `step` pixels between taps (Dammertz et al. 2010).
 std::vector<Tap> splineWindow(int step);
 
-// Planes of surfaces that an image of irradiance belongs to; the normal of none is zero.
-struct SurfacePlanes {
-    const PlanarBuffer* position = nullptr;
-    const PlanarBuffer* normal = nullptr;
-};
-
-// Weighted mean of `from` over the taps that lie on the pixel's own surface.
-void filterImage(WorkerPool& pool, const SurfacePlanes& surface, const std::vector<Tap>& taps,
-                 const PlanarBuffer& from, PlanarBuffer& to);
+// Weighted mean of `from` over the taps that lie on the pixel's own surface; no tap reaches farther than
+// PaddedPlanes::kPad sideways.
+void filterImage(WorkerPool& pool, const TracedSurfaces& surface, const std::vector<Tap>& taps,
+                 const PaddedPlanes& from, PaddedPlanes& to);
 
 struct PixelPlace {
     int x = 0, y = 0;
 };
 // `from` has one pixel for each block of factor x factor pixels (2, 4). Bilinear over those on the
 // pixel's own surface; pixels without any are left black and listed, top row first.
-std::vector<PixelPlace> upsampleImage(WorkerPool& pool, int factor, const SurfacePlanes& coarse,
-                                      const PlanarBuffer& from, const SurfacePlanes& fine,
-                                      PlanarBuffer& to);
+std::vector<PixelPlace> upsampleImage(WorkerPool& pool, int factor, const TracedSurfaces& coarse,
+                                      const PaddedPlanes& from, const GBuffer& fine, PlanarBuffer& to);
 
 }  // namespace studio
