@@ -6,6 +6,7 @@
 #include "ray_scene.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -93,6 +94,7 @@ float diagonalOf(RTCScene scene, const std::string& name) {
 struct RayScene::Impl {
     std::shared_ptr<const Scene> scene;
     float time = 0.0f, diagonal = 0.0f;
+    std::uint64_t number = 0;
     std::vector<WorldMesh> meshes;
     std::vector<Light> lights;
     RTCDevice device = nullptr;
@@ -131,7 +133,9 @@ void RayScene::Impl::addMesh(unsigned id) {
 }
 
 RayScene::RayScene(std::shared_ptr<const Scene> scene, float time) : impl_(std::make_unique<Impl>()) {
+    static std::atomic<std::uint64_t> made{0};
     Impl& s = *impl_;
+    s.number = ++made;
     s.scene = std::move(scene);
     s.time = time;
     s.device = rtcNewDevice(nullptr);
@@ -169,6 +173,9 @@ const Scene& RayScene::scene() const {
 }
 float RayScene::time() const {
     return impl_->time;
+}
+std::uint64_t RayScene::id() const {
+    return impl_->number;
 }
 float RayScene::diagonal() const {
     return impl_->diagonal;

@@ -32,6 +32,8 @@ public:
 
     const Scene& scene() const;
     float time() const;
+    // Differs from every other RayScene's of this process, gone or not: for tables made of one.
+    std::uint64_t id() const;
     float diagonal() const;  // of the bounding box
     // Bounds of all triangles at this time in the coordinates `axes * position`.
     void boundsAlong(const glm::mat3& axes, glm::vec3& lower, glm::vec3& upper) const;

@@ -40,6 +40,7 @@ struct Rival::Impl {
     int tileSide;
     WorkerPool pool;
     std::unique_ptr<RivalScene> scene;
+    std::uint64_t sceneId = 0;  // of the RayScene that `scene` was made of
     std::vector<PixelPlace> order;  // of a tile's pixels
     struct Worker {
         std::unique_ptr<PathBatch> batch = std::make_unique<PathBatch>();
@@ -152,8 +153,10 @@ Rival::~Rival() = default;
 RivalTimes Rival::render(const RayScene& rayScene, const GBuffer& g, PlanarBuffer& irradiance,
                          PlanarBuffer& validity) {
     Impl& s = *impl_;
-    if (s.scene == nullptr || &s.scene->rays() != &rayScene)
+    if (s.scene == nullptr || s.sceneId != rayScene.id()) {
         s.scene = std::make_unique<RivalScene>(rayScene);
+        s.sceneId = rayScene.id();
+    }
     RivalTimes times;
     Clock::time_point start = Clock::now();
     const Clock::time_point begin = start;
