@@ -371,10 +371,9 @@ class Reference(CommandLine):
         damaged = self.path("damaged.part")
         with open(picture + ".part", "rb") as file:
             beginning = file.read(3000)
-        for content in (b"hello", beginning):
-            with open(damaged, "wb") as file:
-                file.write(content)
-            self.refused([*arguments, "--spp", "2", "--checkpoint", damaged], damaged, "delete it")
+        with open(damaged, "wb") as file:
+            file.write(beginning)
+        self.refused([*arguments, "--spp", "2", "--checkpoint", damaged], damaged, "cut short")
         self.done(*arguments, "--spp", "2")  # what was traced before counts
         self.assertGreater(int(exr.read(picture)[3]["spp"]), 2)
         self.assertFalse(os.path.exists(picture + ".part"))
@@ -383,11 +382,8 @@ class Reference(CommandLine):
         checkpoint = self.path("checkpoint")
         with open(checkpoint, "wb") as file:
             file.write(b"something else")
-        result = run("reference", "cornell", "--bounces", "1", *SIZE, "--spp", "2", "--checkpoint", checkpoint,
-                     "--out", self.path("never.exr"))
-        self.assertEqual(result.returncode, 1)
-        self.assertIn(checkpoint, result.stderr)
-        self.assertEqual(result.stderr.count("\n"), 1)
+        self.refused(["reference", "cornell", "--bounces", "1", *SIZE, "--spp", "2", "--checkpoint", checkpoint,
+                      "--out", self.path("never.exr")], checkpoint, "another kind of file")
 
 
 class Compare(CommandLine):
