@@ -54,12 +54,27 @@ AreaLights::AreaLights(const RayScene& rayScene) {
     if (power > 0.0) perRadiance_ = float(1.0 / power);
 }
 
+float AreaLights::areaDensity(const glm::vec3& emission) const {
+    return meanOf(emission) * perRadiance_;
+}
+
+AreaLights::Point AreaLights::pick(const glm::dvec2& fine) const {
+    // One pair chooses the triangle and, with what is left of it, the point: it stays stratified.
+    const auto chosen = std::upper_bound(triangles_.begin(), triangles_.end() - 1, fine.x,
+                                         [](double x, const Triangle& t) { return x < t.upTo; });
+    const double before = chosen == triangles_.begin() ? 0.0 : (chosen - 1)->upTo;
+    const glm::vec2 weights =
+        onTriangle(glm::vec2(glm::dvec2((fine.x - before) / (chosen->upTo - before), fine.y)));
+    return {chosen->mesh, chosen->triangle, weights,
+            chosen->corner + weights.x * chosen->edge1 + weights.y * chosen->edge2,
+            glm::normalize(glm::cross(chosen->edge1, chosen->edge2))};
+}
+
 glm::vec3 AreaLights::weighted(const Surface& at, const glm::vec3& direction, const Hit& hit) const {
     const float cosine = glm::dot(at.normal, direction);
     const float emitterCosine = -glm::dot(hit.geometricNormal, direction);
     if (cosine <= 0.0f || emitterCosine <= 0.0f) return glm::vec3(0.0f);
-    const float lightDensity =
-        meanOf(hit.emission) * perRadiance_ * hit.distance * hit.distance / emitterCosine;
+    const float lightDensity = areaDensity(hit.emission) * hit.distance * hit.distance / emitterCosine;
     return hit.emission * (cosine / (lightDensity + cosine / kPi));
 }
 
@@ -71,17 +86,9 @@ glm::vec3 AreaLights::emissionOfRay(const Surface& at, const glm::vec3& directio
 glm::vec3 AreaLights::sampleIrradiance(const RayScene& scene, const Surface& at,
                                        Sampler& sampler) const {
     if (triangles_.empty()) return glm::vec3(0.0f);
-    // One pair chooses the triangle and, with what is left of it, the point: it stays stratified.
-    const glm::dvec2 fine = sampler.nextFine();
-    const auto chosen = std::upper_bound(triangles_.begin(), triangles_.end() - 1, fine.x,
-                                         [](double x, const Triangle& t) { return x < t.upTo; });
-    const double before = chosen == triangles_.begin() ? 0.0 : (chosen - 1)->upTo;
-    const glm::vec2 point =
-        onTriangle(glm::vec2(glm::dvec2((fine.x - before) / (chosen->upTo - before), fine.y)));
-
-    const glm::vec3 target = chosen->corner + point.x * chosen->edge1 + point.y * chosen->edge2;
+    const Point chosen = pick(sampler.nextFine());
     const glm::vec3 origin = scene.offset(at.position, at.geometricNormal);
-    const glm::vec3 towards = target - origin;
+    const glm::vec3 towards = chosen.position - origin;
     const float distance = glm::length(towards);
     if (!(distance > 0.0f)) return glm::vec3(0.0f);
     const glm::vec3 direction = towards / distance;
@@ -92,7 +99,7 @@ glm::vec3 AreaLights::sampleIrradiance(const RayScene& scene, const Surface& at,
     // an alpha mask's holes are holes.
     Hit hit;
     if (!scene.trace(origin, direction, 0.0f, kFar, hit)) return glm::vec3(0.0f);
-    if (hit.mesh != chosen->mesh || hit.triangle != chosen->triangle) return glm::vec3(0.0f);
+    if (hit.mesh != chosen.mesh || hit.triangle != chosen.triangle) return glm::vec3(0.0f);
     return weighted(at, direction, hit);
 }
 

@@ -18,6 +18,17 @@ public:
     explicit AreaLights(const RayScene& scene);
     bool empty() const { return triangles_.empty(); }
 
+    struct Point {
+        int mesh = -1, triangle = -1;
+        glm::vec2 weights{0.0f};  // barycentric, of the second and third vertex
+        glm::vec3 position{0.0f};
+        glm::vec3 normal{0.0f};  // of the triangle, unit, on either side
+    };
+    // A point on the emitters, area times mean radiance deciding how often; not for empty().
+    Point pick(const glm::dvec2& fine) const;
+    // Density per area with which pick() finds a point of this radiance, 1/m^2.
+    float areaDensity(const glm::vec3& emission) const;
+
     // Estimate of the irradiance at `at` from all emissive triangles, less the share that
     // cosine-sampled rays bring (balance heuristic): add emissionOfRay for such a ray.
     glm::vec3 sampleIrradiance(const RayScene& scene, const Surface& at, Sampler& sampler) const;

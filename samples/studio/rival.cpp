@@ -40,7 +40,7 @@ struct Rival::Impl {
     int tileSide;
     WorkerPool pool;
     std::unique_ptr<RivalScene> scene;
-    std::uint64_t sceneId = 0;  // of the RayScene that `scene` was made of
+    std::uint64_t sceneId = 0;      // of the RayScene that `scene` was made of
     std::vector<PixelPlace> order;  // of a tile's pixels
     struct Worker {
         std::unique_ptr<PathBatch> batch = std::make_unique<PathBatch>();

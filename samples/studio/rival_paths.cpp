@@ -298,7 +298,7 @@ void RivalPaths::intersect() {
 void RivalPaths::shade(int bounce, float* const sums[3]) {
     PathBatch& b = *batch_;
     const glm::vec3 sky = scene_->rays().scene().sky;
-    const EmitterSet& emitters = scene_->emitters();
+    const AreaLights& emitters = scene_->emitters();
     const float floor = scene_->rays().offsetFloor();
     int kept = 0;
     for (int i = 0; i < b.count; ++i) {
@@ -379,7 +379,7 @@ void RivalPaths::emitters(float* const sums[3]) {
     const PathBatch& b = *batch_;
     shadow_.count = 0;
     for (int i = 0; i < b.count; ++i) {
-        const EmitterSet::Sample lamp = scene_->emitters().sample({b.point[0][i], b.point[1][i]});
+        const AreaLights::Point lamp = scene_->emitters().pick({b.point[0][i], b.point[1][i]});
         const glm::vec3 origin = at(b.position, i), way = lamp.position - origin;
         const float squared = glm::dot(way, way);
         if (squared <= 0.0f) continue;
@@ -387,16 +387,19 @@ void RivalPaths::emitters(float* const sums[3]) {
         const float cosine = glm::dot(at(b.normal, i), direction);
         const float side = glm::dot(lamp.normal, direction);
         if (cosine <= 0.0f || side == 0.0f || glm::dot(at(b.face, i), direction) <= 0.0f) continue;
+        if (scene_->isHole(lamp.mesh, lamp.triangle, lamp.weights)) continue;
+        const glm::vec3& emission =
+            scene_->emission(scene_->triangle(unsigned(lamp.mesh), unsigned(lamp.triangle)));
         const glm::vec3 end =
             scene_->rays().offset(lamp.position, side > 0.0f ? -lamp.normal : lamp.normal);
         const float reach = glm::length(end - origin);
         if (reach <= 0.0f) continue;
-        const float byRay = cosine * std::abs(side) * kInversePi, byLamp = lamp.areaDensity * squared;
+        const float byRay = cosine * std::abs(side) * kInversePi,
+                    byLamp = scene_->emitters().areaDensity(emission) * squared;
         const int to = shadow_.count++;
         put(shadow_.origin, to, origin);
         put(shadow_.direction, to, (end - origin) / reach);
-        put(shadow_.irradiance, to,
-            at(b.throughput, i) * lamp.emission * (kPi * byRay / (byRay + byLamp)));
+        put(shadow_.irradiance, to, at(b.throughput, i) * emission * (kPi * byRay / (byRay + byLamp)));
         shadow_.reach[to] = reach;
         shadow_.target[to] = b.target[i];
     }
@@ -407,8 +410,8 @@ void RivalPaths::trace(const RivalScene& scene, std::uint64_t seed, PathBatch& b
                        float* const sums[3]) {
     scene_ = &scene;
     batch_ = &batch;
-    const bool hasEmitters = scene.emitters().weight() > 0.0;
-    const int segments = bounces_ + (scene.emitters().empty() ? 0 : 1);
+    const bool hasEmitters = !scene.emitters().empty();
+    const int segments = bounces_ + (hasEmitters || scene.hasSky() ? 1 : 0);
     for (int segment = 0; segment < segments && batch.count > 0; ++segment) {
         draw(seed, 2 * segment);
         chooseDirections(batch);

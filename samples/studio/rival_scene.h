@@ -8,7 +8,7 @@
 
 #include <glm/glm.hpp>
 
-#include "emitters.h"
+#include "area_lights.h"
 #include "ray_scene.h"
 
 namespace studio {
@@ -44,12 +44,15 @@ public:
     }
     const glm::vec3& emission(const RivalTriangle& t) const { return materials_[t.material].emission; }
     glm::vec3 albedo(const RivalTriangle& t, float u, float v) const;
-    const EmitterSet& emitters() const { return emitters_; }
+    const AreaLights& emitters() const { return emitters_; }
+    bool hasSky() const { return scene_.scene().sky != glm::vec3(0.0f); }
+    // Whether an alpha mask has cut this point out (weights: barycentric, as Hit's u and v).
+    bool isHole(int mesh, int primitive, const glm::vec2& weights) const;
     std::uint64_t bytes() const;
 
 private:
     const RayScene& scene_;
-    EmitterSet emitters_;
+    AreaLights emitters_;
     std::vector<SmallTexture> textures_;
     std::vector<RivalMaterial> materials_;  // of each mesh
     std::vector<RivalTriangle> triangles_;

@@ -1,0 +1,237 @@
+// The rival against values that are known without it and against the reference path tracer.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "path_tracer.h"
+#include "rival.h"
+#include "rival_filter.h"
+
+namespace {
+
+using namespace studio;
+
+struct View {
+    std::shared_ptr<Scene> scene;
+    RayScene rays;
+    GBuffer gbuffer;
+    View(const char* name, int width, int height)
+        : scene(std::make_shared<Scene>(loadScene(name))),
+          rays(scene, 0.0f),
+          gbuffer(renderGBuffer(rays, scene->cameraAt(0, 0.0f), width, height, scene->cameraAt(0, 0.0f),
+                                0.0f)) {}
+};
+
+struct Result {
+    PlanarBuffer irradiance, validity;
+    RivalTimes times;
+};
+
+Result render(const View& view, const RivalOptions& options) {
+    Result result{PlanarBuffer(view.gbuffer.width, view.gbuffer.height, 3),
+                  PlanarBuffer(view.gbuffer.width, view.gbuffer.height, 1),
+                  {}};
+    Rival rival(options, view.gbuffer.width, view.gbuffer.height);
+    result.times = rival.render(view.rays, view.gbuffer, result.irradiance, result.validity);
+    return result;
+}
+
+RivalOptions unfiltered(std::uint32_t bounces, std::uint32_t spp) {
+    RivalOptions options;
+    options.bounces = bounces;
+    options.spp = spp;
+    options.filter = 0;
+    return options;
+}
+
+double meanOf(const Result& result) {
+    double sum = 0.0, count = 0.0;
+    for (int c = 0; c < 3; ++c)
+        for (int y = 0; y < result.validity.height(); ++y)
+            for (int x = 0; x < result.validity.width(); ++x) {
+                if (result.validity.row(0, y)[x] == 0.0f) continue;
+                sum += double(result.irradiance.row(c, y)[x]);
+                count += 1.0;
+            }
+    return sum / count;
+}
+
+bool sameBits(const Result& a, const Result& b) {
+    for (int c = 0; c < 3; ++c)
+        for (int y = 0; y < a.validity.height(); ++y)
+            for (int x = 0; x < a.validity.width(); ++x)
+                if (a.irradiance.row(c, y)[x] != b.irradiance.row(c, y)[x]) return false;
+    return true;
+}
+
+// Sum of the first `bounces` layers at a pixel.
+double truthAt(const Image& truth, int bounces, int channel, int x, int y) {
+    const std::string name(1, "RGB"[channel]);
+    const auto at = std::size_t(y) * std::size_t(truth.width) + std::size_t(x);
+    double sum = double(truth.plane("bounce1." + name)[at]);
+    if (bounces == 2) sum += double(truth.plane("bounce2." + name)[at]);
+    return sum;
+}
+
+struct Error {
+    double nrmse = 0.0, bias = 0.0;
+};
+
+Error errorOf(const Result& result, const Image& truth, int bounces) {
+    double squares = 0.0, difference = 0.0, sum = 0.0, count = 0.0;
+    for (int c = 0; c < 3; ++c)
+        for (int y = 0; y < truth.height; ++y)
+            for (int x = 0; x < truth.width; ++x) {
+                if (result.validity.row(0, y)[x] == 0.0f) continue;
+                const double t = truthAt(truth, bounces, c, x, y);
+                const double e = double(result.irradiance.row(c, y)[x]) - t;
+                squares += e * e, difference += e, sum += t, count += 1.0;
+            }
+    return {std::sqrt(squares / count) / (sum / count), difference / sum};
+}
+
+Image truthOf(const View& view, int samples) {
+    PathTracerOptions options;
+    options.samplesPerPixel = samples;
+    options.maxBounces = 2;
+    return tracePaths(view.rays, view.gbuffer, options);
+}
+
+}  // namespace
+
+TEST_CASE("In a furnace each bounce carries the albedo's share of the one before") {
+    // Exitance 1, albedo 0.5: bounces 0.5 and 0.25. At 64 paths the mean over 48x27 pixels has a
+    // standard deviation of about 0.1 %.
+    constexpr double kTolerance = 0.005;
+    const View view("furnace", 48, 27);
+    CHECK(meanOf(render(view, unfiltered(1, 64))) == Approx(0.5).epsilon(kTolerance));
+    CHECK(meanOf(render(view, unfiltered(2, 64))) == Approx(0.75).epsilon(kTolerance));
+}
+
+TEST_CASE("In the sphere with a lamp in its middle the bounces are pi/2 and pi/4 everywhere") {
+    // Every ray finds the same: only the facets (64 rings) and smooth normals differ from the sphere.
+    constexpr double kFacets = 0.01;
+    const View view("sphere_room", 48, 27);
+    const double pi = 3.14159265358979;
+    CHECK(meanOf(render(view, unfiltered(1, 1))) == Approx(pi / 2).epsilon(kFacets));
+    CHECK(meanOf(render(view, unfiltered(2, 1))) == Approx(0.75 * pi).epsilon(kFacets));
+
+    // So the filter and the up-sampling have nothing to change either, at every pixel.
+    for (const RivalResolution resolution :
+         {RivalResolution::Full, RivalResolution::Half, RivalResolution::Quarter}) {
+        RivalOptions options;
+        options.spp = 4;
+        options.resolution = resolution;
+        const Result result = render(view, options);
+        INFO("resolution " << int(resolution));
+        for (int y = 0; y < 27; ++y)
+            for (int x = 0; x < 48; ++x)
+                REQUIRE(double(result.irradiance.row(0, y)[x]) == Approx(pi / 2).epsilon(0.03));
+    }
+}
+
+TEST_CASE("The unfiltered error against the reference falls at least as a random estimate's") {
+    const View view("cornell", 32, 24);
+    constexpr int kTruthSamples = 4096;
+    const Image truth = truthOf(view, kTruthSamples);
+    for (const int bounces : {1, 2}) {
+        INFO("bounces " << bounces);
+        // Independent sample points would fall by 1/8 from 1 to 64 paths; Owen-scrambled ones by more.
+        // 1.2: the first error is itself an estimate, of 768 pixels with some bright outliers.
+        const Error one = errorOf(render(view, unfiltered(std::uint32_t(bounces), 1)), truth, bounces);
+        const Error many = errorOf(render(view, unfiltered(std::uint32_t(bounces), 64)), truth, bounces);
+        INFO("nRMSE " << one.nrmse << " at 1, " << many.nrmse << " at 64, bias " << many.bias);
+        CHECK(many.nrmse < 1.2 * one.nrmse / 8.0);
+        // The mean of 768 pixels: four standard deviations of independent pixels.
+        CHECK(std::abs(many.bias) < 4.0 * many.nrmse / std::sqrt(768.0));
+        // Ever more samples meet the reference as nearly as its own noise lets them.
+        const Error most = errorOf(render(view, unfiltered(std::uint32_t(bounces), 1024)), truth, bounces);
+        INFO("nRMSE " << most.nrmse << " at 1024");
+        CHECK(most.nrmse < many.nrmse / 3.0);
+        CHECK(std::abs(most.bias) < 0.003);
+    }
+}
+
+TEST_CASE("Coherent patterns and single rays estimate the same light") {
+    const View view("cornell", 32, 24);
+    const double expected = meanOf(render(view, unfiltered(2, 256)));
+    for (const std::uint32_t pattern : {1u, 2u, 4u, 8u})
+        for (const RivalRays rays : {RivalRays::Packets, RivalRays::Single}) {
+            RivalOptions options = unfiltered(2, 256);
+            options.pattern = pattern;
+            options.rays = rays;
+            INFO("pattern " << pattern << ", rays " << int(rays));
+            // Pixels that share sample points share their error: 256 points in all with pattern 1.
+            CHECK(meanOf(render(view, options)) == Approx(expected).epsilon(0.03));
+        }
+}
+
+TEST_CASE("Same seed, same bits; another seed, other noise") {
+    const View view("basic", 64, 48);
+    RivalOptions options;
+    options.bounces = 2;
+    options.resolution = RivalResolution::Half;
+    const Result first = render(view, options), again = render(view, options);
+    CHECK(sameBits(first, again));
+    options.seed = 1;
+    CHECK_FALSE(sameBits(first, render(view, options)));
+}
+
+TEST_CASE("Background is black and invalid; every surface is finite at any resolution") {
+    const View view("basic", 61, 47);
+    for (const RivalResolution resolution :
+         {RivalResolution::Full, RivalResolution::Half, RivalResolution::Quarter}) {
+        RivalOptions options;
+        options.resolution = resolution;
+        const Result result = render(view, options);
+        int background = 0;
+        for (int y = 0; y < 47; ++y)
+            for (int x = 0; x < 61; ++x) {
+                const glm::vec3 e = result.irradiance.rgb(x, y);
+                const bool isSurface = view.gbuffer.normal.rgb(x, y) != glm::vec3(0.0f);
+                REQUIRE(result.validity.row(0, y)[x] == (isSurface ? 1.0f : 0.0f));
+                REQUIRE((std::isfinite(e.x) && std::isfinite(e.y) && std::isfinite(e.z)));
+                if (!isSurface) {
+                    ++background;
+                    REQUIRE(e == glm::vec3(0.0f));
+                }
+            }
+        CHECK(background > 0);
+    }
+}
+
+TEST_CASE("The filter keeps a constant and lets nothing across an edge") {
+    constexpr int kWidth = 50, kHeight = 20, kEdge = 23;
+    TracedSurfaces surfaces(kWidth, kHeight);
+    PaddedPlanes from(kWidth, kHeight, 3), to(kWidth, kHeight, 3);
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) {  // a floor that meets a wall
+            const bool isWall = x >= kEdge;
+            surfaces.position.row(0, y)[x] = float(isWall ? kEdge : x);
+            surfaces.position.row(1, y)[x] = float(isWall ? x - kEdge : 0);
+            surfaces.position.row(2, y)[x] = float(y);
+            surfaces.normal.row(isWall ? 0 : 1, y)[x] = isWall ? -1.0f : 1.0f;
+            for (int c = 0; c < 3; ++c) from.row(c, y)[x] = isWall ? 7.0f : float(c + 1);
+        }
+    WorkerPool pool(2);
+    for (const std::vector<Tap>& window : {patternWindow(4), patternWindow(8), splineWindow(4)}) {
+        filterImage(pool, surfaces, window, from, to);
+        for (int y = 0; y < kHeight; ++y)
+            for (int x = 0; x < kWidth; ++x)
+                for (int c = 0; c < 3; ++c)
+                    REQUIRE(to.row(c, y)[x] == Approx(x >= kEdge ? 7.0f : float(c + 1)).epsilon(1e-5));
+    }
+}
+
+TEST_CASE("Options out of range are refused by name") {
+    RivalOptions options;
+    options.bounces = 3;
+    CHECK_THROWS_WITH(Rival(options, 8, 8), Catch::Contains("bounces") && Catch::Contains("got 3"));
+    options = {};
+    options.spp = 0;
+    CHECK_THROWS_WITH(Rival(options, 8, 8), Catch::Contains("spp"));
+    options = {};
+    options.pattern = 3;
+    CHECK_THROWS_WITH(Rival(options, 8, 8), Catch::Contains("pattern"));
+}
