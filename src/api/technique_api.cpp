@@ -5,6 +5,7 @@
 #include "api/frame_arguments.h"
 #include "api/parameters.h"
 #include "api/structs.h"
+#include "compute/raw_enum.h"
 
 using namespace lightwell;
 
@@ -36,7 +37,7 @@ bool refusedUnchanged(LWStatus status) {
 void checkOutput(const LWOutput& output) {
     for (const LWImage* image : {&output.irradiance, &output.validity, &output.ambientOcclusion,
                                  &output.specularRadiance, &output.shadow})
-        if (image->format != LW_FORMAT_NONE || image->host || image->clMem) return;
+        if (rawEnum(image->format) != LW_FORMAT_NONE || image->host || image->clMem) return;
     fail(LW_ERROR_INVALID_ARGUMENT, "output: expected at least one image, got none");
 }
 

@@ -9,6 +9,7 @@
 
 #include "compute/device.h"
 #include "compute/error.h"
+#include "compute/raw_enum.h"
 #include "inputs/camera.h"
 #include "inputs/image_access.h"
 
@@ -86,7 +87,7 @@ CheckedGBuffer checkGBuffer(Device& device, const View& view, const LWGBuffer& g
     if (!fromDepth) return checked;
     checked.depth =
         checkImage(device, gbuffer.depth, kDepthRole, view.width, view.height, name + ".depth");
-    const auto kind = static_cast<std::uint32_t>(gbuffer.depthKind);
+    const auto kind = rawEnum(gbuffer.depthKind);
     if (kind > LW_DEPTH_RADIAL)
         fail(LW_ERROR_INVALID_ARGUMENT, name, ".depthKind: expected an LWDepthKind (0 .. 3), got ",
              kind);

@@ -6,6 +6,7 @@
 #include "compute/cl.h"
 #include "compute/device.h"
 #include "compute/error.h"
+#include "compute/raw_enum.h"
 #include "inputs/host_memory.h"
 
 namespace lightwell {
@@ -52,8 +53,7 @@ std::string listFormats(FormatSet set) {
 }
 
 void checkFormat(const LWImage& image, const ImageRole& role, const std::string& name) {
-    // The enum may hold anything a host wrote into it.
-    const auto format = static_cast<std::uint32_t>(image.format);
+    const std::uint32_t format = rawEnum(image.format);
     if (format < kFormatCount && (role.formats & (1u << format))) return;
     const std::string got = format < kFormatCount ? kFormats[format].name : std::to_string(format);
     fail(LW_ERROR_INVALID_ARGUMENT, name, ".format: expected one of ", listFormats(role.formats),
@@ -192,7 +192,7 @@ std::uint32_t largestPixelBytes(const ImageRole& role) {
 }
 
 bool imageAbsent(const LWImage& image) {
-    return image.format == LW_FORMAT_NONE && !image.host && !image.clMem;
+    return rawEnum(image.format) == LW_FORMAT_NONE && !image.host && !image.clMem;
 }
 
 CheckedImage checkImage(Device& device, const LWImage& image, const ImageRole& role, std::uint32_t width,

@@ -11,6 +11,7 @@
 
 #include "compute/device.h"
 #include "compute/error.h"
+#include "compute/raw_enum.h"
 #include "inputs/camera.h"
 #include "inputs/image_access.h"
 #include "shared/rsm_types.h"
@@ -49,7 +50,7 @@ CheckedRsm checkRsm(Device& device, const LWRsm& rsm, bool perspective, const st
     if (width == 0 || height == 0 || width > kMaxSide || height > kMaxSide)
         fail(LW_ERROR_INVALID_ARGUMENT, name, fromDepth ? ".depth" : ".position", ": expected 1 .. ",
              kMaxSide, " pixels a side, got ", width, " x ", height);
-    const auto kind = static_cast<std::uint32_t>(rsm.depthKind);
+    const auto kind = rawEnum(rsm.depthKind);
     if (fromDepth && kind > LW_DEPTH_RADIAL)
         fail(LW_ERROR_INVALID_ARGUMENT, name, ".depthKind: expected an LWDepthKind (0 .. 3), got ",
              kind);
@@ -89,7 +90,7 @@ void checkTexels(std::uint64_t padded, const char* name) {
 }
 
 void checkLight(const LWLight& light, const std::string& name) {
-    const auto kind = static_cast<std::uint32_t>(light.kind);
+    const auto kind = rawEnum(light.kind);
     if (kind > LW_LIGHT_SPOT)
         fail(LW_ERROR_INVALID_ARGUMENT, name, ".kind: expected an LWLightKind (0 .. 2), got ", kind);
     const std::uint32_t most = light.kind == LW_LIGHT_DIRECTIONAL ? LW_MAX_CASCADES

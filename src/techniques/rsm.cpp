@@ -5,6 +5,7 @@
 
 #include "compute/device.h"
 #include "compute/error.h"
+#include "compute/raw_enum.h"
 #include "inputs/gbuffer_input.h"
 #include "inputs/output_target.h"
 #include "inputs/rsm_input.h"
@@ -141,9 +142,9 @@ void RsmTechnique::checkOutputs(const LWOutput& output, const View& view) const 
                                                                   {&output.specularRadiance, "specularRadiance"},
                                                                   {&output.shadow, "shadow"}};
     for (const auto& [image, name] : unsupported)
-        if (image->format != LW_FORMAT_NONE)
+        if (rawEnum(image->format) != LW_FORMAT_NONE)
             fail(LW_ERROR_UNSUPPORTED, "output.", name, ": technique rsm makes irradiance and validity only");
-    if (output.irradiance.format == LW_FORMAT_NONE && output.validity.format == LW_FORMAT_NONE)
+    if (rawEnum(output.irradiance.format) == LW_FORMAT_NONE && rawEnum(output.validity.format) == LW_FORMAT_NONE)
         fail(LW_ERROR_INVALID_ARGUMENT, "output: expected irradiance or validity, got neither");
     OutputTarget::check(device_, view, output.irradiance, 3, "output.irradiance");
     OutputTarget::check(device_, view, output.validity, 1, "output.validity");
