@@ -415,9 +415,16 @@ typedef struct LWParameter {
     const char* const* choices; /**< ENUM: null-terminated names; BOOL, UINT, FLOAT: null */
     const double* allowed;     /**< UINT: the only valid values, or null for the whole range */
     uint32_t allowedCount;
-    const double* sweep;       /**< values worth charting, or null */
+    const double* sweep;       /**< values worth charting (of an ENUM the indices), or null: the default */
     uint32_t sweepCount;
 } LWParameter;
+
+/** A set of parameters worth naming in charts: a paper's own, a usual compromise. */
+typedef struct LWSetting {
+    const char* name;          /**< whose or what for, a few words */
+    const char* assignments;   /**< "vpls=400 interleave=1": what differs from the defaults, separated by
+                                    spaces; enumerations by name, BOOL by on and off */
+} LWSetting;
 
 typedef struct LWTechniqueInfo {
     uint32_t structSize;
@@ -427,6 +434,10 @@ typedef struct LWTechniqueInfo {
     const LWParameter* parameters;
     uint32_t parameterCount;
     void (*setDefaults)(void* desc); /**< lwDefaultRsm and its kin */
+    uint32_t bounces;          /**< indirect bounces that it models, 0: all of them; where there is a
+                                    parameter `bounces`, that parameter says it */
+    const LWSetting* settings; /**< beside the sweeps of the parameters; or null */
+    uint32_t settingCount;
 } LWTechniqueInfo;
 
 LW_API uint32_t lwCountTechniques(void);

@@ -88,5 +88,6 @@ void addRender(CLI::App& app);
 void addReference(CLI::App& app);
 void addCompare(CLI::App& app);
 void addTriptych(CLI::App& app);
+void addChart(CLI::App& app);
 
 }  // namespace cli

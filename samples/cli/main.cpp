@@ -76,6 +76,7 @@ int main(int argc, char** argv) {
         cli::addReference(app);
         cli::addCompare(app);
         cli::addTriptych(app);
+        cli::addChart(app);
         return parse(app, argc, argv);
     } catch (const cli::UsageError& error) {
         printError(error.what());

@@ -167,7 +167,10 @@ void writeExr(const std::string& path, const Image& image, bool half) {
     writeInterleaved(path, spec, OIIO::TypeFloat, pixels);
 }
 
-void writePng(const std::string& path, const Image& image) {
+namespace {
+
+// sRGB codes of a display picture, interleaved.
+std::vector<std::uint8_t> encodePixels(const std::string& path, const Image& image) {
     checkWritable(path, image);
     std::vector<std::uint8_t> pixels(image.pixelCount() * 3);
     for (std::size_t c = 0; c < 3; ++c) {
@@ -180,9 +183,25 @@ void writePng(const std::string& path, const Image& image) {
             pixels[i * 3 + c] = std::uint8_t(std::lround(255.0f * srgbEncode(plane[i])));
         }
     }
+    return pixels;
+}
+
+OIIO::ImageSpec displaySpec(const Image& image) {
     OIIO::ImageSpec spec(image.width, image.height, 3, OIIO::TypeUInt8);
     spec.attribute("oiio:ColorSpace", "sRGB");
-    writeInterleaved(path, spec, OIIO::TypeUInt8, pixels);
+    return spec;
+}
+
+}  // namespace
+
+void writePng(const std::string& path, const Image& image) {
+    writeInterleaved(path, displaySpec(image), OIIO::TypeUInt8, encodePixels(path, image));
+}
+
+void writeJpeg(const std::string& path, const Image& image, int quality) {
+    OIIO::ImageSpec spec = displaySpec(image);
+    spec.attribute("compression", fmt::format("jpeg:{}", quality));
+    writeInterleaved(path, spec, OIIO::TypeUInt8, encodePixels(path, image));
 }
 
 float srgbEncode(float linear) {

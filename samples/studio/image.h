@@ -38,6 +38,8 @@ Image readImage(const std::string& path);
 void writeExr(const std::string& path, const Image& image, bool half = false);
 // 8-bit sRGB PNG of a display-referred linear image's R, G, B; throws on a value outside [0,1].
 void writePng(const std::string& path, const Image& image);
+// The same as JPEG, for reports; `quality` 1 ... 100.
+void writeJpeg(const std::string& path, const Image& image, int quality);
 
 // The sRGB transfer function (IEC 61966-2-1) and its inverse, on [0,1].
 float srgbEncode(float linear);

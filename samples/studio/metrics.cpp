@@ -242,7 +242,10 @@ double referenceNoise(const Image& reference, const std::vector<bool>& counted, 
 
 }  // namespace
 
-Metrics compareImages(const Image& image, const Image& reference, MetricMaps* maps) {
+namespace {
+
+// All that is judged on the linear irradiance; `relativeError` as compareIrradiance makes it.
+Metrics judgeIrradiance(const Image& image, const Image& reference, std::vector<float>& relativeError) {
     checkInputs(image, reference);
     const std::vector<bool> counted = surfacePixels(image, reference);
     if (std::find(counted.begin(), counted.end(), true) == counted.end())
@@ -253,9 +256,21 @@ Metrics compareImages(const Image& image, const Image& reference, MetricMaps* ma
             "reference: mean irradiance is {}: errors relative to it have no meaning", mean));
 
     Metrics metrics;
-    std::vector<float> relativeError;
     compareIrradiance(image, reference, counted, mean, metrics, relativeError);
     metrics.referenceNoise = referenceNoise(reference, counted, mean);
+    return metrics;
+}
+
+}  // namespace
+
+Metrics compareIrradiance(const Image& image, const Image& reference) {
+    std::vector<float> relativeError;
+    return judgeIrradiance(image, reference, relativeError);
+}
+
+Metrics compareImages(const Image& image, const Image& reference, MetricMaps* maps) {
+    std::vector<float> relativeError;
+    Metrics metrics = judgeIrradiance(image, reference, relativeError);
 
     const Image truth = composite(reference);
     const float exposure = autoExposure(truth);

@@ -247,6 +247,9 @@ TechniqueEntry makeEntry() {
     entry.info.parameters = rsmParameters().data();
     entry.info.parameterCount = std::uint32_t(rsmParameters().size());
     entry.info.setDefaults = setDefaults;
+    entry.info.bounces = 1;
+    entry.info.settings = rsmSettings().data();
+    entry.info.settingCount = std::uint32_t(rsmSettings().size());
     entry.create = create;
     entry.estimateBytes = estimateBytes;
     return entry;

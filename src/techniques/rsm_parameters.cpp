@@ -12,6 +12,8 @@ constexpr const char* kResolutionNames[] = {"full", "half", nullptr};
 constexpr double kInterleaveValues[] = {1, 2, 4, 8};
 constexpr double kInterleaveSweep[] = {1, 4};
 constexpr double kVplSweep[] = {64, 256, 1024, 4096};
+constexpr double kSamplingSweep[] = {LW_SAMPLING_FLUX, LW_SAMPLING_UNIFORM};
+constexpr double kResolutionSweep[] = {LW_RESOLUTION_FULL, LW_RESOLUTION_HALF};
 
 LWParameter parameter(const char* name, const char* description, LWParameterKind kind, std::size_t byteOffset,
                       double minimum, double maximum, double defaultValue) {
@@ -46,14 +48,25 @@ const std::vector<LWParameter>& rsmParameters() {
         all[0].sweep = kVplSweep;
         all[0].sweepCount = std::uint32_t(std::size(kVplSweep));
         all[1].choices = kSamplingNames;
+        all[1].sweep = kSamplingSweep;
+        all[1].sweepCount = std::uint32_t(std::size(kSamplingSweep));
         all[2].allowed = kInterleaveValues;
         all[2].allowedCount = std::uint32_t(std::size(kInterleaveValues));
         all[2].sweep = kInterleaveSweep;
         all[2].sweepCount = std::uint32_t(std::size(kInterleaveSweep));
         all[4].choices = kResolutionNames;
+        all[4].sweep = kResolutionSweep;
+        all[4].sweepCount = std::uint32_t(std::size(kResolutionSweep));
         return all;
     }();
     return table;
+}
+
+// Dachsbacher and Stamminger 2005 gather 400 samples of the shadow map at a low resolution, interpolate, and
+// repair the pixels where that fails; our half resolution stands for theirs.
+const std::vector<LWSetting>& rsmSettings() {
+    static const std::vector<LWSetting> settings = {{"Dachsbacher 2005", "vpls=400 interleave=1 resolution=half"}};
+    return settings;
 }
 
 }  // namespace lightwell

@@ -8,5 +8,6 @@
 namespace lightwell {
 
 const std::vector<LWParameter>& rsmParameters();
+const std::vector<LWSetting>& rsmSettings();
 
 }  // namespace lightwell

@@ -1,0 +1,112 @@
+// `lightwell chart`: every technique x its parameter sweep x scene x view, error against time.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+
+#include "chart_run.h"
+#include "chart_script.h"
+#include "cli.h"
+#include "interrupt.h"
+#include "parameters.h"
+#include "scene.h"
+
+namespace cli {
+namespace {
+
+constexpr const char* kQuickScenes[] = {"cornell", "basic"};
+constexpr const char* kQuickSize = "320x180";
+constexpr double kQuickNoise = 4e-3, kNoise = 1e-3;  // relMSE of the truths
+
+struct Arguments {
+    ChartOptions chart;
+    std::string size, cameras = "all", noise;
+    bool skipsReport = false, onlyReport = false;
+};
+
+std::vector<std::string> allScenes() {
+    std::vector<std::string> names;
+    for (const studio::SceneEntry& entry : studio::listScenes()) names.push_back(entry.name);
+    return names;
+}
+
+void complete(Arguments& arguments) {
+    ChartOptions& chart = arguments.chart;
+    if (chart.scenes.empty())
+        chart.scenes = chart.quick
+                           ? std::vector<std::string>(std::begin(kQuickScenes), std::end(kQuickScenes))
+                           : allScenes();
+    if (chart.techniques.empty()) chart.techniques = techniqueNames();
+    for (const std::string& technique : chart.techniques)
+        requireOneOf("technique", technique, techniqueNames());
+    requireOneOf("--cameras", arguments.cameras, {"all", "first"});
+    if (chart.deviceWidth != 0)
+        requireOneOf("--width", std::to_string(chart.deviceWidth), {"1", "4", "8", "16"});
+    chart.firstCameraOnly = arguments.cameras == "first" || chart.quick;
+    const Size size = parseSize(!arguments.size.empty() ? arguments.size
+                                : chart.quick           ? kQuickSize
+                                                        : "1280x720");
+    chart.width = size.width;
+    chart.height = size.height;
+    chart.truth.noise = chart.quick ? kQuickNoise : kNoise;
+    if (!arguments.noise.empty()) chart.truth.noise = parseNumber("--noise", arguments.noise);
+    if (chart.truth.noise <= 0.0) throw UsageError("--noise: expected a relMSE above 0");
+    chart.truth.takesShipped = chart.quick;
+}
+
+void chart(Arguments& arguments) {
+    complete(arguments);
+    const std::string& folder = arguments.chart.folder;
+    asUsage([&] { std::filesystem::create_directories(std::filesystem::path(folder) / "images"); });
+    if (!arguments.onlyReport) {
+        const InterruptGuard guard;
+        runChart(arguments.chart);
+        fmt::print("{}\n", (std::filesystem::path(folder) / "results.json").string());
+    }
+    if (!arguments.skipsReport) runChartScript("report.py", {folder});
+}
+
+}  // namespace
+
+void addChart(CLI::App& app) {
+    CLI::App* command = app.add_subcommand(
+        "chart", "Error against time: every technique, parameter sweep, scene and view; a report");
+    auto arguments = std::make_shared<Arguments>();
+    ChartOptions& options = arguments->chart;
+    command
+        ->add_option("--out", options.folder,
+                     "Folder (made when missing) of results.json and the report")
+        ->required();
+    command->add_option("--scenes", options.scenes,
+                        "Scenes by name or path; default: all that are found");
+    command->add_option("--techniques", options.techniques, "Techniques by name; default: all");
+    command->add_flag(
+        "--quick", options.quick,
+        "About a minute: 320x180, two scenes, their first cameras, parameters moved one by one");
+    command->add_option("--cameras", arguments->cameras, "all (but keyframed ones) or first")
+        ->capture_default_str();
+    command->add_option("--size", arguments->size, "Picture size, WIDTHxHEIGHT; default: 1280x720");
+    command->add_option("--noise", arguments->noise, "relMSE to which truths are traced; default: 1e-3");
+    command
+        ->add_option("--truth-seconds", options.truth.seconds,
+                     "Most time for one truth; the next chart goes on from there. 0: no limit")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
+    command->add_flag("--only-truths", options.onlyTruths,
+                      "Trace the truths into the cache, measure nothing");
+    command->add_flag("--no-all-bounces", options.skipsAllBounces,
+                      "Judge only against as many bounces as a technique models");
+    command->add_option(
+        "--truth-cache", options.truth.directory,
+        "Folder of the truths; default: references/ in LIGHTWELL_CACHE_DIR or the user's cache");
+    command->add_option("--device", options.device, "As for render");
+    command->add_option("--width", options.deviceWidth,
+                        "Lanes per work-item: 1, 4, 8 or 16; default: by probe");
+    command->add_flag("--no-report", arguments->skipsReport,
+                      "Measure only; results.json is written all the same");
+    command->add_flag("--report-only", arguments->onlyReport, "Plots and report of the results in DIR");
+    command->callback([arguments] { chart(*arguments); });
+}
+
+}  // namespace cli

@@ -1,0 +1,96 @@
+#include "chart_results.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <unordered_map>
+
+#include "cli.h"
+
+namespace cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+constexpr const char* kFormat = "lightwell-chart 1";
+
+Json readResults(const std::string& path) {
+    std::ifstream file(path);
+    const Json json = Json::parse(file, nullptr, false);
+    const bool isOurs = json.is_object() && json.value("format", "") == kFormat &&
+                        json.contains("views") && json.contains("points");
+    if (!isOurs)
+        throw UsageError(
+            fmt::format("{}: expected the results of `lightwell chart` (format \"{}\"); another "
+                        "--out, or remove it",
+                        path, kFormat));
+    return json;
+}
+
+}  // namespace
+
+struct ChartResults::Impl {
+    std::string path;
+    Json json;
+    std::unordered_map<std::string, std::size_t> views, points;  // index by id
+
+    void put(const char* list, std::unordered_map<std::string, std::size_t>& index, Json item) {
+        const std::string id = item.at("id");
+        const auto [at, isNew] = index.emplace(id, json[list].size());
+        if (isNew)
+            json[list].push_back(std::move(item));
+        else
+            json[list][at->second] = std::move(item);
+    }
+};
+
+ChartResults::ChartResults(const std::string& path) : impl_(std::make_unique<Impl>()) {
+    impl_->path = path;
+    if (!std::filesystem::exists(path)) {
+        impl_->json = {{"format", kFormat},
+                       {"header", Json::object()},
+                       {"views", Json::array()},
+                       {"points", Json::array()}};
+        return;
+    }
+    impl_->json = readResults(path);
+    for (const Json& view : impl_->json["views"])
+        impl_->views.emplace(view.at("id"), impl_->views.size());
+    for (const Json& point : impl_->json["points"])
+        impl_->points.emplace(point.at("id"), impl_->points.size());
+}
+
+ChartResults::~ChartResults() = default;
+
+void ChartResults::setHeader(const Json& header) {
+    impl_->json["header"] = header;
+}
+
+bool ChartResults::isFresh(const std::string& id, const std::string& key) const {
+    const auto found = impl_->points.find(id);
+    return found != impl_->points.end() && impl_->json["points"][found->second].at("key") == key;
+}
+
+void ChartResults::putView(Json view) {
+    impl_->put("views", impl_->views, std::move(view));
+}
+
+void ChartResults::putPoint(Json point) {
+    impl_->put("points", impl_->points, std::move(point));
+}
+
+void ChartResults::save() const {
+    const std::string unfinished = impl_->path + ".part";
+    std::ofstream file(unfinished, std::ios::trunc);
+    file << impl_->json.dump(1) << '\n';
+    file.close();
+    if (!file) throw std::runtime_error(unfinished + ": cannot be written");
+    std::filesystem::rename(unfinished, impl_->path);
+}
+
+std::size_t ChartResults::pointCount() const {
+    return impl_->points.size();
+}
+
+}  // namespace cli

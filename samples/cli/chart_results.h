@@ -1,0 +1,33 @@
+// results.json of a chart: what is measured so far. Written after every few points in one step, so that
+// an interrupted chart loses seconds; read by the next run, which measures only what is missing or
+// stale.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace cli {
+
+class ChartResults {
+public:
+    // Goes on from the file where there is one. UsageError when it is something else.
+    explicit ChartResults(const std::string& path);
+    ~ChartResults();
+
+    void setHeader(const nlohmann::ordered_json& header);
+    // Whether a point of this id was measured under this key (everything that its figures depend on).
+    bool isFresh(const std::string& id, const std::string& key) const;
+    // Replace what has the same "id", or come last.
+    void putView(nlohmann::ordered_json view);
+    void putPoint(nlohmann::ordered_json point);
+    void save() const;
+    std::size_t pointCount() const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace cli

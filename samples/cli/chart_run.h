@@ -1,0 +1,23 @@
+// Measures what a chart shows into results.json.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "chart_view.h"
+
+namespace cli {
+
+struct ChartOptions {
+    std::vector<std::string> scenes, techniques;
+    std::string folder, device;
+    int width = 1280, height = 720;
+    int deviceWidth = 0;  // lanes per work-item; 0: by probe
+    bool quick = false, firstCameraOnly = false, onlyTruths = false, skipsAllBounces = false;
+    TruthOptions truth;
+};
+
+// Interrupted (interrupt.h) between two points or passes of a truth, with everything saved.
+void runChart(const ChartOptions& options);
+
+}  // namespace cli

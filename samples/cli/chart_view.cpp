@@ -1,0 +1,86 @@
+#include "chart_view.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "film.h"
+#include "layers.h"
+
+namespace cli {
+
+std::string bouncesText(int bounces) {
+    if (bounces == 0) return "all bounces";
+    return bounces == 1 ? "one bounce" : fmt::format("{} bounces", bounces);
+}
+
+ChartView::ChartView(std::shared_ptr<studio::RayScene> scene, const studio::Camera& camera,
+                     const InputOptions& options)
+    : scene_(std::move(scene)), camera_(camera.name), inputs_(*scene_, camera, options) {}
+
+std::string ChartView::hash() const {
+    return fmt::format("{:016x}{:016x}", studio::hashScene(*scene_),
+                       studio::hashView(inputs_.gbuffer()));
+}
+
+void ChartView::addLayers(studio::Image& image) const {
+    addViewLayers(image, inputs_.gbuffer());
+}
+
+studio::Image ChartView::withLayers(const studio::PlanarBuffer& irradiance) const {
+    studio::Image image(inputs_.gbuffer().width, inputs_.gbuffer().height);
+    addLayer(image, "", irradiance);
+    addLayers(image);
+    return image;
+}
+
+// The one-bounce references beside the shipped scenes: 320x180, the first camera.
+bool ChartView::loadShipped(JudgedTruth& judged) const {
+    const std::filesystem::path scene(scene_->scene().path);
+    const std::filesystem::path path = scene.parent_path() / "references" / (sceneName() + ".exr");
+    if (judged.truth.bounces != 1 || scene.extension() != ".json" || !std::filesystem::exists(path))
+        return false;
+    const studio::Image shipped = studio::readImage(path.string());
+    const auto metadata = [&](const char* key) {
+        const auto found = shipped.metadata.find(key);
+        return found == shipped.metadata.end() ? std::string() : found->second;
+    };
+    const bool fits = shipped.width == inputs_.gbuffer().width &&
+                      shipped.height == inputs_.gbuffer().height && metadata("camera") == camera_ &&
+                      metadata("layer") == "bounce1" && !metadata("noise.bounce1").empty();
+    if (!fits) return false;
+    judged.isShipped = true;
+    judged.truth.name = path.filename().string();
+    judged.truth.noise = std::stod(metadata("noise.bounce1"));
+    judged.truth.samples = std::stoi(metadata("spp"));
+    judged.truth.image = studio::Image(shipped.width, shipped.height);
+    judged.truth.image.metadata = shipped.metadata;
+    for (const char* channel : {"R", "G", "B"})
+        judged.truth.image.plane(channel) = shipped.plane(channel);
+    return true;
+}
+
+const JudgedTruth& ChartView::truth(int bounces, const TruthOptions& options) {
+    const auto known = truths_.find(bounces);
+    if (known != truths_.end()) return known->second;
+    JudgedTruth judged;
+    judged.truth.bounces = bounces;
+    if (!options.takesShipped || !loadShipped(judged)) {
+        TruthRequest request;
+        request.bounces = bounces;
+        request.noise = options.noise;
+        request.seconds = options.seconds;
+        request.directory = options.directory;
+        const std::string what = fmt::format("truth of {}, {}", id(), bouncesText(bounces));
+        if (options.progress)
+            request.progress = [&](double fraction, double noise) {
+                options.progress(what, fraction, noise);
+            };
+        judged.truth = obtainTruth(*scene_, inputs_.gbuffer(), request);
+    }
+    addLayers(judged.truth.image);
+    judged.exposure = studio::autoExposure(studio::composite(judged.truth.image));
+    return truths_.emplace(bounces, std::move(judged)).first->second;
+}
+
+}  // namespace cli

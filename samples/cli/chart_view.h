@@ -1,0 +1,58 @@
+// One view of a scene as a chart needs it: what techniques get, and the truths to judge them by.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "reference_cache.h"
+#include "render_inputs.h"
+
+namespace cli {
+
+struct TruthOptions {
+    double noise = 1e-3;        // relMSE
+    double seconds = 0.0;       // for each, 0: no limit
+    bool takesShipped = false;  // shipped one-bounce references where they fit
+    std::string directory;      // of the cache
+    std::function<void(const std::string& what, double fraction, double noise)> progress;
+};
+
+struct JudgedTruth {
+    Truth truth;
+    bool isShipped = false;
+    float exposure = 1.0f;  // of its composite
+};
+
+class ChartView {
+public:
+    ChartView(std::shared_ptr<studio::RayScene> scene, const studio::Camera& camera,
+              const InputOptions& options);
+
+    const std::string& sceneName() const { return scene_->scene().name; }
+    const std::string& cameraName() const { return camera_; }
+    std::string id() const { return sceneName() + "/" + camera_; }
+    std::string hash() const;  // of scene, view and size
+    const RenderInputs& inputs() const { return inputs_; }
+
+    // With the layers that a comparison needs. Traced or loaded on the first call.
+    const JudgedTruth& truth(int bounces, const TruthOptions& options);
+    const std::map<int, JudgedTruth>& truths() const { return truths_; }
+    // Irradiance with the layers of this view, for comparisons and composites.
+    studio::Image withLayers(const studio::PlanarBuffer& irradiance) const;
+
+private:
+    bool loadShipped(JudgedTruth& truth) const;
+    void addLayers(studio::Image& image) const;
+
+    std::shared_ptr<studio::RayScene> scene_;
+    std::string camera_;
+    RenderInputs inputs_;
+    std::map<int, JudgedTruth> truths_;  // by bounces
+};
+
+// "one bounce", "2 bounces", "all bounces".
+std::string bouncesText(int bounces);
+
+}  // namespace cli

@@ -1,0 +1,181 @@
+"""`lightwell chart` in its short form, against the shipped references: figures, resumption, noise, report.
+
+Usage: chart_test.py PROGRAM [unittest options]. Python's standard library only; the report's own case is left
+out where matplotlib or D3 is missing.
+"""
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+PROGRAM = os.path.abspath(sys.argv[1]) if len(sys.argv) > 1 else ""
+ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
+sys.path.insert(0, os.path.join(ROOT, "samples", "chart"))
+import results as charts  # noqa: E402
+
+# rsm's defaults at 320x180 against one bounce: (relMSE, nRMSE, absolute bias, FLIP), as measured when charts were
+# new. A tenth more is a regression: same input gives the same bits, and other devices round, no more.
+BOUNDS = {
+    "cornell": (0.316, 0.261, 0.130, 0.058),
+    "basic": (0.120, 0.746, 0.138, 0.022),
+    "rooms": (1.0, 0.40, 0.20, 0.10),
+}
+SLACK = 1.1
+QUICK = ["--quick", "--techniques", "rsm", "--no-report"]
+POINT_KEYS = {"id", "key", "scene", "camera", "technique", "label", "settings", "parameters", "bounces", "size", "device",
+              "frames", "ms", "device_ms", "bytes", "load_average", "errors", "images"}
+ERROR_KEYS = {"bounces", "relMSE", "nrmse", "bias", "p99", "noise", "trusted", "rmse", "ssim", "score", "score255", "flip"}
+
+
+def start(*arguments):
+    return subprocess.Popen([PROGRAM, "chart", *arguments], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                            stderr=subprocess.PIPE, text=True)
+
+
+class Chart(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = temporary.name
+        self.file = os.path.join(self.folder, "results.json")
+        self.cache = os.path.join(self.folder, "truths")
+
+    def chart(self, *arguments, code=0):
+        process = start(*arguments, "--out", self.folder, "--truth-cache", self.cache)
+        output, errors = process.communicate(timeout=300)
+        self.assertEqual(process.returncode, code, errors)
+        return errors
+
+    def results(self):
+        with open(self.file, encoding="utf-8") as file:
+            return json.load(file)
+
+    def test_figures_of_the_shipped_scenes(self):
+        self.chart(*QUICK, "--scenes", *BOUNDS)
+        data = self.results()
+        header = data["header"]
+        self.assertEqual((header["size"], header["quick"], header["noise_share"]), ([320, 180], True, 0.1))
+        self.assertLessEqual({"name", "platform", "driver", "opencl", "width"}, set(header["device"]))
+        self.assertLessEqual({"lightwell", "embree", "openimageio", "compiler", "cpu", "threads"}, set(header["versions"]))
+        self.assertEqual([v["scene"] for v in data["views"]], list(BOUNDS))
+        self.assertTrue(all(v["truths"][0]["shipped"] for v in data["views"]))
+        for point in data["points"]:
+            self.check_point(point)
+        for scene in BOUNDS:
+            self.check_scene(scene, [p for p in data["points"] if p["scene"] == scene])
+
+    def check_point(self, point):
+        self.assertEqual(set(point), POINT_KEYS)
+        own = point["errors"]["own"]
+        self.assertEqual(set(own), ERROR_KEYS)
+        self.assertEqual(own["trusted"], own["noise"] <= 0.1 * own["relMSE"])
+        self.assertEqual((point["bounces"], own["bounces"]), (1, 1))
+        self.assertGreaterEqual(point["frames"], 3)
+        self.assertGreater(point["ms"]["median"], 0.0)
+        self.assertGreaterEqual(point["ms"]["p99"], point["ms"]["median"])
+        self.assertLessEqual({"vpls", "sampling", "interleave", "filter", "resolution", "seed"}, set(point["parameters"]))
+        for image in point["images"].values():
+            self.assertTrue(os.path.exists(os.path.join(self.folder, image)), image)
+
+    def check_scene(self, scene, points):
+        labels = [p["label"] for p in points]
+        self.assertEqual((labels.count("default"), labels.count("Dachsbacher 2005")), (1, 1))
+        self.assertEqual(len({json.dumps(p["parameters"]) for p in points}), len(points))
+        self.assertEqual({p["parameters"]["vpls"] for p in points}, {64, 256, 400, 1024, 4096})
+        own = next(p for p in points if p["label"] == "default")["errors"]["own"]
+        for key, bound in zip(("relMSE", "nrmse", "bias", "flip"), BOUNDS[scene]):
+            with self.subTest(scene=scene, error=key):
+                self.assertLess(abs(own[key]), SLACK * bound)
+
+    def test_goes_on_where_it_was(self):
+        """A finished point is not measured again; a stale one is; Ctrl-C keeps what there is."""
+        scenes = ["--scenes", "cornell", "basic"]
+        process = start(*QUICK, *scenes, "--out", self.folder, "--truth-cache", self.cache)
+        deadline = time.time() + 200
+        while not os.path.exists(self.file) and time.time() < deadline:
+            time.sleep(0.02)
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=100)
+        self.assertEqual(process.returncode, 130, errors)
+        before = {p["id"]: p for p in self.results()["points"]}
+        self.chart(*QUICK, *scenes)
+        data = self.results()
+        after = {p["id"]: p for p in data["points"]}
+        self.assertLess(len(before), len(after))
+        for name, point in before.items():
+            self.assertEqual(point, after[name])  # its very times: not measured again
+
+        stale = data["points"][3]
+        stale["key"], stale["frames"] = "of another build", -1
+        with open(self.file, "w", encoding="utf-8") as file:
+            json.dump(data, file)
+        self.chart(*QUICK, *scenes)
+        for name, point in {p["id"]: p for p in self.results()["points"]}.items():
+            if name == stale["id"]:
+                self.assertGreater(point["frames"], 0)
+            else:
+                self.assertEqual(point, after[name])
+
+    def test_noisy_truths_are_kept_and_hide_points(self):
+        arguments = ["--techniques", "rsm", "--scenes", "cornell", "--cameras", "first", "--size", "48x32", "--quick",
+                     "--no-report"]
+        self.chart(*arguments, "--noise", "10")
+        [truth] = self.results()["views"][0]["truths"]
+        self.assertEqual((truth["shipped"], truth["samples"]), (False, 16))
+        hidden = [p for p in self.results()["points"] if not p["errors"]["own"]["trusted"]]
+        self.assertGreater(len(hidden), 0)
+        drawn = charts.Results(self.folder)
+        for point in drawn.points:
+            own = point["errors"]["own"]
+            self.assertEqual(charts.value(point) is None, own["noise"] > 0.1 * own["relMSE"])
+            self.assertNotIn(point["id"], [p["id"] for p in charts.front(drawn.points)] if not own["trusted"] else [])
+        self.chart(*arguments, "--noise", "0.01")  # a better truth: all points are judged anew
+        [better] = self.results()["views"][0]["truths"]
+        self.assertLessEqual(better["noise"], 0.01)
+        self.assertLess(sum(not p["errors"]["own"]["trusted"] for p in self.results()["points"]), len(hidden))
+        self.assertEqual(len([f for f in os.listdir(self.cache) if f.endswith(".exr")]), 1)
+
+    def test_refusals(self):
+        self.assertIn("rsm", self.chart("--techniques", "nothing", code=2))
+        self.assertIn("nothing", self.chart("--quick", "--scenes", "nothing", "--no-report", code=2))
+        with open(self.file, "w", encoding="ascii") as file:
+            file.write("{}")
+        self.assertIn("results.json", self.chart(*QUICK, "--scenes", "cornell", code=2))
+
+    def test_report(self):
+        self.chart(*QUICK, "--scenes", "cornell", "basic")
+        process = start("--report-only", "--out", self.folder)
+        _, errors = process.communicate(timeout=100)
+        if process.returncode == 1 and "apt-get install" in errors:
+            self.assertTrue(os.path.exists(self.file))
+            self.skipTest("no matplotlib or no D3 here")
+        self.assertEqual(process.returncode, 0, errors)
+        for name in ("cornell", "basic", "summary"):
+            for extension in ("svg", "png"):
+                self.assertGreater(os.path.getsize(os.path.join(self.folder, name + "." + extension)), 1000)
+        with open(os.path.join(self.folder, "report.html"), encoding="utf-8") as file:
+            page = file.read()
+        self.assertEqual(re.findall(r"""(?:src|href)=["'](?!data:)[^"']*["']""", page), [])  # opens offline
+        self.assertNotIn("<!--", page.split("<body>")[1].split("<script")[0])
+        data = json.loads(re.search(r'<script id="data" type="application/json">(.*?)</script>', page, re.S).group(1))
+        self.assertEqual([v["id"] for v in data["views"]], ["cornell/front", "basic/overview"])
+        self.assertTrue(all(len(v["images"]) >= 3 and v["fronts"]["relMSE|own|median"] for v in data["views"]))
+
+    def test_without_python_the_results_stay(self):
+        environment = dict(os.environ, LIGHTWELL_PYTHON="/nonexistent", PATH="/nonexistent")
+        result = subprocess.run([PROGRAM, "chart", "--report-only", "--out", self.folder], env=environment, text=True,
+                                capture_output=True, timeout=60)
+        self.assertEqual(result.returncode, 1)  # neither results nor, perhaps, Python
+        self.assertIn("results are kept", result.stderr)
+
+
+if __name__ == "__main__":
+    if not PROGRAM or PROGRAM.endswith("-h"):
+        sys.exit(__doc__)
+    del sys.argv[1]
+    unittest.main()

@@ -1,0 +1,95 @@
+"""What charts make of measured figures: fronts, what is drawn, means. No program is run.
+
+Usage: charts_test.py [unittest options]. Python's standard library only.
+"""
+import json
+import os
+import random
+import sys
+import tempfile
+import unittest
+
+ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
+sys.path.insert(0, os.path.join(ROOT, "samples", "chart"))
+from pareto import pareto_front  # noqa: E402
+import results as charts  # noqa: E402
+
+
+def beats(a, b):
+    return a[0] <= b[0] and a[1] <= b[1] and a != b
+
+
+class Pareto(unittest.TestCase):
+    def test_by_hand(self):
+        points = [(1, 9), (2, 5), (3, 5), (2, 7), (4, 1), (5, 2), (0.5, 20)]
+        self.assertEqual(pareto_front(points), [6, 0, 1, 4])
+
+    def test_few(self):
+        self.assertEqual(pareto_front([]), [])
+        self.assertEqual(pareto_front([(3, 3)]), [0])
+        self.assertEqual(pareto_front([(3, 3), (3, 3)]), [0])  # of equal points the first
+
+    def test_against_the_definition(self):
+        """Whole numbers, so that ties are frequent: on the front is exactly what no other point beats."""
+        random.seed(1)
+        for _ in range(300):
+            points = [(random.randrange(8), random.randrange(8)) for _ in range(random.randrange(1, 25))]
+            front = pareto_front(points)
+            expected = {p for p in points if not any(beats(q, p) for q in points)}
+            self.assertEqual({points[i] for i in front}, expected, points)
+            self.assertEqual(len(front), len(expected))
+            self.assertEqual([points[i][0] for i in front], sorted(points[i][0] for i in front))
+
+
+def made_point(view, settings, ms, relmse, noise, label=""):
+    own = {"bounces": 1, "relMSE": relmse, "nrmse": relmse, "bias": -relmse, "p99": relmse, "noise": noise,
+           "trusted": noise <= 0.1 * relmse, "rmse": 0.1, "ssim": 0.9, "score": 8.0, "score255": 1.0, "flip": 0.1}
+    return {"id": view + settings, "scene": view, "camera": "c", "technique": "t", "settings": settings, "label": label,
+            "bounces": 1, "size": [8, 8], "frames": 9, "ms": {"median": ms, "p99": 2 * ms}, "device_ms": None,
+            "errors": {"own": own, "all": None}, "load_average": 0.0}
+
+
+def made_results(points):
+    views = sorted({p["scene"] for p in points})
+    data = {"format": "lightwell-chart 1", "header": {"size": [8, 8]}, "points": points,
+            "views": [{"id": v, "scene": v, "camera": "c", "truths": [], "images": {}} for v in views]}
+    with tempfile.TemporaryDirectory() as folder:
+        with open(os.path.join(folder, "results.json"), "w", encoding="ascii") as file:
+            json.dump(data, file)
+        return charts.Results(folder)
+
+
+class Drawn(unittest.TestCase):
+    def test_noise_above_a_tenth_hides_a_point(self):
+        clear, hidden = made_point("a", "x", 1.0, 0.5, 0.05), made_point("a", "y", 0.5, 0.4, 0.0401)
+        self.assertEqual(charts.value(clear), 0.5)
+        self.assertIsNone(charts.value(hidden))
+        self.assertEqual(charts.front([clear, hidden]), [clear])  # though faster and better by its figure
+
+    def test_no_truth_no_point(self):
+        self.assertIsNone(charts.value(made_point("a", "x", 1.0, 0.5, 0.0), truth="all"))
+
+    def test_each_error_is_less_is_better(self):
+        point = made_point("a", "x", 1.0, 0.5, 0.0)
+        self.assertEqual(charts.value(point, "bias"), 0.5)
+        self.assertEqual(charts.value(point, "score"), 2.0)
+
+
+class Means(unittest.TestCase):
+    def test_geometric_over_views(self):
+        points = [made_point("a", "x", 1.0, 0.1, 0.0), made_point("b", "x", 4.0, 0.4, 0.0)]
+        means, left = charts.means_over_views(made_results(points))
+        self.assertEqual(left, [])
+        self.assertAlmostEqual(means[0]["ms"]["median"], 2.0)
+        self.assertAlmostEqual(charts.value(means[0]), 0.2)
+
+    def test_only_what_every_view_has(self):
+        points = [made_point("a", "x", 1, 0.1, 0), made_point("b", "x", 1, 0.1, 0.1), made_point("a", "y", 1, 0.1, 0)]
+        means, left = charts.means_over_views(made_results(points))
+        self.assertEqual([m["settings"] for m in means], ["x"])
+        self.assertIsNone(charts.value(means[0]))  # one of its views is too noisy
+        self.assertEqual(sorted(settings for _, settings, _ in left), ["x", "y"])
+
+
+if __name__ == "__main__":
+    unittest.main()
