@@ -21,8 +21,8 @@ import results as charts  # noqa: E402
 # rsm's defaults at 320x180 against one bounce: (relMSE, nRMSE, absolute bias, FLIP), as measured when charts were
 # new. A tenth more is a regression: same input gives the same bits, and other devices round, no more.
 BOUNDS = {
-    "cornell": (0.316, 0.261, 0.130, 0.058),
-    "basic": (0.120, 0.746, 0.138, 0.022),
+    "cornell": (0.316, 0.261, 0.131, 0.0631),
+    "basic": (0.120, 0.746, 0.138, 0.0130),
     "rooms": (1.0, 0.40, 0.20, 0.10),
 }
 SLACK = 1.1
