@@ -87,7 +87,7 @@ def head(results):
     rows += list(header["versions"].items())
     frames = header["frames"]
     rows.append(("frames", f"{frames['warm_up']} unmeasured, then at least {frames['fewest']} and {frames['seconds']} s "
-                 f"(slow ones: at least 3 and {frames['patience']} s), at most {frames['most']}"))
+                 f"(slow ones: at least 3 and {frames['patience']} s, very slow ones one), at most {frames['most']}"))
     loads = [p["load_average"] for p in results.points]
     if loads:
         rows.append(("load average", f"{min(loads):.1f} to {max(loads):.1f} while measuring"))

@@ -7,7 +7,8 @@
 namespace cli {
 namespace {
 
-constexpr int kFewestOfAll = 3;
+constexpr int kFewestOfSlow = 3;
+constexpr double kVerySlow = 3.0;  // times the patience
 
 }  // namespace
 
@@ -26,18 +27,21 @@ TimeFigures summarise(std::vector<double> milliseconds) {
 ChartedFrames timeFrames(IndirectRenderer& renderer, const RenderInputs& inputs,
                          const FrameLimits& limits) {
     using Clock = std::chrono::steady_clock;
-    for (int i = 0; i < limits.warmUp; ++i) renderer.renderFrame(inputs, i == 0);
+    Clock::time_point start = Clock::now();
+    const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
+    for (int i = 0; i < limits.warmUp && (i == 0 || seconds() < limits.patience); ++i)
+        renderer.renderFrame(inputs, i == 0);
 
     ChartedFrames charted;
     std::vector<double> walls, totals;
-    const Clock::time_point start = Clock::now();
-    const auto isEnough = [&] {
-        const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    start = Clock::now();
+    const auto isEnough = [&](double past) {
         if (charted.frames >= limits.most) return true;
-        if (charted.frames >= limits.fewest && seconds >= limits.seconds) return true;
-        return charted.frames >= kFewestOfAll && seconds >= limits.patience;
+        if (charted.frames >= limits.fewest && past >= limits.seconds) return true;
+        if (charted.frames >= kFewestOfSlow && past >= limits.patience) return true;
+        return charted.frames >= 1 && past >= kVerySlow * limits.patience;
     };
-    while (!isEnough()) {
+    while (!isEnough(seconds())) {
         charted.last = renderer.renderFrame(inputs, limits.warmUp == 0 && charted.frames == 0);
         walls.push_back(charted.last.wallMilliseconds);
         totals.push_back(charted.last.totalMilliseconds);

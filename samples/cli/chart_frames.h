@@ -9,7 +9,7 @@ struct FrameLimits {
     int warmUp = 3;              // unmeasured frames, in which caches and clocks settle
     int fewest = 9, most = 200;  // measured ones: at least this many, unless each takes very long
     double seconds = 1.0;        // after which enough frames are enough
-    double patience = 6.0;       // after which fewer than `fewest` must do, but never fewer than 3
+    double patience = 6.0;  // after which 3 must do; after three times as long, or in warming up, one
 };
 
 struct TimeFigures {

@@ -219,7 +219,7 @@ class Lists(CommandLine):
 
     def test_help(self):
         self.assertIn("interleave=", self.done("render", "--help").stdout)
-        for command in ("devices", "scenes", "reference", "compare", "triptych"):
+        for command in ("devices", "scenes", "reference", "compare", "triptych", "chart"):
             self.assertIn("Usage: lightwell " + command, self.done(command, "--help").stdout)
 
 
