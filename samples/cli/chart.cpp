@@ -41,6 +41,7 @@ void complete(Arguments& arguments) {
     for (const std::string& technique : chart.techniques)
         requireOneOf("technique", technique, techniqueNames());
     requireOneOf("--cameras", arguments.cameras, {"all", "first"});
+    for (const std::string& only : chart.only) splitAssignment("--only", only);
     if (chart.deviceWidth != 0)
         requireOneOf("--width", std::to_string(chart.deviceWidth), {"1", "4", "8", "16"});
     chart.firstCameraOnly = arguments.cameras == "first" || chart.quick;
@@ -81,6 +82,9 @@ void addChart(CLI::App& app) {
     command->add_option("--scenes", options.scenes,
                         "Scenes by name or path; default: all that are found");
     command->add_option("--techniques", options.techniques, "Techniques by name; default: all");
+    command->add_option("--only", options.only,
+                        "key=value, one or several: of techniques with this parameter, only the points "
+                        "that have this value");
     command->add_flag(
         "--quick", options.quick,
         "About a minute: 320x180, two scenes, their first cameras, parameters moved one by one");

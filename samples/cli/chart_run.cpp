@@ -45,6 +45,17 @@ Json parametersJson(const Parameters& parameters) {
     return json;
 }
 
+bool isWanted(const Parameters& parameters, const std::vector<std::string>& only) {
+    const auto values = parameters.resolved();
+    return std::all_of(only.begin(), only.end(), [&](const std::string& assignment) {
+        const auto [name, text] = splitAssignment("--only", assignment);
+        return std::all_of(values.begin(), values.end(),
+                           [&, key = name, wanted = text](const auto& value) {
+                               return value.first != key || valueText(value.second) == wanted;
+                           });
+    });
+}
+
 std::string shortHash(const std::string& text) {
     return fmt::format("{:016x}", studio::hashBytes(text.data(), text.size(), 5));
 }
@@ -104,6 +115,7 @@ Charter::Charter(const ChartOptions& options)
     bool needsDevice = false;
     for (const std::string& technique : options.techniques)
         for (SweepPoint& sweep : sweepOf(technique, options.quick)) {
+            if (!isWanted(sweep.parameters, options.only)) continue;
             needsDevice = needsDevice || sweep.parameters.needsDevice();
             points_.push_back({technique, std::move(sweep)});
         }

@@ -10,6 +10,7 @@ namespace cli {
 
 struct ChartOptions {
     std::vector<std::string> scenes, techniques;
+    std::vector<std::string> only;  // "key=value": of techniques with this parameter, only such points
     std::string folder, device;
     int width = 1280, height = 720;
     int deviceWidth = 0;  // lanes per work-item; 0: by probe

@@ -69,7 +69,7 @@ std::pair<std::string, std::string> splitAssignment(std::string_view option, con
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos || equals == 0)
         throw UsageError(fmt::format("{} '{}': expected {}", option, text,
-                                     option == "--set" ? "key=value" : "NAME=FILE"));
+                                     option == "--debug-view" ? "NAME=FILE" : "key=value"));
     return {text.substr(0, equals), text.substr(equals + 1)};
 }
 

@@ -85,7 +85,10 @@ const LWTechniqueInfo& rivalInfo() {
         "path tracing with Embree on the host's cores, not of the library: what to compare with",
         kParameters,
         std::uint32_t(std::size(kParameters)),
-        setDefaults};
+        setDefaults,
+        0,  // the parameter says it
+        nullptr,
+        0};
     return info;
 }
 

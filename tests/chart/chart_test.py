@@ -140,6 +140,16 @@ class Chart(unittest.TestCase):
         self.assertLess(sum(not p["errors"]["own"]["trusted"] for p in self.results()["points"]), len(hidden))
         self.assertEqual(len([f for f in os.listdir(self.cache) if f.endswith(".exr")]), 1)
 
+    def test_the_rival_and_chosen_points(self):
+        """A technique of the host joins by its registration; --only picks points; bounces are judged apart."""
+        self.chart("--quick", "--scenes", "cornell", "--size", "32x18", "--noise", "0.5", "--no-report", "--techniques", "rival",
+                   "rsm", "--only", "spp=1", "vpls=64")
+        points = self.results()["points"]
+        self.assertEqual({p["parameters"].get("spp", 1) for p in points}, {1})
+        self.assertEqual({p["parameters"].get("vpls", 64) for p in points}, {64})
+        self.assertEqual({p["errors"]["own"]["bounces"] for p in points if p["technique"] == "rival"}, {1, 2})
+        self.assertTrue(all(p["ms"]["median"] > 0 and p["device"] is None for p in points if p["technique"] == "rival"))
+
     def test_refusals(self):
         self.assertIn("rsm", self.chart("--techniques", "nothing", code=2))
         self.assertIn("nothing", self.chart("--quick", "--scenes", "nothing", "--no-report", code=2))
