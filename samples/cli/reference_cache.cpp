@@ -112,13 +112,16 @@ Truth obtainTruth(const studio::RayScene& scene, const studio::GBuffer& view,
     truth.name = fileName(scene, view, request.bounces);
     const std::string path = (directory / (truth.name + ".exr")).string();
     const std::string checkpoint = (directory / (truth.name + ".film")).string();
+    Truth kept = truth;
     if (fs::exists(path)) {
-        truth.image = studio::readImage(path);
-        readFigures(truth);
-        if (truth.noise <= request.noise) return truth;
+        kept.image = studio::readImage(path);
+        readFigures(kept);
+        if (kept.noise <= request.noise) return kept;
     }
     truth.image = assemble(traceUntil(scene, view, request, checkpoint), layersOf(request.bounces));
     readFigures(truth);
+    // Time may be up before the new picture is as good as the one that is kept.
+    if (kept.samples > 0 && kept.noise < truth.noise) return kept;
     if (truth.noise <= request.noise) {
         const std::string unfinished = (directory / (truth.name + ".part.exr")).string();
         studio::writeExr(unfinished, truth.image);

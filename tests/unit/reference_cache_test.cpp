@@ -72,6 +72,10 @@ TEST_CASE("a truth is traced once, to the noise asked for", "[chart]") {
     CHECK(better.noise <= 0.3 * first.noise);
     CHECK(better.samples > first.samples);
     CHECK(filesIn(folder.path(), ".exr") == 1);
+
+    TruthRequest hasty = request(folder.path(), 1e-9);  // ends with less than what is kept
+    hasty.seconds = 1e-6;
+    CHECK(sameBits(cli::obtainTruth(scene, view.view, hasty), better));
 }
 
 TEST_CASE("an interrupted truth goes on to the same bits", "[chart]") {
