@@ -56,7 +56,7 @@ def conditions(results):
     return [f"Measured {header['written'][:10]} at {header['size'][0]}x{header['size'][1]} on {where}, "
             f"{header['versions']['threads']} threads; load average {min(loads):.1f} to {max(loads):.1f} (the machine was "
             f"{'shared: times are too long by as much' if max(loads) > 2.5 else 'ours alone'}). {len(results.points)} points in "
-            f"{len(results.views)} views. Time: host's images to host's output. Truth: as many bounces as the technique models."]
+            f"{len(results.views)} view{'s' * (len(results.views) > 1)}. Time: host's images to host's output. Truth: as many bounces as the technique models."]
 
 
 def percent(error):
@@ -117,8 +117,11 @@ def technique_text(results, technique):
     trusted = [p for p in defaults if is_drawn(p)]
     if trusted:
         worst, best = max(trusted, key=value), min(trusted, key=value)
-        lines += ["", f"Typical relative error (the root of relMSE) of the defaults: from {percent(value(best) ** 0.5)} in {best['scene']} "
-                  f"to {percent(value(worst) ** 0.5)} in {worst['scene']}. " + bias_sentence(trusted) + more_sentence(results, technique)]
+        span = f"{percent(value(best) ** 0.5)} in {best['scene']}"
+        if worst is not best:
+            span = f"from {span} to {percent(value(worst) ** 0.5)} in {worst['scene']}"
+        lines += ["", f"Typical relative error (the root of relMSE) of the defaults: {span}. " + bias_sentence(trusted) +
+                  more_sentence(results, technique)]
     return lines + [""]
 
 
@@ -146,8 +149,13 @@ def more_sentence(results, technique):
     if not gains:
         return ""
     least, most = min(gains, key=lambda g: g[0]), max(gains, key=lambda g: g[0])
-    return (f"The best setting of its sweep lowers relMSE by a factor of {least[0]:.1f} ({least[2]}) to {most[0]:.1f} ({most[2]}, "
-            f"`{most[3]['settings']}`, {most[1]:.1f} times the time): what stays is not sampling.")
+    text = f"The best trusted setting of its sweep lowers relMSE by a factor of {least[0]:.1f} ({least[2]}"
+    if most is not least:
+        text += f") to {most[0]:.1f} ({most[2]}"
+    text += f", `{most[3]['settings']}`, {most[1]:.1f} times the time)."
+    if most[0] < 2.0:
+        text += " So little do its parameters buy: most of its error is not theirs to remove."
+    return text
 
 
 def not_drawn_text(results):

@@ -81,8 +81,8 @@ def draw(results, axis, title, points):
                          edgecolors=colour_of(results, point["technique"]), linewidths=1.0)
     hidden = sum(1 for p in points if not is_drawn(p))
     if hidden:
-        axis.text(0.99, 0.99, f"{hidden} points not drawn:\nthe truth is too noisy for them", ha="right", va="top",
-                  transform=axis.transAxes, fontsize=7, color="0.4")
+        axis.set_title(f"{hidden} of {len(points)} not drawn: the truth is too noisy for them", loc="right", fontsize=7,
+                       color="0.4")
     widen(axis, drawn)
     axis.set_xscale("log")
     axis.set_yscale("log")
@@ -90,7 +90,7 @@ def draw(results, axis, title, points):
         one.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         one.set_major_formatter(StrMethodFormatter("{x:g}"))
         one.set_minor_formatter(NullFormatter())
-    axis.set_title(title)
+    axis.set_title(title, loc="left")
     axis.set_xlabel("milliseconds per frame")
     axis.set_ylabel("relative MSE, truth of the bounces modelled")
     if drawn:
