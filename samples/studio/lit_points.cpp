@@ -157,9 +157,8 @@ void LitPoints::chooseCells(const std::vector<double>& flux, const std::vector<d
     }
 }
 
-bool LitPoints::sample(Sampler& sampler, Point& point) const {
+bool LitPoints::sample(const glm::dvec2& fine, Point& point) const {
     // One pair chooses the cell and, with what is left of it, the place there: it stays stratified.
-    const glm::dvec2 fine = sampler.nextFine();
     const double choice = fine.x * upTo_.back();
     const auto found = std::upper_bound(upTo_.begin(), upTo_.end() - 1, choice);
     const auto cell = std::size_t(found - upTo_.begin());

@@ -21,7 +21,8 @@ public:
     bool empty() const { return probability_.empty(); }
 
     // False when the light's ray meets nothing.
-    bool sample(Sampler& sampler, Point& point) const;
+    bool sample(Sampler& sampler, Point& point) const { return sample(sampler.nextFine(), point); }
+    bool sample(const glm::dvec2& fine, Point& point) const;
     // Density per area of surface with which sample() finds a point by a light that shines on it.
     float density(std::size_t light, const glm::vec3& position, const glm::vec3& geometricNormal) const;
 

@@ -18,12 +18,30 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Pixels that no neighbour on their surface could light take this many times the paths: they are few,
-// and nothing smooths them.
-constexpr std::uint32_t kLeftOverPaths = 4;
-
 double millisecondsSince(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+// Places that a picture shows, on a coarse grid.
+std::vector<Surface> receiversOf(const GBuffer& g) {
+    constexpr int kGrid = 16;
+    std::vector<Surface> receivers;
+    for (int j = 0; j < kGrid; ++j)
+        for (int i = 0; i < kGrid; ++i) {
+            const int x = (2 * i + 1) * g.width / (2 * kGrid), y = (2 * j + 1) * g.height / (2 * kGrid);
+            const glm::vec3 normal = g.normal.rgb(x, y);
+            if (normal != glm::vec3(0.0f)) receivers.push_back({g.position.rgb(x, y), normal, normal});
+        }
+    return receivers;
+}
+
+// Levels of the filter where the options leave them open: what noise is left decides how far neighbours
+// help more than they harm (docs/techniques/rival.md has the measurements). At a quarter of the resolution
+// the next pixel of the traced image is four pixels away.
+std::uint32_t filterLevels(const RivalOptions& options) {
+    if (options.levels != 0) return options.levels;
+    const std::uint32_t levels = options.spp < 2 ? 3 : options.spp < 16 ? 2 : 1;
+    return options.resolution == RivalResolution::Quarter ? std::max(levels, 2u) - 1 : levels;
 }
 
 void require(bool isTrue, const char* name, const char* expectation, std::uint64_t came) {
@@ -39,6 +57,7 @@ struct Rival::Impl {
     TracedGrid grid;
     int tileSide;
     WorkerPool pool;
+    std::unique_ptr<LitPoints> litPoints;  // of `scene`
     std::unique_ptr<RivalScene> scene;
     std::uint64_t sceneId = 0;      // of the RayScene that `scene` was made of
     std::vector<PixelPlace> order;  // of a tile's pixels
@@ -98,7 +117,7 @@ void Rival::Impl::tracePixels(Worker& worker, std::uint32_t spp) {
     for (std::uint32_t sample = 0; sample < spp;) {
         for (batch.count = 0; sample < spp && batch.count + pixels.count <= PathBatch::kSize; ++sample)
             pixels.addTo(batch, spp, sample);
-        worker.paths.trace(*scene, mixBits(options.seed), batch, sums);
+        worker.paths.trace(*scene, litPoints.get(), mixBits(options.seed), batch, sums);
     }
 }
 
@@ -119,7 +138,7 @@ void Rival::Impl::traceTile(const GBuffer& g, int tile, Worker& worker, PaddedPl
 
 void Rival::Impl::traceLeftOver(const GBuffer& g, const std::vector<PixelPlace>& pixels,
                                 PlanarBuffer& to) {
-    const std::uint32_t spp = options.spp * kLeftOverPaths;
+    const std::uint32_t spp = options.spp;
     constexpr std::size_t kPerJob = 64;
     pool.run((pixels.size() + kPerJob - 1) / kPerJob, [&](std::size_t job, int thread) {
         Worker& worker = workers[std::size_t(thread)];
@@ -156,6 +175,10 @@ RivalTimes Rival::render(const RayScene& rayScene, const GBuffer& g, PlanarBuffe
     if (s.scene == nullptr || s.sceneId != rayScene.id()) {
         s.scene = std::make_unique<RivalScene>(rayScene);
         s.sceneId = rayScene.id();
+        s.litPoints.reset();
+        if (s.options.connect != 0 && !rayScene.lights().empty())
+            s.litPoints = std::make_unique<LitPoints>(rayScene, receiversOf(g), true);
+        if (s.litPoints != nullptr && s.litPoints->empty()) s.litPoints.reset();
     }
     RivalTimes times;
     Clock::time_point start = Clock::now();
@@ -169,7 +192,7 @@ RivalTimes Rival::render(const RayScene& rayScene, const GBuffer& g, PlanarBuffe
     std::vector<std::vector<Tap>> windows;
     if (s.options.filter != 0) {
         if (s.options.pattern > 1) windows.push_back(patternWindow(int(s.options.pattern)));
-        for (std::uint32_t level = 0; level < s.options.levels; ++level)
+        for (std::uint32_t level = 0; level < filterLevels(s.options); ++level)
             windows.push_back(splineWindow(1 << level));
     }
     const int across = (s.grid.width + s.tileSide - 1) / s.tileSide;

@@ -23,9 +23,12 @@ struct RivalOptions {
     std::uint32_t spp = 1;      // paths per traced pixel
     RivalResolution resolution = RivalResolution::Full;
     std::uint32_t filter = 1;   // 1: edge-aware filter; 0: the traced image
-    std::uint32_t levels = 3;   // of the filter: each doubles its reach
+    std::uint32_t levels = 0;   // of the filter: each doubles its reach; 0: by the paths
     std::uint32_t pattern = 0;  // n: pixels n apart share sample points; 0: no two pixels do
     RivalRays rays = RivalRays::Packets;
+    // 1: paths are also joined to places that lamps shine on, found from the lamps (twice the rays).
+    // Which of these places matter is judged when a scene is first seen, from that view.
+    std::uint32_t connect = 0;
     std::uint32_t seed = 0;
 };
 

@@ -15,8 +15,10 @@ namespace {
 
 // Cosine between normals at which a neighbour stops counting; full weight at 1, linear between.
 constexpr float kNormalCosine = 0.8f;
-// Slope off the tangent plane up to which a neighbour counts.
-constexpr float kSlope = 0.7f;
+// Slope off the tangent plane up to which a neighbour counts. Of the filter: at 0.7 light crosses folds
+// and arches (Sponza, 16 paths: relMSE 0.43 instead of 0.28), at 0.1 noise stays on curved surfaces. Of
+// the up-sampling, whose pixels are nearer: at 0.25 twice as many find no neighbour and are traced.
+constexpr float kSlope = 0.25f, kUpsampleSlope = 0.7f;
 constexpr int kBandRows = 16;
 // Bilinear weight on its own surface that a pixel needs: less, and its light is traced for itself.
 constexpr float kLeastWeight = 1e-3f;
@@ -106,7 +108,7 @@ STUDIO_SIMD void addTap(const Row& p, const Row& q, int dx, int begin, int end, 
         const float agreement = mx[x] * nx[x] + my[x] * ny[x] + mz[x] * nz[x];
         float w = (agreement - kNormalCosine) * (1.0f / (1.0f - kNormalCosine));
         w = w > 0.0f ? w : 0.0f;
-        w = off * off <= kSlope * kSlope * squared ? w * weight : 0.0f;
+        w = off * off <= kUpsampleSlope * kUpsampleSlope * squared ? w * weight : 0.0f;
         w *= weights[x];
         sr[x] += w * r[x];
         sg[x] += w * g[x];

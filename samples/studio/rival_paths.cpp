@@ -322,6 +322,8 @@ void RivalPaths::shade(int bounce, float* const sums[3]) {
         }
         if (bounce == bounces_) continue;
 
+        const float density = std::abs(facing) * glm::dot(at(b.normal, i), direction) * kInversePi /
+                              (b.distance[i] * b.distance[i]);
         const float u = b.u[i], v = b.v[i], w = 1.0f - u - v;
         throughput *= scene_->albedo(triangle, u, v);
         if (largest(throughput) <= 0.0f) continue;
@@ -339,6 +341,7 @@ void RivalPaths::shade(int bounce, float* const sums[3]) {
         put(b.face, kept, face);
         put(b.normal, kept, normal);
         put(b.throughput, kept, throughput);
+        b.rayDensity[kept] = density;
         b.index[kept] = b.index[i];
         b.target[kept] = b.target[i];
         ++kept;
@@ -356,16 +359,23 @@ void RivalPaths::connect(float* const sums[3]) {
 void RivalPaths::punctualLights(float* const sums[3]) {
     PathBatch& b = *batch_;
     Arrivals found;
-    for (const Light& light : scene_->rays().lights()) {
+    const std::vector<Light>& lights = scene_->rays().lights();
+    for (std::size_t l = 0; l < lights.size(); ++l) {
+        const Light& light = lights[l];
         arrivals(light, b, found);
         shadow_.count = 0;
         for (int i = 0; i < b.count; ++i) {
             if (found.strength[i] <= 0.0f) continue;
+            // What connections to lit points leave to rays: the balance heuristic, as in integrator.cpp.
+            float share = found.strength[i];
+            if (litPoints_ != nullptr)
+                share /=
+                    1.0f + litPoints_->density(l, at(b.position, i), at(b.face, i)) / b.rayDensity[i];
             const int to = shadow_.count++;
             for (int c = 0; c < 3; ++c) {
                 shadow_.origin[c][to] = b.position[c][i];
                 shadow_.direction[c][to] = found.direction[c][i];
-                shadow_.irradiance[c][to] = b.throughput[c][i] * light.emitted[c] * found.strength[i];
+                shadow_.irradiance[c][to] = b.throughput[c][i] * light.emitted[c] * share;
             }
             shadow_.reach[to] = found.reach[i];
             shadow_.target[to] = b.target[i];
@@ -406,21 +416,60 @@ void RivalPaths::emitters(float* const sums[3]) {
     connect(sums);
 }
 
-void RivalPaths::trace(const RivalScene& scene, std::uint64_t seed, PathBatch& batch,
-                       float* const sums[3]) {
+// Each vertex is joined to one place that a lamp shines on, found by a ray from the lamp: where the lamp
+// lights little that matters, few of the path's own rays would meet it.
+void RivalPaths::litPoints(float* const sums[3]) {
+    const PathBatch& b = *batch_;
+    shadow_.count = 0;
+    for (int i = 0; i < b.count; ++i) {
+        LitPoints::Point found;
+        if (!litPoints_->sample({b.point[0][i], b.point[1][i]}, found)) continue;
+        const Surface& lit = found.surface;
+        const glm::vec3 origin = at(b.position, i);
+        const glm::vec3 way = scene_->rays().offset(lit.position, lit.geometricNormal) - origin;
+        const float squared = glm::dot(way, way), distance = std::sqrt(squared);
+        if (squared <= 0.0f) continue;
+        const glm::vec3 direction = way / distance;
+        const float cosine = glm::dot(at(b.normal, i), direction);
+        const float litCosine = -glm::dot(lit.geometricNormal, direction);
+        if (cosine <= 0.0f || litCosine <= 0.0f || glm::dot(at(b.face, i), direction) <= 0.0f) continue;
+        const LightArrival lamp = arrivalOf(scene_->rays().lights()[found.light], lit.position);
+        const float lampCosine = glm::dot(lit.normal, lamp.toLight);
+        if (lampCosine <= 0.0f) continue;
+        const float byRay = cosine * litCosine * kInversePi / squared;
+        const int to = shadow_.count++;
+        put(shadow_.origin, to, origin);
+        put(shadow_.direction, to, direction);
+        put(shadow_.irradiance, to,
+            at(b.throughput, i) * found.albedo * lamp.irradiance *
+                (lampCosine * byRay / (byRay + found.density)));
+        shadow_.reach[to] = distance;
+        shadow_.target[to] = b.target[i];
+    }
+    rays += std::uint64_t(b.count);
+    connect(sums);
+}
+
+void RivalPaths::trace(const RivalScene& scene, const LitPoints* litPoints, std::uint64_t seed,
+                       PathBatch& batch, float* const sums[3]) {
     scene_ = &scene;
+    litPoints_ = litPoints;
     batch_ = &batch;
     const bool hasEmitters = !scene.emitters().empty();
     const int segments = bounces_ + (hasEmitters || scene.hasSky() ? 1 : 0);
     for (int segment = 0; segment < segments && batch.count > 0; ++segment) {
-        draw(seed, 2 * segment);
+        if (litPoints_ != nullptr && segment < bounces_) {
+            draw(seed, 3 * segment + 2);
+            this->litPoints(sums);
+        }
+        draw(seed, 3 * segment);
         chooseDirections(batch);
         intersect();
         shade(segment, sums);
         if (segment == bounces_) break;
         punctualLights(sums);
         if (!hasEmitters) continue;
-        draw(seed, 2 * segment + 1);
+        draw(seed, 3 * segment + 1);
         emitters(sums);
     }
 }

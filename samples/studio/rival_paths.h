@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "lit_points.h"
 #include "rival_scene.h"
 
 namespace studio {
@@ -20,6 +21,7 @@ struct PathBatch {
     alignas(64) std::uint32_t index[kSize];  // of the sample point
     alignas(64) std::int32_t target[kSize];  // pixel of the tile
     alignas(64) float point[2][kSize];       // in [0,1)^2
+    alignas(64) float rayDensity[kSize];     // 1/m^2, with which its ray found the vertex
     alignas(64) std::int32_t alive[kSize];   // -1: this segment's ray is worth tracing
     // What the ray met.
     alignas(64) float distance[kSize], hitFace[3][kSize], u[kSize], v[kSize];
@@ -41,7 +43,9 @@ public:
 
     // Adds each path's irradiance of bounces 1 to `bounces` to sums[channel][target]. The batch's
     // positions, normals, indices and targets are given; the rest is the batch's own.
-    void trace(const RivalScene& scene, std::uint64_t seed, PathBatch& batch, float* const sums[3]);
+    // `litPoints`: the other end of connections, or null for none.
+    void trace(const RivalScene& scene, const LitPoints* litPoints, std::uint64_t seed, PathBatch& batch,
+               float* const sums[3]);
     std::uint64_t rays = 0, shadowRays = 0;
 
 private:
@@ -50,11 +54,13 @@ private:
     void shade(int bounce, float* const sums[3]);
     void punctualLights(float* const sums[3]);
     void emitters(float* const sums[3]);
+    void litPoints(float* const sums[3]);
     void connect(float* const sums[3]);  // traces shadow_ and adds what arrives
 
     int bounces_;
     bool asPackets_;
     const RivalScene* scene_ = nullptr;
+    const LitPoints* litPoints_ = nullptr;
     PathBatch* batch_ = nullptr;
     ShadowBatch shadow_;
 };

@@ -117,7 +117,9 @@ TEST_CASE("In the sphere with a lamp in its middle the bounces are pi/2 and pi/4
     CHECK(meanOf(render(view, unfiltered(1, 1))) == Approx(pi / 2).epsilon(kFacets));
     CHECK(meanOf(render(view, unfiltered(2, 1))) == Approx(0.75 * pi).epsilon(kFacets));
 
-    // So the filter and the up-sampling have nothing to change either, at every pixel.
+    // So the filter and the up-sampling have nothing to change either, at every pixel. Where the smooth
+    // normal leans furthest from its facet a few of the 4 paths start under it: 3 to 4 %.
+    constexpr double kLeaningNormals = 0.06;
     for (const RivalResolution resolution :
          {RivalResolution::Full, RivalResolution::Half, RivalResolution::Quarter}) {
         RivalOptions options;
@@ -127,7 +129,7 @@ TEST_CASE("In the sphere with a lamp in its middle the bounces are pi/2 and pi/4
         INFO("resolution " << int(resolution));
         for (int y = 0; y < 27; ++y)
             for (int x = 0; x < 48; ++x)
-                REQUIRE(double(result.irradiance.row(0, y)[x]) == Approx(pi / 2).epsilon(0.03));
+                REQUIRE(double(result.irradiance.row(0, y)[x]) == Approx(pi / 2).epsilon(kLeaningNormals));
     }
 }
 
@@ -146,7 +148,8 @@ TEST_CASE("The unfiltered error against the reference falls at least as a random
         // The mean of 768 pixels: four standard deviations of independent pixels.
         CHECK(std::abs(many.bias) < 4.0 * many.nrmse / std::sqrt(768.0));
         // Ever more samples meet the reference as nearly as its own noise lets them.
-        const Error most = errorOf(render(view, unfiltered(std::uint32_t(bounces), 1024)), truth, bounces);
+        const Error most =
+            errorOf(render(view, unfiltered(std::uint32_t(bounces), 1024)), truth, bounces);
         INFO("nRMSE " << most.nrmse << " at 1024");
         CHECK(most.nrmse < many.nrmse / 3.0);
         CHECK(std::abs(most.bias) < 0.003);
@@ -165,6 +168,21 @@ TEST_CASE("Coherent patterns and single rays estimate the same light") {
             // Pixels that share sample points share their error: 256 points in all with pattern 1.
             CHECK(meanOf(render(view, options)) == Approx(expected).epsilon(0.03));
         }
+}
+
+TEST_CASE("Connections to lit points bring the same light with less noise") {
+    const View view("cornell", 32, 24);
+    const Image truth = truthOf(view, 4096);
+    for (const int bounces : {1, 2}) {
+        RivalOptions options = unfiltered(std::uint32_t(bounces), 64);
+        const Error without = errorOf(render(view, options), truth, bounces);
+        options.connect = 1;
+        const Error with = errorOf(render(view, options), truth, bounces);
+        INFO("bounces " << bounces << ", nRMSE " << without.nrmse << " -> " << with.nrmse << ", bias "
+                        << with.bias);
+        CHECK(with.nrmse < without.nrmse);
+        CHECK(std::abs(with.bias) < 0.005);  // the mean of 768 pixels, and the truth's own noise
+    }
 }
 
 TEST_CASE("Same seed, same bits; another seed, other noise") {
