@@ -45,29 +45,33 @@ private:
     std::uint64_t estimatedBytes_;
 };
 
-const double kBounces[] = {1, 2}, kSamples[] = {1, 2, 4, 8, 16, 32, 64}, kPatterns[] = {0, 1, 2, 4, 8};
+const double kBounces[] = {1, 2}, kSamples[] = {1, 2, 4, 8, 16}, kPatterns[] = {0, 1, 2, 4, 8};
 const char* const kResolutions[] = {"full", "half", "quarter", nullptr};
 const char* const kRays[] = {"packets", "single", nullptr};
-const double kResolutionSweep[] = {0, 1, 2}, kSwitch[] = {0, 1};
+const double kResolutionSweep[] = {0, 1, 2};
+
+const LWSetting kSettings[] = {{"1 path, raw", "spp=1 filter=off"},
+                               {"16 paths, raw", "spp=16 filter=off"},
+                               {"16 paths, connected", "spp=16 connect=on"}};
 
 #define FIELD(name) std::uint32_t(offsetof(RivalOptions, name))
 const LWParameter kParameters[] = {
     {"bounces", "1: one indirect bounce; 2: the first and the second", LW_PARAMETER_UINT, FIELD(bounces),
      1, 2, 1, nullptr, kBounces, 2, kBounces, 2},
     {"spp", "paths per traced pixel; time grows in proportion", LW_PARAMETER_UINT, FIELD(spp), 1, 1024,
-     1, nullptr, nullptr, 0, kSamples, 7},
+     1, nullptr, nullptr, 0, kSamples, 5},
     {"resolution", "traced on every pixel, every second or every fourth, then up-sampled",
      LW_PARAMETER_ENUM, FIELD(resolution), 0, 2, 0, kResolutions, nullptr, 0, kResolutionSweep, 3},
     {"filter", "edge-aware filter; off: the traced image", LW_PARAMETER_BOOL, FIELD(filter), 0, 1, 1,
-     nullptr, nullptr, 0, kSwitch, 2},
+     nullptr, nullptr, 0, nullptr, 0},
     {"levels", "of the filter, each doubles its reach; 0: by the number of paths", LW_PARAMETER_UINT,
-     FIELD(levels), 0, 6, 3, nullptr, nullptr, 0, nullptr, 0},
+     FIELD(levels), 0, 5, 0, nullptr, nullptr, 0, nullptr, 0},
     {"pattern", "pixels this many apart share sample points, so that rays are coherent; 0: none do",
      LW_PARAMETER_UINT, FIELD(pattern), 0, 8, 0, nullptr, kPatterns, 5, nullptr, 0},
     {"rays", "how rays go to Embree: 16 at a time or one by one", LW_PARAMETER_ENUM, FIELD(rays), 0, 1,
      0, kRays, nullptr, 0, nullptr, 0},
     {"connect", "join paths to what lamps shine on, found from the lamps; twice the rays",
-     LW_PARAMETER_BOOL, FIELD(connect), 0, 1, 0, nullptr, nullptr, 0, kSwitch, 2},
+     LW_PARAMETER_BOOL, FIELD(connect), 0, 1, 0, nullptr, nullptr, 0, nullptr, 0},
     {"seed", "of the sample points", LW_PARAMETER_UINT, FIELD(seed), 0, 4294967295.0, 0, nullptr,
      nullptr, 0, nullptr, 0},
 };
@@ -89,8 +93,8 @@ const LWTechniqueInfo& rivalInfo() {
         std::uint32_t(std::size(kParameters)),
         setDefaults,
         0,  // the parameter says it
-        nullptr,
-        0};
+        kSettings,
+        std::uint32_t(std::size(kSettings))};
     return info;
 }
 

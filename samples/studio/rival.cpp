@@ -36,8 +36,8 @@ std::vector<Surface> receiversOf(const GBuffer& g) {
 }
 
 // Levels of the filter where the options leave them open: what noise is left decides how far neighbours
-// help more than they harm (docs/techniques/rival.md has the measurements). At a quarter of the resolution
-// the next pixel of the traced image is four pixels away.
+// help more than they harm (docs/techniques/rival.md has the measurements). At a quarter of the
+// resolution the next pixel of the traced image is four pixels away.
 std::uint32_t filterLevels(const RivalOptions& options) {
     if (options.levels != 0) return options.levels;
     const std::uint32_t levels = options.spp < 2 ? 3 : options.spp < 16 ? 2 : 1;
@@ -83,6 +83,7 @@ struct Rival::Impl {
 Rival::Impl::Impl(const RivalOptions& o, int fullWidth, int fullHeight) : options(o) {
     const int factor = 1 << int(o.resolution);
     require(o.bounces == 1 || o.bounces == 2, "bounces", "1 or 2", o.bounces);
+    require(o.levels <= 5, "levels", "0 to 5", o.levels);  // wider windows pass PaddedPlanes::kPad
     require(o.spp >= 1, "spp", "at least 1", o.spp);
     require(o.pattern <= 8 && (o.pattern & (o.pattern - 1)) == 0, "pattern", "0, 1, 2, 4 or 8",
             o.pattern);
