@@ -91,6 +91,9 @@ def head(results):
     loads = [p["load_average"] for p in results.points]
     if loads:
         rows.append(("load average", f"{min(loads):.1f} to {max(loads):.1f} while measuring"))
+    others = sum(p.get("build", header["build"]) != header["build"] for p in results.points)
+    if others:
+        rows.append(("builds", f"{others} of {len(results.points)} points are of another build than the last run"))
     if results.stale:
         rows.append(("left out", f"{len(results.stale)} points of another size"))
     return table(["", ""], rows)

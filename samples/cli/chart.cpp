@@ -82,9 +82,10 @@ void addChart(CLI::App& app) {
     command->add_option("--scenes", options.scenes,
                         "Scenes by name or path; default: all that are found");
     command->add_option("--techniques", options.techniques, "Techniques by name; default: all");
-    command->add_option("--only", options.only,
-                        "key=value, one or several: of techniques with this parameter, only the points "
-                        "that have this value");
+    command->add_option(
+        "--only", options.only,
+        "key=value,value ..., one or several: of techniques with this parameter, only the "
+        "points with such a value");
     command->add_flag(
         "--quick", options.quick,
         "About a minute: 320x180, two scenes, their first cameras, parameters moved one by one");

@@ -45,13 +45,18 @@ Json parametersJson(const Parameters& parameters) {
     return json;
 }
 
+// `text` is one of the values of "a,b,c".
+bool isListed(const std::string& text, const std::string& list) {
+    return ("," + list + ",").find("," + text + ",") != std::string::npos;
+}
+
 bool isWanted(const Parameters& parameters, const std::vector<std::string>& only) {
     const auto values = parameters.resolved();
     return std::all_of(only.begin(), only.end(), [&](const std::string& assignment) {
         const auto [name, text] = splitAssignment("--only", assignment);
         return std::all_of(values.begin(), values.end(),
-                           [&, key = name, wanted = text](const auto& value) {
-                               return value.first != key || valueText(value.second) == wanted;
+                           [&, key = name, list = text](const auto& value) {
+                               return value.first != key || isListed(valueText(value.second), list);
                            });
     });
 }
@@ -271,6 +276,7 @@ Charter::Pending Charter::timePoint(const ChartView& view, const ChartedPoint& p
     Json& json = pending.point;
     json["id"] = pointId(view, point);
     json["key"] = pointKey(view, point);
+    json["build"] = build_;
     json["scene"] = view.sceneName();
     json["camera"] = view.cameraName();
     json["technique"] = point.technique;

@@ -27,7 +27,7 @@ BOUNDS = {
 }
 SLACK = 1.1
 QUICK = ["--quick", "--techniques", "rsm", "--no-report"]
-POINT_KEYS = {"id", "key", "scene", "camera", "technique", "label", "settings", "parameters", "bounces", "size", "device",
+POINT_KEYS = {"id", "key", "build", "scene", "camera", "technique", "label", "settings", "parameters", "bounces", "size", "device",
               "frames", "ms", "device_ms", "bytes", "load_average", "errors", "images"}
 ERROR_KEYS = {"bounces", "relMSE", "nrmse", "bias", "p99", "noise", "trusted", "rmse", "ssim", "score", "score255", "flip"}
 
@@ -143,10 +143,10 @@ class Chart(unittest.TestCase):
     def test_the_rival_and_chosen_points(self):
         """A technique of the host joins by its registration; --only picks points; bounces are judged apart."""
         self.chart("--quick", "--scenes", "cornell", "--size", "32x18", "--noise", "0.5", "--no-report", "--techniques", "rival",
-                   "rsm", "--only", "spp=1", "vpls=64")
+                   "rsm", "--only", "spp=1", "vpls=64,1024")
         points = self.results()["points"]
         self.assertEqual({p["parameters"].get("spp", 1) for p in points}, {1})
-        self.assertEqual({p["parameters"].get("vpls", 64) for p in points}, {64})
+        self.assertEqual({p["parameters"].get("vpls", 64) for p in points}, {64, 1024})
         self.assertEqual({p["errors"]["own"]["bounces"] for p in points if p["technique"] == "rival"}, {1, 2})
         self.assertTrue(all(p["ms"]["median"] > 0 and p["device"] is None for p in points if p["technique"] == "rival"))
 
