@@ -80,13 +80,19 @@ LW_FN float wrap_unit(float u) {
     return fmin(u, 0.99999994f);
 }
 
+// What the gather's bounded term needs beside the VPL as the host knows it.
+LW_FN lw_vpl bounded(lw_vpl vpl) {
+    vpl.normal.w = vpl.positionArea.w * (0.5f * M_1_PI_F);
+    return vpl;
+}
+
 LW_FN lw_vpl texel_vpl(__global const float* texels, int planeStride, int texel, float factor) {
     __global const float* p = texels + texel;
     lw_vpl vpl;
     vpl.positionArea = (float4)(p[0], p[planeStride], p[2 * planeStride], p[9 * planeStride] * factor);
     vpl.normal = (float4)(p[3 * planeStride], p[4 * planeStride], p[5 * planeStride], 0.0f);
     vpl.flux = (float4)(p[6 * planeStride] * factor, p[7 * planeStride] * factor, p[8 * planeStride] * factor, 0.0f);
-    return vpl;
+    return bounded(vpl);
 }
 
 LW_FN lw_vpl no_vpl(void) {
@@ -108,7 +114,7 @@ __kernel void vpl_sampling_draw(__global const float* texels, int4 layout, __glo
     if (slot >= order.subsets * order.capacity) return;
     const int k = lw_subset_index(order, slot);
     if (k < 0) { vpls[slot] = no_vpl(); return; }
-    if (k >= sampleCount) { vpls[slot] = authored[k - sampleCount]; return; }
+    if (k >= sampleCount) { vpls[slot] = bounded(authored[k - sampleCount]); return; }
     const float total = rowSums[rowCount - 1];
     if (!(total > 0.0f)) { vpls[slot] = no_vpl(); return; }
 
@@ -131,7 +137,7 @@ __kernel void vpl_sampling_all(__global const float* texels, int4 layout, int te
     if (slot >= order.subsets * order.capacity) return;
     const int k = lw_subset_index(order, slot);
     if (k < 0) vpls[slot] = no_vpl();
-    else if (k >= texelCount) vpls[slot] = authored[k - texelCount];
+    else if (k >= texelCount) vpls[slot] = bounded(authored[k - texelCount]);
     else vpls[slot] = texel_vpl(texels + layout.x, layout.z, k, 1.0f);
 }
 

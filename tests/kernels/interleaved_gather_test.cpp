@@ -180,6 +180,7 @@ TEST_CASE("nothing depends on the unit of length", "[interleaved_gather][large]"
                 v.positionArea.s[a] *= a < 3 ? scale : scale * scale;
                 v.flux.s[a] *= scale * scale;
             }
+        for (lw_vpl& v : scaledVpls) v.normal.s[3] *= scale * scale;
         // A power of two scales without rounding.
         const Image other = gatherOn(rig, scaled, normal, scaledVpls, 4).irradiance;
         if (scale == 1e-3f)
