@@ -9,7 +9,7 @@
 #endif
 #include "shared/wide.h"
 #include "shared/surface.h"
-#include "shared/subset_order.h"
+#include "shared/vpl_tiles.h"
 
 #if LW_INTERLEAVE == 1
 #define LW_STAGES 0
@@ -49,50 +49,76 @@ LW_FN void undeal_(real* v) {
 typedef struct { real r, g, b; } rgb;
 
 // Irradiance times pi of `count` VPLs at one vector of surfaces, with the bounded point-to-disc term
-//   Phi c_p c / (d^2 + (1 + c_p^2)/2 A/pi),
+//   Phi c_p c / (d^2 + (1 + 3 c_p^2)/4 A/pi),
 // written with the unnormalised dot products C = c d and C_p = c_p d:
-//   Phi C C_p / (d^4 + (d^2 + C_p^2) A/2pi),
-// which needs one division and no square root; those share one slow unit on CPUs.
+//   Phi C C_p / (d^4 + (d^2 + 3 C_p^2) A/4pi),
+// which needs one division and no square root: on CPUs these two share one slow unit.
 // The smallest float keeps a pixel that *is* the VPL at 0 / tiny = 0. Two VPLs at a time: their chains
 // of dependent operations then overlap, which one chain alone is too long for.
-LW_FN rgb gather_subset(const lw_surface s, __global const float* vpl, int count) {
+LW_FN void add_two_vpls(rgb* e, const lw_surface s, __global const float* first, __global const float* second) {
+    __global const float* vpl[2] = {first, second};
+    real dx[2], dy[2], dz[2], d2[2], c[2], w[2];
+    LW_UNROLL for (int u = 0; u < 2; ++u) {
+        dx[u] = vpl[u][0] - s.px;
+        dy[u] = vpl[u][1] - s.py;
+        dz[u] = vpl[u][2] - s.pz;
+    }
+    LW_UNROLL for (int u = 0; u < 2; ++u) d2[u] = fma_(dx[u], dx[u], fma_(dy[u], dy[u], dz[u] * dz[u]));
+    LW_UNROLL for (int u = 0; u < 2; ++u)
+        c[u] = fmax(fma_(dx[u], s.nx, fma_(dy[u], s.ny, dz[u] * s.nz)), (real)0.0f);
+    LW_UNROLL for (int u = 0; u < 2; ++u)
+        w[u] = fmax(-fma_(dx[u], vpl[u][4], fma_(dy[u], vpl[u][5], dz[u] * vpl[u][6])), (real)0.0f);
+    LW_UNROLL for (int u = 0; u < 2; ++u) {
+        const real bound = fma_(fma_(3.0f * w[u], w[u], d2[u]), vpl[u][7], 1e-37f);
+        w[u] = c[u] * w[u] / fma_(d2[u], d2[u], bound);
+    }
+    LW_UNROLL for (int u = 0; u < 2; ++u) {
+        e->r = fma_(w[u], vpl[u][8], e->r);
+        e->g = fma_(w[u], vpl[u][9], e->g);
+        e->b = fma_(w[u], vpl[u][10], e->b);
+    }
+}
+
+// Takes the lowest bit out of `bits` and returns its number.
+LW_FN int take_lowest(uint* bits) {
+    const int lowest = 31 - (int)clz(*bits & (0u - *bits));
+    *bits &= *bits - 1u;
+    return lowest;
+}
+
+// All VPLs of a subset that the tile has not skipped, in the order of their slots.
+LW_FN rgb gather_subset(const lw_surface s, __global const float* vpls, lw_subset_order order, int subset,
+                        __global const uint* masks, lw_vpl_tiles tiles, int tile) {
     rgb e = {(real)0.0f, (real)0.0f, (real)0.0f};
-    for (int k = 0; k < count; k += 2, vpl += 24) {
-        real dx[2], dy[2], dz[2], d2[2], c[2], w[2];
-        LW_UNROLL for (int u = 0; u < 2; ++u) {
-            dx[u] = vpl[12 * u] - s.px;
-            dy[u] = vpl[12 * u + 1] - s.py;
-            dz[u] = vpl[12 * u + 2] - s.pz;
-        }
-        LW_UNROLL for (int u = 0; u < 2; ++u) d2[u] = fma_(dx[u], dx[u], fma_(dy[u], dy[u], dz[u] * dz[u]));
-        LW_UNROLL for (int u = 0; u < 2; ++u)
-            c[u] = fmax(fma_(dx[u], s.nx, fma_(dy[u], s.ny, dz[u] * s.nz)), (real)0.0f);
-        LW_UNROLL for (int u = 0; u < 2; ++u)
-            w[u] = fmax(-fma_(dx[u], vpl[12 * u + 4], fma_(dy[u], vpl[12 * u + 5], dz[u] * vpl[12 * u + 6])), (real)0.0f);
-        LW_UNROLL for (int u = 0; u < 2; ++u) {
-            const real bound = fma_(fma_(w[u], w[u], d2[u]), vpl[12 * u + 7], 1e-37f);
-            w[u] = c[u] * w[u] / fma_(d2[u], d2[u], bound);
-        }
-        LW_UNROLL for (int u = 0; u < 2; ++u) {
-            e.r = fma_(w[u], vpl[12 * u + 8], e.r);
-            e.g = fma_(w[u], vpl[12 * u + 9], e.g);
-            e.b = fma_(w[u], vpl[12 * u + 10], e.b);
+    vpls += 12 * subset * order.capacity;
+    if (tiles.words == 0) {
+        for (int k = 0; k < order.capacity; k += 2) add_two_vpls(&e, s, vpls + 12 * k, vpls + 12 * k + 12);
+        return e;
+    }
+    for (int word = 0; word < tiles.words; ++word, vpls += 12 * 32) {
+        uint bits = masks[(subset * tiles.words + word) * tiles.stride + tile];
+        while (bits) {
+            const int first = take_lowest(&bits), second = take_lowest(&bits);
+            add_two_vpls(&e, s, vpls + 12 * first, vpls + 12 * second);
         }
     }
     return e;
 }
 
 // One work-item = LW_WIDTH * LW_INTERLEAVE adjacent pixels of one row, of a width x height image.
-// vpls: float[12] each, subset by subset, order.capacity (even) of them per subset.
+// vpls: float[12] each, subset by subset, order.capacity (even) of them per subset. masks: as
+// interleaved_gather_cull left them, an even number of bits to a word; not read when tiles.words is 0.
 // irradiance: 3 planes, W/m^2. counts[0]: pixels that are neither surface nor background.
 __kernel void interleaved_gather_gather(__global const float* position, int4 positionLayout,
                                         __global const float* normal, int4 normalLayout, int width, int height,
                                         __global const float* vpls, lw_subset_order order,
+                                        __global const uint* masks, lw_vpl_tiles tiles,
                                         __global float* irradiance, int4 irradianceLayout,
                                         __global int* counts) {
     const int x = (int)get_global_id(0) * LW_WIDTH * LW_INTERLEAVE, y = (int)get_global_id(1);
     if (x >= width || y >= height) return;
     const int rowEnd = (width + 15) & ~15;  // rows can be read up to here
+    const int tile = (y / LW_TILE_ROWS) * tiles.columns + x / tiles.tileWidth;
 
     real p[3][LW_INTERLEAVE], n[3][LW_INTERLEAVE];
     LW_UNROLL for (int j = 0; j < LW_INTERLEAVE; ++j)
@@ -118,7 +144,7 @@ __kernel void interleaved_gather_gather(__global const float* position, int4 pos
         rgb sum = {(real)0.0f, (real)0.0f, (real)0.0f};
         if (any_(s.valid)) {
             const int subset = (y % LW_INTERLEAVE) * LW_INTERLEAVE + j;
-            sum = gather_subset(s, vpls + 12 * subset * order.capacity, order.capacity);
+            sum = gather_subset(s, vpls, order, subset, masks, tiles, tile);
         }
         const real scale = (real)(M_1_PI_F * LW_INTERLEAVE * LW_INTERLEAVE);
         e[0][j] = select_((real)0.0f, sum.r * scale, s.valid);

@@ -12,12 +12,19 @@ typedef struct {
     mask rejected;    // not a surface although the host did not mark it as background (zero normal)
 } lw_surface;
 
+LW_FN real squared_length(real x, real y, real z) { return fma_(x, x, fma_(y, y, z * z)); }
+
 // Normals of compact formats are off unit length by quantisation: they are normalised, not refused.
 // Shorter than 1/2 or longer than 2 is no normal at all.
+LW_FN mask is_surface(real px, real py, real pz, real nx, real ny, real nz) {
+    const real n2 = squared_length(nx, ny, nz);
+    return and_(and_(n2 > 0.25f, n2 < 4.0f), and_(isfinite_(px), and_(isfinite_(py), isfinite_(pz))));
+}
+
 LW_FN lw_surface make_surface(real px, real py, real pz, real nx, real ny, real nz) {
     lw_surface s;
-    const real n2 = fma_(nx, nx, fma_(ny, ny, nz * nz));
-    s.valid = and_(and_(n2 > 0.25f, n2 < 4.0f), and_(isfinite_(px), and_(isfinite_(py), isfinite_(pz))));
+    const real n2 = squared_length(nx, ny, nz);
+    s.valid = is_surface(px, py, pz, nx, ny, nz);
     s.rejected = and_(not_(s.valid), not_(n2 == 0.0f));
     s.scale = rsqrt(n2);
     s.px = select_((real)0.0f, px, s.valid);

@@ -7,8 +7,8 @@
 // xyz and one scalar each, so that one VPL is three aligned 4-vectors.
 typedef struct {
     lw_float4 positionArea;  // m, m^2: the area bounds the light close to the emitter
-    lw_float4 normal;        // unit; w: A / 2 pi in m^2, which the gather adds to the squared distance
-                             // (times 1 + the squared cosine): written where the list is made
+    lw_float4 normal;        // unit; w: A / 4 pi in m^2, what the gather's bounded term takes: written
+                             // where the list is made
     lw_float4 flux;          // W per channel; w unused
 } lw_vpl;
 LW_SIZE_CHECK(lw_vpl, 48);

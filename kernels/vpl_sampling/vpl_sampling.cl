@@ -82,7 +82,7 @@ LW_FN float wrap_unit(float u) {
 
 // What the gather's bounded term needs beside the VPL as the host knows it.
 LW_FN lw_vpl bounded(lw_vpl vpl) {
-    vpl.normal.w = vpl.positionArea.w * (0.5f * M_1_PI_F);
+    vpl.normal.w = vpl.positionArea.w * (0.25f * M_1_PI_F);
     return vpl;
 }
 

@@ -30,7 +30,7 @@ glm::dvec3 vplIrradiance(const VplRecord& vpl, const Surface& at) {
     if (cosine <= 0.0 || vplCosine <= 0.0) return glm::dvec3(0.0);
     constexpr double pi = 3.14159265358979323846;
     return glm::dvec3(vpl.flux) * (vplCosine * cosine /
-                                  (pi * distance2 + 0.5 * (1.0 + vplCosine * vplCosine) * double(vpl.area)));
+                                  (pi * distance2 + 0.25 * (1.0 + 3.0 * vplCosine * vplCosine) * double(vpl.area)));
 }
 
 bool vplVisible(const RayScene& scene, const VplRecord& vpl, const Surface& at) {

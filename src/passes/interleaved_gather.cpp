@@ -1,5 +1,6 @@
 #include "passes/interleaved_gather.h"
 
+#include <algorithm>
 #include <string>
 
 #include "compute/device.h"
@@ -14,6 +15,19 @@ Range itemsOver(const Planes& image, std::uint32_t pixelsPerItem) {
     return {(image.width + pixelsPerItem - 1) / pixelsPerItem, image.height};
 }
 
+constexpr const char* kTilesProgram = "interleaved_gather/interleaved_tiles";
+// Pixels: narrower tiles would not pay for their bits.
+constexpr std::uint32_t kLeastTileWidth = 32;
+constexpr std::uint64_t kBoundsPlanes = 12;
+
+// Both at least one word: a kernel's argument must be some memory, also where it is not read.
+std::size_t maskBytes(const lw_vpl_tiles& tiles, lw_subset_order order) {
+    return std::max<std::size_t>(std::size_t(tiles.stride) * std::size_t(order.subsets * tiles.words), 1) * 4;
+}
+std::size_t boundsBytes(const lw_vpl_tiles& tiles) {
+    return tiles.words ? std::size_t(tiles.stride) * kBoundsPlanes * 4 : 4;
+}
+
 Defines definesOf(std::uint32_t interleave) { return {{"LW_INTERLEAVE", std::to_string(interleave)}}; }
 
 }  // namespace
@@ -23,18 +37,58 @@ InterleavedGather::InterleavedGather(Device& device, std::uint32_t interleave)
       gather_(device.programs().kernel("interleaved_gather/interleaved_gather", "interleaved_gather_gather",
                                        definesOf(interleave))),
       validity_(device.programs().kernel("interleaved_gather/interleaved_gather", "interleaved_gather_validity",
-                                         definesOf(interleave))) {
+                                         definesOf(interleave))),
+      bounds_(device.programs().kernel(kTilesProgram, "interleaved_gather_bounds")),
+      cull_(device.programs().kernel(kTilesProgram, "interleaved_gather_cull")) {
     if (interleave > 1)
         filter_ = &device.programs().kernel("interleaved_gather/interleaved_filter", "interleaved_gather_filter",
                                             definesOf(interleave));
 }
 
+lw_vpl_tiles VplTiles::layout(std::uint32_t width, std::uint32_t height, lw_subset_order order,
+                              std::uint32_t interleave) {
+    // A work-item of the gather lies within one tile at any width of vectors: all are powers of two.
+    const std::uint32_t tileWidth = std::max(16 * interleave, kLeastTileWidth);
+    lw_vpl_tiles tiles{};
+    tiles.tileWidth = cl_int(tileWidth);
+    tiles.columns = cl_int((width + tileWidth - 1) / tileWidth);
+    tiles.rows = cl_int((height + LW_TILE_ROWS - 1) / LW_TILE_ROWS);
+    tiles.stride = cl_int(paddedWidth(std::uint32_t(tiles.columns) * std::uint32_t(tiles.rows)));
+    if (std::int64_t(order.subsets) * order.capacity <= kMostSlots) tiles.words = (order.capacity + 31) / 32;
+    return tiles;
+}
+
+void VplTiles::reserve(Device& device, std::uint32_t width, std::uint32_t height, lw_subset_order order,
+                       std::uint32_t interleave) {
+    masks_.reserve(device, maskBytes(layout(width, height, order, interleave), order), "bits of VPLs by tile");
+    bounds_.reserve(device, boundsBytes(layout(width, height, order, interleave)), "boxes of tiles");
+}
+
+std::uint64_t VplTiles::estimateBytes(std::uint32_t width, std::uint32_t height, lw_subset_order order,
+                                      std::uint32_t interleave) {
+    const lw_vpl_tiles tiles = layout(width, height, order, interleave);
+    return maskBytes(tiles, order) + boundsBytes(tiles);
+}
+
+void InterleavedGather::recordCull(Executor& executor, const Planes& position, const Planes& normal,
+                                   const Buffer& vpls, lw_subset_order order, const VplTiles& memory) {
+    const lw_vpl_tiles tiles = VplTiles::layout(position.width, position.height, order, interleave_);
+    if (tiles.words == 0) return;
+    executor.run("interleaved_gather.bounds", bounds_, {std::size_t(tiles.columns), std::size_t(tiles.rows)},
+                 groupOf(bounds_), position, normal, cl_int(position.width), cl_int(position.height), tiles,
+                 memory.bounds());
+    executor.run("interleaved_gather.cull", cull_,
+                 {std::size_t(tiles.stride) / cull_.width(), std::size_t(order.subsets * tiles.words)}, groupOf(cull_),
+                 memory.bounds(), tiles, vpls, order, memory.masks());
+}
+
 void InterleavedGather::recordGather(Executor& executor, const Planes& position, const Planes& normal,
-                                     const Buffer& vpls, lw_subset_order order, const Planes& irradiance,
-                                     const Buffer& counts) {
+                                     const Buffer& vpls, lw_subset_order order, const VplTiles& tiles,
+                                     const Planes& irradiance, const Buffer& counts) {
+    const lw_vpl_tiles layout = VplTiles::layout(position.width, position.height, order, interleave_);
     executor.run("interleaved_gather.gather", gather_, itemsOver(position, gather_.width() * interleave_),
                  groupOf(gather_), position, normal, cl_int(position.width), cl_int(position.height), vpls, order,
-                 irradiance, counts);
+                 tiles.masks(), layout, irradiance, counts);
 }
 
 void InterleavedGather::recordFilter(Executor& executor, const Planes& position, const Planes& normal,

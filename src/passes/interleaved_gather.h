@@ -7,19 +7,46 @@
 #include "compute/buffer.h"
 #include "compute/executor.h"
 #include "shared/subset_order.h"
+#include "shared/vpl_tiles.h"
 
 namespace lightwell {
+
+// For each tile of one image the VPLs that can light it: memory of InterleavedGather::recordCull.
+class VplTiles {
+public:
+    // Lists longer than this are left whole: their bits would take more memory than their time is worth.
+    static constexpr std::int64_t kMostSlots = 16384;
+
+    // Makes room for images up to this size; allocates only where the list has grown.
+    void reserve(Device& device, std::uint32_t width, std::uint32_t height, lw_subset_order order,
+                 std::uint32_t interleave);
+    static lw_vpl_tiles layout(std::uint32_t width, std::uint32_t height, lw_subset_order order, std::uint32_t interleave);
+    // What reserve takes.
+    static std::uint64_t estimateBytes(std::uint32_t width, std::uint32_t height, lw_subset_order order,
+                                       std::uint32_t interleave);
+
+    const Buffer& bounds() const { return bounds_; }  // 12 planes of tiles
+    const Buffer& masks() const { return masks_; }    // bits of slots by tile, as in shared/vpl_tiles.h
+    std::uint64_t bytes() const { return bounds_.bytes() + masks_.bytes(); }
+
+private:
+    Buffer bounds_, masks_;
+};
 
 class InterleavedGather {
 public:
     // interleave: 1, 2, 4 or 8.
     InterleavedGather(Device& device, std::uint32_t interleave);
 
-    // Pass "interleaved_gather.gather": irradiance (3 planes) from one subset of the VPLs (lw_vpl by slot)
-    // per pixel, times the number of subsets. counts[0] grows by the pixels with neither
-    // a surface nor a zero normal.
+    // Passes "interleaved_gather.bounds" and ".cull": finds the VPLs (lw_vpl by slot) that tiles of the
+    // image can skip. `tiles` has room for them.
+    void recordCull(Executor& executor, const Planes& position, const Planes& normal, const Buffer& vpls,
+                    lw_subset_order order, const VplTiles& tiles);
+    // Pass "interleaved_gather.gather": irradiance (3 planes) from one subset of the VPLs per pixel, times
+    // the number of subsets; `tiles` as recordCull left them for this image and list. counts[0] grows by
+    // the pixels with neither a surface nor a zero normal.
     void recordGather(Executor& executor, const Planes& position, const Planes& normal, const Buffer& vpls,
-                      lw_subset_order order, const Planes& irradiance, const Buffer& counts);
+                      lw_subset_order order, const VplTiles& tiles, const Planes& irradiance, const Buffer& counts);
     // Pass "interleaved_gather.filter"; irradiance and filtered are different images. interleave > 1 only.
     void recordFilter(Executor& executor, const Planes& position, const Planes& normal, const Planes& irradiance,
                       const Planes& filtered);
@@ -30,7 +57,7 @@ public:
 
 private:
     std::uint32_t interleave_;
-    Kernel &gather_, &validity_;
+    Kernel &gather_, &validity_, &bounds_, &cull_;
     Kernel* filter_ = nullptr;
 };
 

@@ -118,13 +118,17 @@ std::uint64_t VplSampling::bytes() const {
     return texelSums_.bytes() + rowTotals_.bytes() + rowSumsBuffer_.bytes() + authored_.bytes() + vpls_.bytes();
 }
 
-std::uint64_t VplSampling::estimateBytes(const VplSamplingOptions& options, const FrameShape& shape) {
+lw_subset_order VplSampling::orderOf(const VplSamplingOptions& options, const FrameShape& shape) {
     const std::uint64_t drawn = shape.texels == 0 ? 0 : options.count ? options.count : shape.paddedTexels;
     if (drawn + shape.vplCount > std::numeric_limits<std::uint32_t>::max())
         fail(LW_ERROR_UNSUPPORTED, "vpls: ", drawn + shape.vplCount, " VPLs exceed the 32-bit indices of the kernels");
-    const lw_subset_order order = subsetOrder(std::uint32_t(drawn + shape.vplCount), options.subsets);
+    return subsetOrder(std::uint32_t(drawn + shape.vplCount), options.subsets);
+}
+
+std::uint64_t VplSampling::estimateBytes(const VplSamplingOptions& options, const FrameShape& shape) {
+    const lw_subset_order order = orderOf(options, shape);
     const std::uint64_t list = std::uint64_t(order.subsets) * std::uint64_t(order.capacity) * sizeof(lw_vpl);
-    const std::uint64_t sums = drawn && options.count ? shape.paddedTexels * 4 + shape.rows * 8 : 0;
+    const std::uint64_t sums = shape.texels && options.count ? shape.paddedTexels * 4 + shape.rows * 8 : 0;
     return list + std::max(shape.vplCount, 1u) * sizeof(lw_vpl) + sums;
 }
 

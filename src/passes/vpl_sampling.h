@@ -36,6 +36,8 @@ public:
     Planes debugShape() const;  // planes without memory: position, normal, flux, area by slot
     void recordPlanes(Executor& executor, const Planes& planes);  // fills them
     std::uint64_t bytes() const;
+    // What frames of this shape will have.
+    static lw_subset_order orderOf(const VplSamplingOptions& options, const FrameShape& shape);
     static std::uint64_t estimateBytes(const VplSamplingOptions& options, const FrameShape& shape);
 
 private:

@@ -28,6 +28,9 @@ VplSamplingOptions samplingOptions(const LWRsmDesc& desc) {
 }
 
 bool halfResolution(const LWRsmDesc& desc) { return desc.resolution == LW_RESOLUTION_HALF; }
+std::uint32_t gatheredPixels(const LWRsmDesc& desc, std::uint32_t along) {
+    return halfResolution(desc) ? JointBilateral::halved(along) : along;
+}
 bool filters(const LWRsmDesc& desc) { return desc.filter != 0 && desc.interleave > 1; }
 
 // What the host gave and this technique does not read: said in the stats, so that nobody waits for its light.
@@ -97,6 +100,8 @@ public:
         GBufferInput gbuffer;
         OutputTarget irradiance, validity;
         PlanarImage gathered, filtered, halfPosition, halfNormal;
+        std::uint32_t gatheredWidth, gatheredHeight;  // at most
+        VplTiles tiles;
         Buffer counts;  // rejected pixels, up-sampling fallbacks
         Planes lastGathered, lastFiltered;  // empty where the last frame had no irradiance
         bool rendered = false;              // since the last update
@@ -117,10 +122,10 @@ private:
 };
 
 RsmTechnique::ViewState::ViewState(Device& device, const LWRsmDesc& desc, const View& view)
-    : counts(device, 2 * sizeof(cl_int), "counts of a view") {
+    : gatheredWidth(gatheredPixels(desc, view.maxWidth)), gatheredHeight(gatheredPixels(desc, view.maxHeight)),
+      counts(device, 2 * sizeof(cl_int), "counts of a view") {
     const bool half = halfResolution(desc);
-    const std::uint32_t width = half ? JointBilateral::halved(view.maxWidth) : view.maxWidth;
-    const std::uint32_t height = half ? JointBilateral::halved(view.maxHeight) : view.maxHeight;
+    const std::uint32_t width = gatheredWidth, height = gatheredHeight;
     if (half || filters(desc)) gathered = PlanarImage(device, width, height, 3, "gathered irradiance");
     if (half && filters(desc)) filtered = PlanarImage(device, width, height, 3, "filtered irradiance");
     if (half) {
@@ -131,8 +136,7 @@ RsmTechnique::ViewState::ViewState(Device& device, const LWRsmDesc& desc, const 
 
 std::uint64_t RsmTechnique::ViewState::imageBytes(const LWRsmDesc& desc, std::uint32_t width, std::uint32_t height) {
     const bool half = halfResolution(desc);
-    const std::uint64_t w = paddedWidth(half ? JointBilateral::halved(width) : width);
-    const std::uint64_t h = half ? JointBilateral::halved(height) : height;
+    const std::uint64_t w = paddedWidth(gatheredPixels(desc, width)), h = gatheredPixels(desc, height);
     const std::uint64_t images = (half || filters(desc) ? 1u : 0u) + (half && filters(desc) ? 1u : 0u) + (half ? 2u : 0u);
     return images * 3 * w * h * sizeof(float) + 2 * sizeof(cl_int);
 }
@@ -162,7 +166,10 @@ void RsmTechnique::light(Executor& executor, ViewState& state, const Planes& irr
         normal = halfNormal;
     }
     const Planes gathered = half || filter ? state.gathered.planes(position.width, position.height) : irradiance;
-    gather_.recordGather(executor, position, normal, sampling_.vpls(), sampling_.order(), gathered, state.counts);
+    state.tiles.reserve(device_, state.gatheredWidth, state.gatheredHeight, sampling_.order(), desc_.interleave);
+    gather_.recordCull(executor, position, normal, sampling_.vpls(), sampling_.order(), state.tiles);
+    gather_.recordGather(executor, position, normal, sampling_.vpls(), sampling_.order(), state.tiles, gathered,
+                         state.counts);
     Planes lit = gathered;
     if (filter) {
         lit = half ? state.filtered.planes(position.width, position.height) : irradiance;
@@ -213,7 +220,7 @@ std::vector<DebugView> RsmTechnique::debugViews(const View* view) {
 
 std::uint64_t RsmTechnique::ViewState::bytes() const {
     return gbuffer.bytes() + irradiance.bytes() + validity.bytes() + gathered.bytes() + filtered.bytes() +
-           halfPosition.bytes() + halfNormal.bytes() + counts.bytes();
+           halfPosition.bytes() + halfNormal.bytes() + tiles.bytes() + counts.bytes();
 }
 
 std::uint64_t RsmTechnique::bytes() const {
@@ -235,7 +242,9 @@ std::uint64_t estimateBytes(const void* desc, const LWViewDesc& view, const Fram
     return RsmInput::estimateBytes(shape) + VplSampling::estimateBytes(samplingOptions(rsm), shape) +
            GBufferInput::estimateBytes(view, 0, shape.uploads) + OutputTarget::estimateBytes(view, 3, shape.uploads) +
            OutputTarget::estimateBytes(view, 1, shape.uploads) +
-           RsmTechnique::ViewState::imageBytes(rsm, view.maxWidth, view.maxHeight);
+           RsmTechnique::ViewState::imageBytes(rsm, view.maxWidth, view.maxHeight) +
+           VplTiles::estimateBytes(gatheredPixels(rsm, view.maxWidth), gatheredPixels(rsm, view.maxHeight),
+                                   VplSampling::orderOf(samplingOptions(rsm), shape), rsm.interleave);
 }
 
 TechniqueEntry makeEntry() {

@@ -10,7 +10,7 @@ everything the other way round.
 It shares no code with Lightwell, its studio or its tests: rays are intersected analytically, matrices are
 built from the camera's axes, and the expected irradiance is a double-precision sum over all texels of
 
-    E = sum (flux / pi) * cosEmitter * cosReceiver / (d^2 + cosEmitter * area / pi)
+    E = sum (flux / pi) * cosEmitter * cosReceiver / (d^2 + (1 + 3 cosEmitter^2) / 4 * area / pi)
 
 at the receivers' exact positions (not at what their depth unprojects to). Only Python's standard library.
 
@@ -240,7 +240,7 @@ def gather(position, normal, emitters):
         emitter_cosine = -dot(emitter_normal, way) / distance
         if receiver_cosine <= 0.0 or emitter_cosine <= 0.0:
             continue
-        factor = emitter_cosine * receiver_cosine / (squared + emitter_cosine * area / math.pi) / math.pi
+        factor = emitter_cosine * receiver_cosine / (squared + (1.0 + 3.0 * emitter_cosine**2) / 4.0 * area / math.pi) / math.pi
         for channel in range(3):
             total[channel] += flux[channel] * factor
     return total

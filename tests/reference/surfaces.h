@@ -56,12 +56,12 @@ inline Surface surfaceAt(const Image& position, const Image& normal, std::uint32
 inline lw_vpl makeVpl(Vec position, Vec normal, Vec flux, double area) {
     lw_vpl v{};
     v.positionArea = {{float(position.x), float(position.y), float(position.z), float(area)}};
-    v.normal = {{float(normal.x), float(normal.y), float(normal.z), float(area / (2.0 * 3.14159265358979323846))}};
+    v.normal = {{float(normal.x), float(normal.y), float(normal.z), float(area / (4.0 * 3.14159265358979323846))}};
     v.flux = {{float(flux.x), float(flux.y), float(flux.z), 0.0f}};
     return v;
 }
 
-// E += Phi / pi * c_p c / (d^2 + (1 + c_p^2)/2 * A / pi), with the cosines as cosines.
+// E += Phi / pi * c_p c / (d^2 + (1 + 3 c_p^2)/4 * A / pi), with the cosines as cosines.
 inline Vec vplIrradiance(const lw_vpl& v, const Surface& s) {
     const double pi = 3.14159265358979323846;
     const Vec to = Vec{v.positionArea.s[0], v.positionArea.s[1], v.positionArea.s[2]} - s.position;
@@ -69,7 +69,7 @@ inline Vec vplIrradiance(const lw_vpl& v, const Surface& s) {
     if (d == 0.0) return {};
     const double c = std::max(0.0, dot(to, s.normal) / d);
     const double cp = std::max(0.0, -dot(to, {v.normal.s[0], v.normal.s[1], v.normal.s[2]}) / d);
-    const double w = cp * c / (pi * (d * d + 0.5 * (1.0 + cp * cp) * v.positionArea.s[3] / pi));
+    const double w = cp * c / (pi * (d * d + 0.25 * (1.0 + 3.0 * cp * cp) * v.positionArea.s[3] / pi));
     return Vec{v.flux.s[0], v.flux.s[1], v.flux.s[2]} * w;
 }
 

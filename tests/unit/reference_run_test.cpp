@@ -220,7 +220,7 @@ TEST_CASE("given VPLs: bounded term, exact visibility") {
     vpl.normal = vec3(std::sqrt(0.75f), -0.5f, 0);
     vpl.flux = vec3(3.0f, 0.3f, 0.0f);
     vpl.area = 0.2f;
-    const double expected = 3.0 / kPi * 0.5 / (4.0 + 0.5 * 0.2 / kPi);
+    const double expected = 3.0 / kPi * 0.5 / (4.0 + (1.0 + 3.0 * 0.25) / 4.0 * 0.2 / kPi);
     VplRecord below = vpl;  // faces away
     below.normal = -vpl.normal;
     const std::vector<VplRecord> vpls{vpl, below, vpl};
