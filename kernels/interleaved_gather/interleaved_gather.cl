@@ -96,7 +96,7 @@ LW_FN rgb gather_subset(const lw_surface s, __global const float* vpls, lw_subse
         return e;
     }
     for (int word = 0; word < tiles.words; ++word, vpls += 12 * 32) {
-        uint bits = masks[(subset * tiles.words + word) * tiles.stride + tile];
+        uint bits = masks[(subset * tiles.words + word) * lw_tile_stride(tiles) + tile];
         while (bits) {
             const int first = take_lowest(&bits), second = take_lowest(&bits);
             add_two_vpls(&e, s, vpls + 12 * first, vpls + 12 * second);
@@ -143,7 +143,7 @@ __kernel void interleaved_gather_gather(__global const float* position, int4 pos
         const lw_surface s = make_surface(p[0][j], p[1][j], p[2][j], n[0][j], n[1][j], n[2][j]);
         rgb sum = {(real)0.0f, (real)0.0f, (real)0.0f};
         if (any_(s.valid)) {
-            const int subset = (y % LW_INTERLEAVE) * LW_INTERLEAVE + j;
+            const int subset = (y & (LW_INTERLEAVE - 1)) * LW_INTERLEAVE + j;
             sum = gather_subset(s, vpls, order, subset, masks, tiles, tile);
         }
         const real scale = (real)(M_1_PI_F * LW_INTERLEAVE * LW_INTERLEAVE);

@@ -54,13 +54,13 @@ __kernel void interleaved_gather_bounds(__global const float* position, int4 pos
     const int tile = row * tiles.columns + column;
     const int empty = min_lane(low[0]) > max_lane(high[0]);
     LW_UNROLL for (int a = 0; a < 6; ++a) {
-        bounds[(a < 3 ? a : a + 3) * tiles.stride + tile] = empty ? 0.0f : min_lane(low[a]);
-        bounds[(a < 3 ? a + 3 : a + 6) * tiles.stride + tile] = empty ? 0.0f : max_lane(high[a]);
+        bounds[(a < 3 ? a : a + 3) * lw_tile_stride(tiles) + tile] = empty ? 0.0f : min_lane(low[a]);
+        bounds[(a < 3 ? a + 3 : a + 6) * lw_tile_stride(tiles) + tile] = empty ? 0.0f : max_lane(high[a]);
     }
     // The tiles that only pad the planes: lanes of the next kernel read them.
     if (tile == tiles.columns * tiles.rows - 1)
         for (int a = 0; a < 12; ++a)
-            for (int t = tile + 1; t < tiles.stride; ++t) bounds[a * tiles.stride + t] = 0.0f;
+            for (int t = tile + 1; t < lw_tile_stride(tiles); ++t) bounds[a * lw_tile_stride(tiles) + t] = 0.0f;
 }
 
 // The greatest value of a * b over two intervals.
@@ -72,9 +72,9 @@ LW_FN real greatest_product(real aLow, real aHigh, real bLow, real bHigh) {
 __kernel void interleaved_gather_cull(__global const float* bounds, lw_vpl_tiles tiles, __global const float* vpls,
                                       lw_subset_order order, __global uint* masks) {
     const int tile = (int)get_global_id(0) * LW_WIDTH, word = (int)get_global_id(1);
-    if (tile >= tiles.stride || word >= order.subsets * tiles.words) return;
+    if (tile >= lw_tile_stride(tiles) || word >= order.subsets * tiles.words) return;
     real box[12];
-    LW_UNROLL for (int a = 0; a < 12; ++a) box[a] = load(bounds, a * tiles.stride + tile);
+    LW_UNROLL for (int a = 0; a < 12; ++a) box[a] = load(bounds, a * lw_tile_stride(tiles) + tile);
 
     // Not by %: beside / it becomes an instruction that Oclgrind's check cannot follow.
     const int subset = word / tiles.words, first = (word - subset * tiles.words) * 32;
@@ -96,5 +96,5 @@ __kernel void interleaved_gather_cull(__global const float* bounds, lw_vpl_tiles
     }
     // The gather takes two at a time: an odd one is joined by a slot that adds nothing.
     bits |= selectu_((laneu)0, ~bits & (bits + (laneu)1), to_mask(popcount(bits) & (laneu)1));
-    store(bits, masks, word * tiles.stride + tile);
+    store(bits, masks, word * lw_tile_stride(tiles) + tile);
 }

@@ -14,9 +14,11 @@
 typedef struct {
     lw_int columns, rows;  // tiles
     lw_int tileWidth;      // pixels
-    lw_int stride;         // tiles of one word: columns * rows, padded to 16
     lw_int words;          // per subset; 0: nothing is skipped
 } lw_vpl_tiles;
-LW_SIZE_CHECK(lw_vpl_tiles, 20);
+LW_SIZE_CHECK(lw_vpl_tiles, 16);
+
+// Tiles of one word or plane, padded.
+LW_FN lw_int lw_tile_stride(lw_vpl_tiles tiles) { return (tiles.columns * tiles.rows + 15) & ~15; }
 
 #endif

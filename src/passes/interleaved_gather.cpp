@@ -22,10 +22,10 @@ constexpr std::uint64_t kBoundsPlanes = 12;
 
 // Both at least one word: a kernel's argument must be some memory, also where it is not read.
 std::size_t maskBytes(const lw_vpl_tiles& tiles, lw_subset_order order) {
-    return std::max<std::size_t>(std::size_t(tiles.stride) * std::size_t(order.subsets * tiles.words), 1) * 4;
+    return std::max<std::size_t>(std::size_t(lw_tile_stride(tiles)) * std::size_t(order.subsets * tiles.words), 1) * 4;
 }
 std::size_t boundsBytes(const lw_vpl_tiles& tiles) {
-    return tiles.words ? std::size_t(tiles.stride) * kBoundsPlanes * 4 : 4;
+    return tiles.words ? std::size_t(lw_tile_stride(tiles)) * kBoundsPlanes * 4 : 4;
 }
 
 Defines definesOf(std::uint32_t interleave) { return {{"LW_INTERLEAVE", std::to_string(interleave)}}; }
@@ -53,7 +53,6 @@ lw_vpl_tiles VplTiles::layout(std::uint32_t width, std::uint32_t height, lw_subs
     tiles.tileWidth = cl_int(tileWidth);
     tiles.columns = cl_int((width + tileWidth - 1) / tileWidth);
     tiles.rows = cl_int((height + LW_TILE_ROWS - 1) / LW_TILE_ROWS);
-    tiles.stride = cl_int(paddedWidth(std::uint32_t(tiles.columns) * std::uint32_t(tiles.rows)));
     if (std::int64_t(order.subsets) * order.capacity <= kMostSlots) tiles.words = (order.capacity + 31) / 32;
     return tiles;
 }
@@ -78,17 +77,17 @@ void InterleavedGather::recordCull(Executor& executor, const Planes& position, c
                  groupOf(bounds_), position, normal, cl_int(position.width), cl_int(position.height), tiles,
                  memory.bounds());
     executor.run("interleaved_gather.cull", cull_,
-                 {std::size_t(tiles.stride) / cull_.width(), std::size_t(order.subsets * tiles.words)}, groupOf(cull_),
+                 {std::size_t(lw_tile_stride(tiles)) / cull_.width(), std::size_t(order.subsets * tiles.words)}, groupOf(cull_),
                  memory.bounds(), tiles, vpls, order, memory.masks());
 }
 
 void InterleavedGather::recordGather(Executor& executor, const Planes& position, const Planes& normal,
-                                     const Buffer& vpls, lw_subset_order order, const VplTiles& tiles,
+                                     const Buffer& vpls, lw_subset_order order, const Buffer& masks,
                                      const Planes& irradiance, const Buffer& counts) {
     const lw_vpl_tiles layout = VplTiles::layout(position.width, position.height, order, interleave_);
     executor.run("interleaved_gather.gather", gather_, itemsOver(position, gather_.width() * interleave_),
                  groupOf(gather_), position, normal, cl_int(position.width), cl_int(position.height), vpls, order,
-                 tiles.masks(), layout, irradiance, counts);
+                 masks, layout, irradiance, counts);
 }
 
 void InterleavedGather::recordFilter(Executor& executor, const Planes& position, const Planes& normal,

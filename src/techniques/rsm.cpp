@@ -168,7 +168,7 @@ void RsmTechnique::light(Executor& executor, ViewState& state, const Planes& irr
     const Planes gathered = half || filter ? state.gathered.planes(position.width, position.height) : irradiance;
     state.tiles.reserve(device_, state.gatheredWidth, state.gatheredHeight, sampling_.order(), desc_.interleave);
     gather_.recordCull(executor, position, normal, sampling_.vpls(), sampling_.order(), state.tiles);
-    gather_.recordGather(executor, position, normal, sampling_.vpls(), sampling_.order(), state.tiles, gathered,
+    gather_.recordGather(executor, position, normal, sampling_.vpls(), sampling_.order(), state.tiles.masks(), gathered,
                          state.counts);
     Planes lit = gathered;
     if (filter) {
