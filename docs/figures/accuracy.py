@@ -50,12 +50,10 @@ def measured(results):
 
 def conditions(results):
     header = results.header
-    device = header["device"]
-    where = f"{device['name']}, {device['platform']} {device['driver']}, {device['width']} lanes" if device else header["versions"]["cpu"]
     loads = [p["load_average"] for p in results.points]
-    return [f"Measured {header['written'][:10]} at {header['size'][0]}x{header['size'][1]} on {where}, "
+    return [f"Measured {header['written'][:10]} at {header['size'][0]}x{header['size'][1]} on {results.device_text()}, "
             f"{header['versions']['threads']} threads; load average {min(loads):.1f} to {max(loads):.1f} (the machine was "
-            f"{'shared: times are too long by as much' if max(loads) > 2.5 else 'ours alone'}). {len(results.points)} points in "
+            f"{'shared, so that times are too long' if max(loads) > 2.5 else 'ours alone'}). {len(results.points)} points in "
             f"{len(results.views)} view{'s' * (len(results.views) > 1)}. Time: host's images to host's output. Truth: as many bounces as the technique models."]
 
 

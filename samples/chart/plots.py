@@ -47,8 +47,7 @@ def save(results, name, charts):
 
 def caption(results):
     header = results.header
-    device = header["device"]["name"] if header["device"] else header["versions"]["cpu"]
-    return (f"{device}, {header['versions']['threads']} threads; {header['size'][0]} x {header['size'][1]}; \n"
+    return (f"{results.device_text()}, {header['versions']['threads']} threads; {header['size'][0]} x {header['size'][1]}; \n"
             f"time from the host's images to the host's output, warm; Lightwell {header['versions']['lightwell']}, {header['written'][:10]}")
 
 

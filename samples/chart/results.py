@@ -31,6 +31,14 @@ class Results:
         self.techniques = list(dict.fromkeys(p["technique"] for p in self.points))
         self.scenes = list(dict.fromkeys(v["scene"] for v in self.views))
 
+    def device_text(self):
+        """What techniques ran on; a last run of the host's own alone has no device in its head."""
+        device = self.header["device"]
+        if device:
+            return f"{device['name']}, {device['platform']} {device['driver']}, {device['width']} lanes"
+        names = list(dict.fromkeys(p["device"] for p in self.points if p["device"]))
+        return ", ".join(names) if names else self.header["versions"]["cpu"]
+
     def of_view(self, view):
         return [p for p in self.points if (p["scene"], p["camera"]) == (view["scene"], view["camera"])]
 

@@ -64,7 +64,10 @@ ChartResults::ChartResults(const std::string& path) : impl_(std::make_unique<Imp
 ChartResults::~ChartResults() = default;
 
 void ChartResults::setHeader(const Json& header) {
-    impl_->json["header"] = header;
+    Json& known = impl_->json["header"];
+    const Json device = known.value("device", Json());  // of earlier points, where this run needs none
+    known = header;
+    if (known["device"].is_null()) known["device"] = device;
 }
 
 bool ChartResults::isFresh(const std::string& id, const std::string& key) const {
