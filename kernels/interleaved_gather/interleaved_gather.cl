@@ -55,19 +55,21 @@ typedef struct { real r, g, b; } rgb;
 // which needs one division and no square root: on CPUs these two share one slow unit.
 // The smallest float keeps a pixel that *is* the VPL at 0 / tiny = 0. Two VPLs at a time: their chains
 // of dependent operations then overlap, which one chain alone is too long for.
-LW_FN void add_two_vpls(rgb* e, const lw_surface s, __global const float* first, __global const float* second) {
+// `away`: the surface with its normal turned round, so that the offset from VPL to surface serves both
+// cosines without a sign to change.
+LW_FN void add_two_vpls(rgb* e, const lw_surface away, __global const float* first, __global const float* second) {
     __global const float* vpl[2] = {first, second};
     real dx[2], dy[2], dz[2], d2[2], c[2], w[2];
     LW_UNROLL for (int u = 0; u < 2; ++u) {
-        dx[u] = vpl[u][0] - s.px;
-        dy[u] = vpl[u][1] - s.py;
-        dz[u] = vpl[u][2] - s.pz;
+        dx[u] = away.px - vpl[u][0];
+        dy[u] = away.py - vpl[u][1];
+        dz[u] = away.pz - vpl[u][2];
     }
     LW_UNROLL for (int u = 0; u < 2; ++u) d2[u] = fma_(dx[u], dx[u], fma_(dy[u], dy[u], dz[u] * dz[u]));
     LW_UNROLL for (int u = 0; u < 2; ++u)
-        c[u] = fmax(fma_(dx[u], s.nx, fma_(dy[u], s.ny, dz[u] * s.nz)), (real)0.0f);
+        c[u] = fmax(fma_(dx[u], away.nx, fma_(dy[u], away.ny, dz[u] * away.nz)), (real)0.0f);
     LW_UNROLL for (int u = 0; u < 2; ++u)
-        w[u] = fmax(-fma_(dx[u], vpl[u][4], fma_(dy[u], vpl[u][5], dz[u] * vpl[u][6])), (real)0.0f);
+        w[u] = fmax(fma_(dx[u], vpl[u][4], fma_(dy[u], vpl[u][5], dz[u] * vpl[u][6])), (real)0.0f);
     LW_UNROLL for (int u = 0; u < 2; ++u) {
         const real bound = fma_(fma_(3.0f * w[u], w[u], d2[u]), vpl[u][7], 1e-37f);
         w[u] = c[u] * w[u] / fma_(d2[u], d2[u], bound);
@@ -87,9 +89,12 @@ LW_FN int take_lowest(uint* bits) {
 }
 
 // All VPLs of a subset that the tile has not skipped, in the order of their slots.
-LW_FN rgb gather_subset(const lw_surface s, __global const float* vpls, lw_subset_order order, int subset,
+LW_FN rgb gather_subset(lw_surface s, __global const float* vpls, lw_subset_order order, int subset,
                         __global const uint* masks, lw_vpl_tiles tiles, int tile) {
     rgb e = {(real)0.0f, (real)0.0f, (real)0.0f};
+    s.nx = -s.nx;
+    s.ny = -s.ny;
+    s.nz = -s.nz;
     vpls += 12 * subset * order.capacity;
     if (tiles.words == 0) {
         for (int k = 0; k < order.capacity; k += 2) add_two_vpls(&e, s, vpls + 12 * k, vpls + 12 * k + 12);
