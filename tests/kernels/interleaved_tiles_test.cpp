@@ -1,6 +1,8 @@
 // Tiles that skip VPLs: what they keep, and that the picture's bits do not change.
 #include <catch2/catch.hpp>
+#include <algorithm>
 #include <limits>
+#include <random>
 
 #include "passes/interleaved_gather.h"
 #include "reference/surfaces.h"
@@ -24,8 +26,20 @@ lw_subset_order orderOf(std::size_t slots, std::uint32_t n) {
     return order;
 }
 
+std::vector<cl_uint> allBits(const lw_vpl_tiles& layout, lw_subset_order order) {
+    std::vector<cl_uint> masks;
+    for (int word = 0; word < order.subsets * layout.words; ++word) {
+        const int slots = std::min(32, order.capacity - word % layout.words * 32);
+        masks.insert(masks.end(), std::size_t(lw_tile_stride(layout)), slots == 32 ? ~0u : (1u << slots) - 1u);
+    }
+    return masks;
+}
+
+// With the tiles' own bits, or with all of them set: nothing is skipped then.
+enum class Bits { found, all };
+
 Image gatherOn(KernelRig& rig, const Image& position, const Image& normal, const std::vector<lw_vpl>& vpls,
-               std::uint32_t n) {
+               std::uint32_t n, Bits bits = Bits::found) {
     const std::uint32_t w = position.width, h = position.height;
     const Guarded p = rig.uploadPlanes(position.planes, w, h, 3, kNaN), nr = rig.uploadPlanes(normal.planes, w, h, 3, 1.0f);
     const Guarded list = rig.upload(vpls), counts = rig.upload(std::vector<cl_int>{0, 0});
@@ -36,7 +50,10 @@ Image gatherOn(KernelRig& rig, const Image& position, const Image& normal, const
     tiles.reserve(rig.device(), w, h, order, n);
     InterleavedGather pass(rig.device(), n);
     pass.recordCull(rig.executor(), surfaces[0], surfaces[1], list, order, tiles);
-    pass.recordGather(rig.executor(), surfaces[0], surfaces[1], list, order, tiles.masks(), rig.planes(out, w, h, 3), counts);
+    const lw_vpl_tiles layout = VplTiles::layout(w, h, order, n);
+    const Guarded all = rig.upload(allBits(layout, order));
+    pass.recordGather(rig.executor(), surfaces[0], surfaces[1], list, order, bits == Bits::all ? all : tiles.masks(),
+                      rig.planes(out, w, h, 3), counts);
     rig.device().finish();
     Image result(w, h);
     result.planes = rig.downloadPlanes(rig.planes(out, w, h, 3));
@@ -72,6 +89,91 @@ TEST_CASE("skipping VPLs by tiles keeps the bits", "[interleaved_tiles][large]")
     for (std::size_t i = 0; i < vpls.size(); ++i) whole[i / capacity * longer + i % capacity] = vpls[i];
     const Image skipping = gatherOn(rig, position, normal, vpls, n), all = gatherOn(rig, position, normal, whole, n);
     CHECK(bitDifference(skipping.planes, all.planes) == "");
+}
+
+// Where rounding decides: pixels and VPLs of one slanted plane, far from the origin. Each pair of them has a cosine
+// that is nothing but rounding, at the surface (its normal is the plane's) or at the VPL (its normal is). All that
+// is added is then as small, so that any wrongly skipped pair shows in the bits.
+struct Grazing {
+    std::mt19937 random;
+    double size;
+    Vec normal, origin;
+
+    double number(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); }
+    Vec direction() {
+        for (;;) {
+            const Vec v{number(-1, 1), number(-1, 1), number(-1, 1)};
+            if (dot(v, v) > 0.01) return unit(v);
+        }
+    }
+    Grazing(unsigned seed, double offset, double size_) : random(seed), size(size_) {
+        normal = direction();
+        origin = direction() * offset;
+    }
+    Vec onPlane(double within) {
+        const Vec v = direction() * within;
+        return origin + v - normal * dot(v, normal);
+    }
+    // Tiles: of background, of one point, of a small and of a large patch; pixels: some without a surface.
+    void fill(Image& position, Image& surfaceNormal, bool along) {
+        const Vec turned = along ? normal : direction();
+        const double oneLength = number(0.501, 1.999);
+        for (std::uint32_t y = 0; y < position.height; ++y)
+            for (std::uint32_t x = 0; x < position.width; ++x) {
+                const std::uint32_t patch = (x / 32 + y / LW_TILE_ROWS) % 4;
+                const double kind = number(0, 1);
+                if (kind < 0.05 || patch == 3) continue;
+                position.set(x, y, onPlane(patch == 0 ? 0.0 : patch == 1 ? 1e-3 * size : size));
+                if (kind > 0.97) position.set(x, y, {kNaN, 0, 0});
+                surfaceNormal.set(x, y, turned * (patch == 2 ? number(0.501, 1.999) : oneLength));
+            }
+    }
+    std::vector<lw_vpl> vpls(std::size_t count, bool along) {
+        std::vector<lw_vpl> list;
+        for (std::size_t i = 0; i < count; ++i) {
+            const Vec facing = (along ? direction() : normal) * number(0.981, 1.019);  // as hosts may give them
+            const Vec flux = i % 11 == 7 ? Vec{} : Vec{number(0, 1), i % 5 ? number(0, 1) : 0.0, number(0, 1)} * 1e20;
+            list.push_back(reference::makeVpl(onPlane(size), facing, flux, size * size * 1e-6));
+        }
+        return list;
+    }
+};
+
+TEST_CASE("skipping keeps the bits where rounding decides", "[interleaved_tiles][large]") {
+    const auto width = GENERATE(1u, 4u, 8u, 16u);
+    const auto n = GENERATE(1u, 2u, 4u, 8u);
+    const double offset = GENERATE(0.0, 1e4);
+    const bool along = GENERATE(true, false);
+    CAPTURE(width, n, offset, along);
+    KernelRig rig(width);
+    Grazing scene(n + (along ? 16u : 0u), offset, 300.0);
+    const auto w = std::uint32_t(scene.number(33, 200)), h = std::uint32_t(scene.number(9, 40));
+    const auto capacity = 2 * std::size_t(scene.number(1, 40));
+    Image position(w, h), normal(w, h);
+    scene.fill(position, normal, along);
+    const auto vpls = scene.vpls(capacity * n * n, along);
+    const Image skipping = gatherOn(rig, position, normal, vpls, n);
+    const Image all = gatherOn(rig, position, normal, vpls, n, Bits::all);
+    CHECK(bitDifference(skipping.planes, all.planes) == "");
+}
+
+// Positions whose squares are not finite are no surfaces, as everywhere positions come in.
+TEST_CASE("pixels too far away to be lit take no light and change no other", "[interleaved_tiles]") {
+    const auto width = GENERATE(1u, 16u);
+    KernelRig rig(width);
+    Image position(32, 8), normal(32, 8);
+    reference::fillCorner(position, normal);
+    const auto vpls = reference::randomVpls(64, 29);
+    const Image before = gatherOn(rig, position, normal, vpls, 1);
+    const Vec far[] = {{1e20, 0, 0}, {0, -3e38, 0}, {3e38, 3e38, -3e38}};
+    Image expected = before;
+    for (std::uint32_t i = 0; i < 3; ++i) {
+        position.set(3 + 5 * i, 5, far[i]);
+        normal.set(3 + 5 * i, 5, unit(Vec{-1, 1, 1}));
+        expected.set(3 + 5 * i, 5, {0, 0, 0});
+    }
+    for (const Bits bits : {Bits::found, Bits::all})
+        CHECK(bitDifference(gatherOn(rig, position, normal, vpls, 1, bits).planes, expected.planes) == "");
 }
 
 TEST_CASE("a tile keeps the VPLs that can light it", "[interleaved_tiles]") {
