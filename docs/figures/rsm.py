@@ -15,6 +15,8 @@ import pathlib
 import subprocess
 import sys
 
+import near_field
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 COUNTS = [64, 256, 1024, 4096, 16384]
 
@@ -51,7 +53,8 @@ def main():
 
     lines = [f"<!-- Made by docs/figures/rsm.py; do not edit. -->", ""]
     lines += limit_tables(options, work, call, render, compare)
-    lines += invariance_table(options, render)
+    lines += near_field_table(options, work, call, render)
+    lines += invariance_table(options, render, compare)
     lines += time_table(options, work, call, render)
     out = ROOT / "docs/techniques/rsm_figures.md"
     out.write_text("\n".join(lines) + "\n")
@@ -86,10 +89,27 @@ def limit_tables(options, work, call, render, compare):
         lines.append(f"| {scene} | flux, sampling alone | " + " | ".join(f"{e:.4f}" for e in errors) +
                      f" | {fitted_slope(COUNTS, errors):+.2f} | | |")
     return lines + ["", "*Sampling alone*: nRMSE between two seeds, over the root of two: what bounding takes from every "
-                    "picture alike is left out. The slopes stay above -0.5. The likely reason, not measured yet: where "
-                    "surfaces meet, a pixel nearer to a lit surface than one VPL's radius sees single VPLs, and its "
-                    "error stays of the order of the light itself; that strip narrows with the root of N, so its "
-                    "share of the nRMSE falls with the fourth root only.", ""]
+                    "picture alike is left out.", ""]
+
+
+def near_field_table(options, work, call, render):
+    """Slopes with the pixels set aside that a VPL's own disc reaches."""
+    def aside(scene):
+        positions, vpls = work / f"{scene}_position.exr", work / f"{scene}_all.vpls"
+        if not (positions.exists() and vpls.exists()):
+            call("render", scene, "--technique", "rsm", "--set", "vpls=64", "--set", "interleave=1", "--size",
+                 options.size, "--frames", 1, "--debug-view", f"position={positions}", "--out", work / "unused.exr")
+            call("render", scene, "--technique", "rsm", "--set", "vpls=0", "--set", "interleave=1", "--size", "32x18",
+                 "--frames", 1, "--vpls-out", vpls, "--out", work / "unused.exr")
+        return positions, vpls
+
+    def image(scene, name):
+        return work / f"{scene}_{name}.exr"
+
+    return ["### Where the error sits", "",
+            "nRMSE against all texels, flux sampling. *Near*: closer to a facing lit texel than the radius of the disc "
+            "that its VPL stands for at that N; there the bounded term cuts light off. All other pixels converge.", "",
+            *near_field.near_field_lines(options.scenes, COUNTS, image, aside, fitted_slope), ""]
 
 
 def fitted_slope(counts, errors):
@@ -98,13 +118,24 @@ def fitted_slope(counts, errors):
     return sum((a - mx) * (b - my) for a, b in zip(x, y)) / sum((a - mx) ** 2 for a in x)
 
 
-def invariance_table(options, render):
-    """Ten runs give one hash; scales change the picture by rounding only."""
+def invariance_table(options, render, compare):
+    """Ten runs give one hash; scales change the picture by rounding only, powers of two not at all."""
     scene = options.scenes[-1]
     hashes = {render(scene, f"run{i}")[1]["hash"] for i in range(10)}
-    return ["### Same input, same bits", "",
-            f"{scene}, defaults, ten processes: {len(hashes)} hash{'es' if len(hashes) > 1 else ''} "
-            f"({', '.join(sorted(hashes))}).", ""]
+    lines = ["### Same input, same bits", "",
+             f"{scene}, defaults, ten processes: {len(hashes)} hash{'es' if len(hashes) > 1 else ''} "
+             f"({', '.join(sorted(hashes))}).", "",
+             "Lengths scaled, lights with them so that irradiance stays. A power of two scales without rounding, from "
+             "the scene's file to the picture. Other factors round the rays: texels at edges change surface, and single "
+             "VPLs with them.", "",
+             "| scene | x 8 | x 1/8 | x 10, nRMSE | x 0.1, nRMSE |", "| --- | --- | --- | ---: | ---: |"]
+    for scene in options.scenes:
+        plain, report = render(scene, "scale1", extra=("--hash",))
+        scaled = {k: render(scene, f"scale{k}", extra=("--scale", k, "--hash")) for k in ("8", "0.125", "10", "0.1")}
+        same = ["same bits" if scaled[k][1]["hash"] == report["hash"] else "differs" for k in ("8", "0.125")]
+        errors = [f"{compare(scaled[k][0], plain)['nrmse']:.1e}" for k in ("10", "0.1")]
+        lines.append(f"| {scene} | " + " | ".join(same + errors) + " |")
+    return lines + [""]
 
 
 def time_table(options, work, call, render):
@@ -132,7 +163,7 @@ def time_table(options, work, call, render):
         probe_file.write_text(call("devices", "--probe", "--json"))
     probe = json.loads(probe_file.read_text())[0]["multiply_add_gflops"]
     share = f", {100 * rate / probe:.0f} % of the {probe:.0f} GF/s that the device's probe reaches"
-    return lines + ["", f"The 256-VPL gather runs at {rate:.0f} GF/s, counting 33 operations per pair of pixel and VPL{share}.", ""]
+    return lines + ["", f"The 256-VPL gather runs at {rate:.0f} GF/s, counting 33 operations per pair of pixel and VPL{share}; pairs that tiles skip are counted, as they are answered.", ""]
 
 
 if __name__ == "__main__":
