@@ -1,5 +1,7 @@
 // Chooses the number of lanes per work-item by timing the same gather at several widths.
 #include <algorithm>
+#include <array>
+#include <limits>
 
 #include "compute/probe_queue.h"
 
@@ -12,7 +14,10 @@ constexpr std::size_t kGroup = 64;
 constexpr int kFirstCount = 32, kMostCount = 32 << 12;
 // Runs shorter than this drown in launch cost; the light count grows until they are longer.
 constexpr double kShortestRun = 2e-3;
-constexpr int kRuns = 3;
+// Rounds over all widths, of which each keeps its best: the verdict is kept on disk, and a neighbour's burst on
+// the machine must not decide it. With 3 runs in a row one machine chose 8 where 16 is faster.
+constexpr int kRounds = 7;
+constexpr std::array<std::uint32_t, 3> kWidths{1, 8, 16};
 
 }  // namespace
 
@@ -30,30 +35,21 @@ std::uint32_t probeWidth(Device& device) {
             "clEnqueueFillBuffer");
 
     int count = kFirstCount;
-    std::uint32_t best = 1;
-    double bestTime = 0.0;
-    for (const std::uint32_t width : {1u, 8u, 16u}) {
+    const auto timeOnce = [&](std::uint32_t width) {
         Kernel& kernel = device.programs().kernel("probe/width", "probe_gather", {}, width);
-        const auto timeOnce = [&] {
-            const Stopwatch watch;
-            queue.enqueue(kernel, kPixels / width, kGroup, 1, pixels.get(), lights.get(), cl_int(count),
-                          out.get());
-            queue.finish();
-            return watch.seconds();
-        };
-        timeOnce();  // the driver compiles at the first launch
-        double time = timeOnce();
-        while (width == 1 && time < kShortestRun && count < kMostCount) {
-            count *= 4;
-            time = timeOnce();
-        }
-        for (int run = 1; run < kRuns; ++run) time = std::min(time, timeOnce());
-        if (width == 1 || time < bestTime) {
-            best = width;
-            bestTime = time;
-        }
-    }
-    return best;
+        const Stopwatch watch;
+        queue.enqueue(kernel, kPixels / width, kGroup, 1, pixels.get(), lights.get(), cl_int(count), out.get());
+        queue.finish();
+        return watch.seconds();
+    };
+    for (const std::uint32_t width : kWidths) timeOnce(width);  // the driver compiles at the first launch
+    while (timeOnce(1) < kShortestRun && count < kMostCount) count *= 4;
+
+    std::array<double, kWidths.size()> best;
+    best.fill(std::numeric_limits<double>::max());
+    for (int round = 0; round < kRounds; ++round)
+        for (std::size_t i = 0; i < kWidths.size(); ++i) best[i] = std::min(best[i], timeOnce(kWidths[i]));
+    return kWidths[std::size_t(std::min_element(best.begin(), best.end()) - best.begin())];
 }
 
 }  // namespace lightwell
