@@ -1,3 +1,6 @@
+// `lightwell chart`: times every point of every view, judges it against the view's truth, keeps results.json.
+// A little over 300 lines: one class whose members share the run's state; the views, frames, references and
+// sweeps it works on have files of their own.
 #include "chart_run.h"
 
 #include <fmt/format.h>

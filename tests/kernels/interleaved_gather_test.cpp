@@ -7,6 +7,7 @@
 
 #include "reference/surfaces.h"
 #include "support/kernel_rig.h"
+#include "support/vpl_slots.h"
 
 using namespace lightwell;
 using namespace lightwell::test;
@@ -21,28 +22,10 @@ constexpr double kPi = 3.14159265358979323846;
 // where it grazes: absolute 1e-5 of the mean covers it.
 constexpr double kTwinTolerance = 2e-5;
 
-lw_subset_order orderOf(std::size_t slots, std::uint32_t n) {
-    lw_subset_order order{};
-    order.subsets = cl_int(n * n);
-    order.step = 1;
-    order.capacity = cl_int(slots / (n * n));
-    order.count = cl_int(slots);
-    return order;
-}
-
 struct Gathered {
     Image irradiance;
     int rejected;
 };
-
-// Every slot of every subset for every tile.
-std::vector<cl_uint> allSlots(lw_vpl_tiles tiles, lw_subset_order order) {
-    std::vector<cl_uint> masks(std::size_t(lw_tile_stride(tiles)) * std::size_t(order.subsets * tiles.words), ~0u);
-    const int last = order.capacity % 32;
-    for (std::size_t i = 0; last && i < masks.size(); ++i)
-        if (int(i / std::size_t(lw_tile_stride(tiles))) % tiles.words == tiles.words - 1) masks[i] = (1u << last) - 1;
-    return masks;
-}
 
 Gathered gatherOn(KernelRig& rig, const Image& position, const Image& normal, const std::vector<lw_vpl>& vpls,
                   std::uint32_t n) {

@@ -7,6 +7,7 @@
 #include "passes/interleaved_gather.h"
 #include "reference/surfaces.h"
 #include "support/kernel_rig.h"
+#include "support/vpl_slots.h"
 
 using namespace lightwell;
 using namespace lightwell::test;
@@ -16,24 +17,6 @@ using reference::Vec;
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-
-lw_subset_order orderOf(std::size_t slots, std::uint32_t n) {
-    lw_subset_order order{};
-    order.subsets = cl_int(n * n);
-    order.step = 1;
-    order.capacity = cl_int(slots / (n * n));
-    order.count = cl_int(slots);
-    return order;
-}
-
-std::vector<cl_uint> allBits(const lw_vpl_tiles& layout, lw_subset_order order) {
-    std::vector<cl_uint> masks;
-    for (int word = 0; word < order.subsets * layout.words; ++word) {
-        const int slots = std::min(32, order.capacity - word % layout.words * 32);
-        masks.insert(masks.end(), std::size_t(lw_tile_stride(layout)), slots == 32 ? ~0u : (1u << slots) - 1u);
-    }
-    return masks;
-}
 
 // With the tiles' own bits, or with all of them set: nothing is skipped then.
 enum class Bits { found, all };
@@ -51,7 +34,7 @@ Image gatherOn(KernelRig& rig, const Image& position, const Image& normal, const
     InterleavedGather pass(rig.device(), n);
     pass.recordCull(rig.executor(), surfaces[0], surfaces[1], list, order, tiles);
     const lw_vpl_tiles layout = VplTiles::layout(w, h, order, n);
-    const Guarded all = rig.upload(allBits(layout, order));
+    const Guarded all = rig.upload(allSlots(layout, order));
     pass.recordGather(rig.executor(), surfaces[0], surfaces[1], list, order, bits == Bits::all ? all : tiles.masks(),
                       rig.planes(out, w, h, 3), counts);
     rig.device().finish();
