@@ -3,38 +3,12 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
-#include <vector>
 
 #include "lit_points.h"
+#include "rival_batch.h"
 #include "rival_scene.h"
 
 namespace studio {
-
-// Planar, so that the arithmetic between the rays is vector code.
-struct PathBatch {
-    static constexpr int kSize = 1024;
-    int count = 0;
-    alignas(64) float position[3][kSize];  // off the surface
-    alignas(64) float face[3][kSize], normal[3][kSize];
-    alignas(64) float direction[3][kSize], throughput[3][kSize];
-    alignas(64) std::uint32_t index[kSize];  // of the sample point
-    alignas(64) std::int32_t target[kSize];  // pixel of the tile
-    alignas(64) float point[2][kSize];       // in [0,1)^2
-    alignas(64) float rayDensity[kSize];     // 1/m^2, with which its ray found the vertex
-    alignas(64) std::int32_t alive[kSize];   // -1: this segment's ray is worth tracing
-    // What the ray met.
-    alignas(64) float distance[kSize], hitFace[3][kSize], u[kSize], v[kSize];
-    alignas(64) std::uint32_t mesh[kSize], primitive[kSize];
-};
-
-struct ShadowBatch {
-    int count = 0;
-    alignas(64) float origin[3][PathBatch::kSize], direction[3][PathBatch::kSize];
-    alignas(64) float reach[PathBatch::kSize], irradiance[3][PathBatch::kSize];
-    alignas(64) std::int32_t target[PathBatch::kSize];
-    alignas(64) std::int32_t lit[PathBatch::kSize];
-};
 
 // Traces batches on one thread.
 class RivalPaths {
@@ -50,12 +24,19 @@ public:
 
 private:
     void draw(std::uint64_t seed, int pair);  // batch.point
-    void intersect();
     void shade(int bounce, float* const sums[3]);
     void punctualLights(float* const sums[3]);
     void emitters(float* const sums[3]);
     void litPoints(float* const sums[3]);
-    void connect(float* const sums[3]);  // traces shadow_ and adds what arrives
+    // A straight way from a vertex: `cosine` at its shading normal, 0 where the way starts under its face.
+    struct Link {
+        glm::vec3 direction{0.0f};
+        float distance = 0.0f, squared = 0.0f, cosine = 0.0f;
+    };
+    Link linkTo(int vertex, const glm::vec3& position) const;
+    // Adds a shadow ray to shadow_; `irradiance`: what it brings to the pixel if nothing is in its way.
+    void queue(int vertex, const glm::vec3& direction, float reach, const glm::vec3& irradiance);
+    void connect(float* const sums[3]);  // traces and empties shadow_, adds what arrives
 
     int bounces_;
     bool asPackets_;

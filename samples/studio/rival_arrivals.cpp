@@ -1,0 +1,69 @@
+// Suns, spots and points as Scene's arrivalOf has them, for a whole batch in vector code.
+#include "rival_arrivals.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ray_scene.h"
+#include "simd_clones.h"
+
+namespace studio {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+STUDIO_SIMD void sunArrivals(const PathBatch& b, const float* toLight, Arrivals& to) {
+    for (int i = 0; i < b.count; ++i) {
+        float cosine = 0.0f, side = 0.0f;
+        for (int c = 0; c < 3; ++c) {
+            cosine += b.normal[c][i] * toLight[c];
+            side += b.face[c][i] * toLight[c];
+            to.direction[c][i] = toLight[c];
+        }
+        to.reach[i] = kInfinity;
+        to.strength[i] = cosine > 0.0f && side > 0.0f ? cosine : 0.0f;
+    }
+}
+
+// `scale`, `shift`: of the cosine off the axis, to the ramp between the cones.
+STUDIO_SIMD void lampArrivals(const PathBatch& b, const float* position, const float* axis, float scale,
+                              float shift, Arrivals& to) {
+    for (int i = 0; i < b.count; ++i) {
+        const float x = position[0] - b.position[0][i], y = position[1] - b.position[1][i],
+                    z = position[2] - b.position[2][i];
+        const float squared = x * x + y * y + z * z;
+        const float inverse = squared > 0.0f ? 1.0f / std::sqrt(squared) : 0.0f;
+        const float lx = x * inverse, ly = y * inverse, lz = z * inverse;
+        to.direction[0][i] = lx;
+        to.direction[1][i] = ly;
+        to.direction[2][i] = lz;
+        to.reach[i] = squared * inverse * (1.0f - RayScene::kLightGap);
+        const float cosine = b.normal[0][i] * lx + b.normal[1][i] * ly + b.normal[2][i] * lz;
+        const float side = b.face[0][i] * lx + b.face[1][i] * ly + b.face[2][i] * lz;
+        float ramp = shift - scale * (axis[0] * lx + axis[1] * ly + axis[2] * lz);
+        ramp = ramp > 0.0f ? ramp : 0.0f;
+        ramp = ramp < 1.0f ? ramp : 1.0f;
+        to.strength[i] = cosine > 0.0f && side > 0.0f ? cosine * ramp * ramp * inverse * inverse : 0.0f;
+    }
+}
+
+}  // namespace
+
+void findArrivals(const Light& light, const PathBatch& batch, Arrivals& to) {
+    if (light.kind == LightKind::Sun) {
+        const glm::vec3 toLight = -light.direction;
+        sunArrivals(batch, &toLight.x, to);
+        return;
+    }
+    float scale = 0.0f, shift = 1.0f;
+    if (light.kind == LightKind::Spot) {
+        const float outer = std::cos(light.outerCone), inner = std::cos(light.innerCone);
+        // Cones that coincide: a step, as steep as floats tell angles apart.
+        scale = 1.0f / std::max(inner - outer, 1e-6f);
+        shift = -outer * scale;
+    }
+    lampArrivals(batch, &light.position.x, &light.direction.x, scale, shift, to);
+}
+
+}  // namespace studio
