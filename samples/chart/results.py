@@ -1,8 +1,8 @@
 """What `lightwell chart` measured, as charts need it: which figures may be drawn, fronts, means over views."""
-import json
 import math
 import pathlib
 
+from report import read_json
 from pareto import pareto_front
 
 # key: (title, whether it is an error of the irradiance, how to read it from a point's errors)
@@ -21,10 +21,7 @@ TIMES = {"median": "median ms, host clock", "p99": "99th percentile ms, host clo
 class Results:
     def __init__(self, folder):
         self.folder = pathlib.Path(folder)
-        with open(self.folder / "results.json", encoding="utf-8") as file:
-            data = json.load(file)
-        if data.get("format") != "lightwell-chart 1":
-            raise SystemExit(f"{self.folder}/results.json: expected format lightwell-chart 1, got {data.get('format')}")
+        data = read_json(self.folder / "results.json", "lightwell-chart 1")
         self.header, self.views, self.points = data["header"], data["views"], data["points"]
         self.stale = [p for p in self.points if p["size"] != self.header["size"]]
         self.points = [p for p in self.points if p["size"] == self.header["size"]]

@@ -95,9 +95,11 @@ void addChart(CLI::App& app) {
     command->add_option("--noise", arguments->noise, "relMSE to which truths are traced; default: 1e-3");
     command
         ->add_option("--truth-seconds", options.truth.seconds,
-                     "Most time for one truth; the next chart goes on from there. 0: no limit")
+                     "Most time for the truths of one view; the next chart goes on from there. 0: no limit")
         ->check(CLI::NonNegativeNumber)
         ->capture_default_str();
+    command->add_flag("--kept-truths", options.truth.takesKept,
+                      "Take the cache's truths as they are; trace only where it has none");
     command->add_flag("--only-truths", options.onlyTruths,
                       "Trace the truths into the cache, measure nothing");
     command->add_flag("--no-all-bounces", options.skipsAllBounces,

@@ -208,16 +208,18 @@ void Charter::traceTruths(ChartView& view) {
     for (const ChartedPoint& point : points_) bounces.insert(modelledBounces(point.sweep.parameters));
     if (!options_.skipsAllBounces && !options_.quick) bounces.insert(0);
     TruthOptions truth = options_.truth;
-    for (const int count : bounces) {
-        studio::ProgressLine line(fmt::format("truth of {}, {}", view.id(), bouncesText(count)));
-        truth.progress = [&](const std::string&, double fraction, double noise) {
-            line.update(fraction, noise < 0.0 ? "" : fmt::format("noise (relMSE) {:.2e}", noise));
-            if (InterruptGuard::wasRaised())
-                throw Interrupted("interrupted; the same command goes on with this truth");
-        };
-        const Truth& made = view.truth(count, truth).truth;
-        line.finish(fmt::format("{} samples per pixel, noise {:.2e}", made.samples, made.noise));
-    }
+    studio::ProgressLine line("truth of " + view.id());
+    truth.progress = [&](double fraction, double noise) {
+        line.update(fraction, noise < 0.0 ? "" : fmt::format("noise (relMSE) {:.2e}", noise));
+        if (InterruptGuard::wasRaised())
+            throw Interrupted("interrupted; the same command goes on with this truth");
+    };
+    view.obtainTruths(bounces, truth);
+    std::string note;
+    for (const auto& [count, judged] : view.truths())
+        note += fmt::format("{}{}: {} samples per pixel, noise {:.2e}", note.empty() ? "" : "; ",
+                            bouncesText(count), judged.truth.samples, judged.truth.noise);
+    line.finish(note);
 }
 
 Json Charter::describeView(const ChartView& view) {

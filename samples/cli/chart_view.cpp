@@ -60,27 +60,34 @@ bool ChartView::loadShipped(JudgedTruth& judged) const {
     return true;
 }
 
-const JudgedTruth& ChartView::truth(int bounces, const TruthOptions& options) {
-    const auto known = truths_.find(bounces);
-    if (known != truths_.end()) return known->second;
-    JudgedTruth judged;
-    judged.truth.bounces = bounces;
-    if (!options.takesShipped || !loadShipped(judged)) {
-        TruthRequest request;
-        request.bounces = bounces;
-        request.noise = options.noise;
-        request.seconds = options.seconds;
-        request.directory = options.directory;
-        const std::string what = fmt::format("truth of {}, {}", id(), bouncesText(bounces));
-        if (options.progress)
-            request.progress = [&](double fraction, double noise) {
-                options.progress(what, fraction, noise);
-            };
-        judged.truth = obtainTruth(*scene_, inputs_.gbuffer(), request);
+void ChartView::obtainTruths(const std::set<int>& bounces, const TruthOptions& options) {
+    TruthRequest request;
+    request.bounces.clear();
+    for (const int count : bounces) {
+        JudgedTruth shipped;
+        shipped.truth.bounces = count;
+        if (options.takesShipped && loadShipped(shipped))
+            addTruth(std::move(shipped));
+        else
+            request.bounces.push_back(count);
     }
+    if (request.bounces.empty()) return;
+    request.noise = options.noise;
+    request.seconds = options.seconds;
+    request.takesKept = options.takesKept;
+    request.directory = options.directory;
+    request.progress = options.progress;
+    for (Truth& truth : cli::obtainTruths(*scene_, inputs_.gbuffer(), request)) {
+        JudgedTruth judged;
+        judged.truth = std::move(truth);
+        addTruth(std::move(judged));
+    }
+}
+
+void ChartView::addTruth(JudgedTruth judged) {
     addLayers(judged.truth.image);
     judged.exposure = studio::autoExposure(studio::composite(judged.truth.image));
-    return truths_.emplace(bounces, std::move(judged)).first->second;
+    truths_[judged.truth.bounces] = std::move(judged);
 }
 
 }  // namespace cli

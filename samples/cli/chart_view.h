@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 
 #include "reference_cache.h"
@@ -13,10 +14,11 @@ namespace cli {
 
 struct TruthOptions {
     double noise = 1e-3;        // relMSE
-    double seconds = 0.0;       // for each, 0: no limit
+    double seconds = 0.0;       // for each view, 0: no limit
     bool takesShipped = false;  // shipped one-bounce references where they fit
+    bool takesKept = false;     // those in the cache, whatever their noise
     std::string directory;      // of the cache
-    std::function<void(const std::string& what, double fraction, double noise)> progress;
+    std::function<void(double fraction, double noise)> progress;
 };
 
 struct JudgedTruth {
@@ -36,14 +38,15 @@ public:
     std::string hash() const;  // of scene, view and size
     const RenderInputs& inputs() const { return inputs_; }
 
-    // With the layers that a comparison needs. Traced or loaded on the first call.
-    const JudgedTruth& truth(int bounces, const TruthOptions& options);
+    // Traces or loads the truths of these counts of bounces, with the layers that a comparison needs.
+    void obtainTruths(const std::set<int>& bounces, const TruthOptions& options);
     const std::map<int, JudgedTruth>& truths() const { return truths_; }
     // Irradiance with the layers of this view, for comparisons and composites.
     studio::Image withLayers(const studio::PlanarBuffer& irradiance) const;
 
 private:
     bool loadShipped(JudgedTruth& truth) const;
+    void addTruth(JudgedTruth judged);
     void addLayers(studio::Image& image) const;
 
     std::shared_ptr<studio::RayScene> scene_;

@@ -1,11 +1,18 @@
 #include "reference_cache.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <stdexcept>
+#include <thread>
 
 #include "film.h"
 #include "path_tracer.h"
@@ -14,12 +21,15 @@ namespace cli {
 namespace {
 
 namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
 
 // Part of every name: raise it when the path tracer's result changes for another reason than its inputs.
-constexpr int kTracerVersion = 1;
+constexpr int kTracerVersion = 2;
 constexpr int kAllBounces = 64;     // Russian roulette ends paths long before
 constexpr int kFewestSamples = 16;  // per pixel, before the halves are asked
 constexpr int kMostSamples = 1 << 20;
+constexpr std::chrono::milliseconds kLockInterval{200};
+constexpr const char* kChannels[] = {"R", "G", "B"};
 
 struct TimeIsUp {};
 
@@ -29,65 +39,198 @@ std::vector<std::string> layersOf(int bounces) {
     return {"all"};
 }
 
-studio::PathTracerOptions tracerOptions(const TruthRequest& request) {
-    studio::PathTracerOptions options;
-    options.maxBounces = request.bounces == 0 ? kAllBounces : request.bounces;
-    options.judgedLayers = layersOf(request.bounces);
-    return options;
+std::string layerText(int bounces) {
+    return fmt::format("{}", fmt::join(layersOf(bounces), "+"));
 }
 
-std::string fileName(const studio::RayScene& scene, const studio::GBuffer& view, int bounces) {
-    return fmt::format("{}-{:016x}-{:016x}-b{}-v{}", scene.scene().name, studio::hashScene(scene),
-                       studio::hashView(view), bounces == 0 ? "all" : std::to_string(bounces),
-                       kTracerVersion);
+// How far paths go for all of the counts; 0: to their end.
+int depthOf(const std::vector<int>& bounces) {
+    const bool hasAll = std::find(bounces.begin(), bounces.end(), 0) != bounces.end();
+    return hasAll ? 0 : *std::max_element(bounces.begin(), bounces.end());
 }
 
-studio::Image traceUntil(const studio::RayScene& scene, const studio::GBuffer& view,
-                         const TruthRequest& request, const std::string& path) {
-    using Clock = std::chrono::steady_clock;
-    studio::PathTracerOptions options = tracerOptions(request);
-    options.checkpoint = path;
-    options.samplesPerPixel = kFewestSamples;
-    options.maxSamplesPerPixel = kMostSamples;
-    options.untilRelMse = request.noise;
-    const Clock::time_point start = Clock::now();
-    options.progress = [&](double fraction, double noise) {
-        const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
-        if (request.seconds > 0.0) fraction = std::max(fraction, seconds / request.seconds);
-        if (request.progress) request.progress(std::min(fraction, 1.0), noise);
-        if (request.seconds > 0.0 && seconds > request.seconds) throw TimeIsUp();
-    };
-    try {
-        return studio::tracePaths(scene, view, options);
-    } catch (const TimeIsUp&) {
-        options.untilRelMse = 0.0;  // what the checkpoint holds
-        options.samplesPerPixel = 2;
-        options.progress = nullptr;
-        return studio::tracePaths(scene, view, options);
-    }
+std::vector<int> countsWithin(int depth) {
+    if (depth == 0) return {1, 2, 0};
+    return depth == 1 ? std::vector<int>{1} : std::vector<int>{1, 2};
 }
 
-// R, G, B: the sum of the layers; the noise as metadata.
-studio::Image assemble(const studio::Image& traced, const std::vector<std::string>& layers) {
-    studio::Image image(traced.width, traced.height);
-    for (const char* channel : {"R", "G", "B"}) {
-        std::vector<float>& sum = image.plane(channel);
-        for (const std::string& layer : layers) {
-            const std::vector<float>& values = traced.plane(layer + "." + channel);
-            for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += values[i];
+// One process at a time works on a view's files; the lock ends with the process.
+class FileLock {
+public:
+    FileLock(const fs::path& path, const TruthRequest& request)
+        : file_(::open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666)) {
+        if (file_ < 0)
+            throw std::runtime_error(fmt::format("{}: {}", path.string(), std::strerror(errno)));
+        while (::flock(file_, LOCK_EX | LOCK_NB) != 0) {
+            if (errno != EWOULDBLOCK && errno != EINTR) {
+                const std::string reason = std::strerror(errno);
+                ::close(file_);
+                throw std::runtime_error(fmt::format("{}: {}", path.string(), reason));
+            }
+            try {
+                if (request.progress) request.progress(0.0, -1.0);
+            } catch (...) {
+                ::close(file_);
+                throw;
+            }
+            std::this_thread::sleep_for(kLockInterval);
         }
     }
-    const std::string layer = fmt::format("{}", fmt::join(layers, "+"));
-    image.metadata["layer"] = layer;
-    image.metadata["noise." + layer] = fmt::format("{:.9g}", studio::estimateNoise(traced, layers));
-    image.metadata["spp"] = traced.metadata.at("spp");
-    return image;
-}
+    ~FileLock() { ::close(file_); }
+    FileLock(const FileLock&) = delete;
+    FileLock& operator=(const FileLock&) = delete;
 
-void readFigures(Truth& truth) {
-    truth.noise = std::stod(truth.image.metadata.at("noise." + truth.image.metadata.at("layer")));
-    truth.samples = std::stoi(truth.image.metadata.at("spp"));
-}
+private:
+    int file_;
+};
+
+// A view's truths in the cache: layers bounce1, bounce2, all, and the noise of each count.
+class ViewTruths {
+public:
+    ViewTruths(const studio::RayScene& scene, const studio::GBuffer& view, const TruthRequest& request)
+        : scene_(scene),
+          view_(view),
+          request_(request),
+          depth_(depthOf(request.bounces)),
+          directory_(request.directory.empty() ? truthCacheDirectory() : request.directory),
+          name_(fmt::format("{}-{:016x}-{:016x}-{}-v{}", scene.scene().name, studio::hashScene(scene),
+                            studio::hashView(view), depth_ == 0 ? "all" : std::to_string(depth_),
+                            kTracerVersion)),
+          path_(directory_ / (name_ + ".exr")),
+          checkpoint_(directory_ / (name_ + ".film")) {
+        fs::create_directories(directory_);
+    }
+
+    std::vector<Truth> obtain() {
+        const FileLock lock(directory_ / (name_ + ".lock"), request_);
+        if (fs::exists(path_)) kept_ = readKept();
+        if (kept_.width == 0 || !(request_.takesKept || isGoodEnough(kept_))) improve();
+        std::vector<Truth> truths;
+        for (const int bounces : request_.bounces) truths.push_back(truthOf(bounces));
+        return truths;
+    }
+
+private:
+    studio::Image readKept() const {
+        try {
+            studio::Image image = studio::readImage(path_.string());
+            noiseOf(image, depth_);
+            image.plane(layersOf(depth_).back() + ".R");
+            std::stoi(image.metadata.at("spp"));
+            return image;
+        } catch (const std::exception& error) {
+            throw std::runtime_error(fmt::format(
+                "{}: expected a kept truth: {}; delete it to have it traced anew", path_.string(),
+                error.what()));
+        }
+    }
+
+    static double noiseOf(const studio::Image& image, int bounces) {
+        return std::stod(image.metadata.at("noise." + layerText(bounces)));
+    }
+
+    bool isGoodEnough(const studio::Image& image) const {
+        return std::all_of(request_.bounces.begin(), request_.bounces.end(), [&](int bounces) {
+            return noiseOf(image, bounces) <= request_.noise;
+        });
+    }
+
+    // Traces on until each count is good enough or time is up, and keeps the result if it is better.
+    void improve() {
+        studio::Image traced;
+        const bool hasFilm = fs::exists(checkpoint_);
+        if (request_.takesKept && hasFilm) {
+            traced = compact(traceOn(0, 0.0));
+        } else {
+            const Clock::time_point start = Clock::now();
+            try {
+                for (const int bounces : request_.bounces)
+                    if (traced.width == 0 || noiseOf(traced, bounces) > request_.noise)
+                        traced = compact(traceOn(bounces, request_.noise, start));
+            } catch (const TimeIsUp&) {
+                traced = compact(traceOn(0, 0.0));
+            }
+        }
+        // Time may be up before the new picture is as good as the one that is kept.
+        if (kept_.width != 0 && samplesOf(kept_) >= samplesOf(traced)) return;
+        kept_ = std::move(traced);
+        const fs::path unfinished = directory_ / (name_ + ".part.exr");
+        studio::writeExr(unfinished.string(), kept_);
+        fs::rename(unfinished, path_);
+        if (isGoodEnough(kept_)) fs::remove(checkpoint_);
+    }
+
+    // Until this count's noise is reached; 0: what the checkpoint holds.
+    studio::Image traceOn(int bounces, double noise, Clock::time_point start = {}) const {
+        studio::PathTracerOptions options;
+        options.maxBounces = depth_ == 0 ? kAllBounces : depth_;
+        options.checkpoint = checkpoint_.string();
+        options.samplesPerPixel = noise > 0.0 ? kFewestSamples : 2;
+        if (noise > 0.0) {
+            options.judgedLayers = layersOf(bounces);
+            options.maxSamplesPerPixel = kMostSamples;
+            options.untilRelMse = noise;
+            options.progress = [&, start](double fraction, double now) {
+                const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+                if (request_.seconds > 0.0) fraction = std::max(fraction, seconds / request_.seconds);
+                if (request_.progress) request_.progress(std::min(fraction, 1.0), now);
+                if (request_.seconds > 0.0 && seconds > request_.seconds) throw TimeIsUp();
+            };
+        }
+        try {
+            return studio::tracePaths(scene_, view_, options);
+        } catch (const studio::CheckpointError& error) {
+            throw std::runtime_error(
+                fmt::format("{}; delete it to have the truth traced anew", error.what()));
+        }
+    }
+
+    // The layers without their halves; what these tell of the noise as metadata.
+    studio::Image compact(const studio::Image& traced) const {
+        studio::Image image(traced.width, traced.height);
+        image.metadata["spp"] = traced.metadata.at("spp");
+        for (const int bounces : countsWithin(depth_)) {
+            for (const std::string& layer : layersOf(bounces))
+                for (const std::string channel : kChannels)
+                    image.plane(layer + "." + channel) = traced.plane(layer + "." + channel);
+            image.metadata["noise." + layerText(bounces)] =
+                fmt::format("{:.9g}", studio::estimateNoise(traced, layersOf(bounces)));
+        }
+        return image;
+    }
+
+    static int samplesOf(const studio::Image& image) { return std::stoi(image.metadata.at("spp")); }
+
+    Truth truthOf(int bounces) const {
+        Truth truth;
+        truth.bounces = bounces;
+        truth.name = name_;
+        truth.samples = samplesOf(kept_);
+        truth.noise = noiseOf(kept_, bounces);
+        truth.image = studio::Image(kept_.width, kept_.height);
+        for (const std::string channel : kChannels) {
+            std::vector<float>& sum = truth.image.plane(channel);
+            for (const std::string& layer : layersOf(bounces)) {
+                const std::vector<float>& values = kept_.plane(layer + "." + channel);
+                for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += values[i];
+            }
+        }
+        for (const std::string key : {"layer", "spp"})
+            truth.image.metadata[key] = key == "layer" ? layerText(bounces) : kept_.metadata.at(key);
+        truth.image.metadata["noise." + layerText(bounces)] =
+            kept_.metadata.at("noise." + layerText(bounces));
+        return truth;
+    }
+
+    const studio::RayScene& scene_;
+    const studio::GBuffer& view_;
+    const TruthRequest& request_;
+    int depth_;
+    fs::path directory_;
+    std::string name_;
+    fs::path path_, checkpoint_;
+    studio::Image kept_;  // of width 0: none
+};
 
 }  // namespace
 
@@ -102,33 +245,14 @@ std::string truthCacheDirectory() {
         "none is set");
 }
 
-Truth obtainTruth(const studio::RayScene& scene, const studio::GBuffer& view,
-                  const TruthRequest& request) {
-    const fs::path directory =
-        request.directory.empty() ? fs::path(truthCacheDirectory()) : fs::path(request.directory);
-    fs::create_directories(directory);
-    Truth truth;
-    truth.bounces = request.bounces;
-    truth.name = fileName(scene, view, request.bounces);
-    const std::string path = (directory / (truth.name + ".exr")).string();
-    const std::string checkpoint = (directory / (truth.name + ".film")).string();
-    Truth kept = truth;
-    if (fs::exists(path)) {
-        kept.image = studio::readImage(path);
-        readFigures(kept);
-        if (kept.noise <= request.noise) return kept;
-    }
-    truth.image = assemble(traceUntil(scene, view, request, checkpoint), layersOf(request.bounces));
-    readFigures(truth);
-    // Time may be up before the new picture is as good as the one that is kept.
-    if (kept.samples > 0 && kept.noise < truth.noise) return kept;
-    if (truth.noise <= request.noise) {
-        const std::string unfinished = (directory / (truth.name + ".part.exr")).string();
-        studio::writeExr(unfinished, truth.image);
-        fs::rename(unfinished, path);
-        fs::remove(checkpoint);
-    }
-    return truth;
+std::vector<Truth> obtainTruths(const studio::RayScene& scene, const studio::GBuffer& view,
+                                const TruthRequest& request) {
+    const bool isKnown = std::all_of(request.bounces.begin(), request.bounces.end(),
+                                     [](int bounces) { return bounces >= 0 && bounces <= 2; });
+    if (request.bounces.empty() || !isKnown)
+        throw std::invalid_argument(
+            fmt::format("truths of {} bounces: expected 1, 2 or 0 (all)", fmt::join(request.bounces, ", ")));
+    return ViewTruths(scene, view, request).obtain();
 }
 
 }  // namespace cli

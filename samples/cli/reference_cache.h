@@ -1,13 +1,15 @@
-// Path-traced truths that are kept: a picture is traced once for everything that it depends on.
+// Path-traced truths that are kept: a view is traced once for everything that its truths depend on.
 //
-// A truth's file is named by hashes of all of that: scene (geometry, materials, textures, lights at the
-// moment), view and options. While it is noisier than asked for, the path tracer's checkpoint lies
-// beside it (48 bytes per pixel, layer and half: 180 MB at 1280x720), and the next call goes on from
-// there.
+// One run of the path tracer makes the truths of all bounce counts that are asked for together. Their file
+// is named by hashes of scene (geometry, materials, textures, lights at the moment) and view, and by how
+// far paths go. While a truth is noisier than asked for, the path tracer's checkpoint lies beside the
+// file (192 bytes per pixel: 180 MB at 1280x720), and the next call goes on from there. A lock beside them
+// lets one process at a time trace a view; others wait for it.
 #pragma once
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "gbuffer.h"
 #include "image.h"
@@ -15,11 +17,12 @@
 namespace cli {
 
 struct TruthRequest {
-    int bounces = 1;        // 0: all
-    double noise = 1e-3;    // relMSE to be reached
-    double seconds = 0.0;   // > 0: stop after this time, whatever the noise
-    std::string directory;  // "": truthCacheDirectory()
-    // Called now and then; an exception ends the run, which keeps what it has.
+    std::vector<int> bounces{1};  // counts of bounces; 0: all
+    double noise = 1e-3;          // relMSE to be reached by each
+    double seconds = 0.0;         // > 0: stop after this time, whatever the noise
+    bool takesKept = false;       // what is kept will do, whatever its noise
+    std::string directory;        // "": truthCacheDirectory()
+    // Called now and then; an exception ends the run, which keeps what it has. noise < 0: not known yet.
     std::function<void(double fraction, double noise)> progress;
 };
 
@@ -36,7 +39,8 @@ struct Truth {
 // ~/.cache/lightwell/references, beside the library's own cache of programs.
 std::string truthCacheDirectory();
 
-Truth obtainTruth(const studio::RayScene& scene, const studio::GBuffer& view,
-                  const TruthRequest& request);
+// One truth for each of request.bounces, in their order.
+std::vector<Truth> obtainTruths(const studio::RayScene& scene, const studio::GBuffer& view,
+                                const TruthRequest& request);
 
 }  // namespace cli

@@ -172,7 +172,7 @@ class Chart(unittest.TestCase):
             page = file.read()
         self.assertEqual(re.findall(r"""(?:src|href)=["'](?!data:)[^"']*["']""", page), [])  # opens offline
         self.assertNotIn("<!--", page.split("<body>")[1].split("<script")[0])
-        data = json.loads(re.search(r'<script id="data" type="application/json">(.*?)</script>', page, re.S).group(1))
+        data = json.loads(re.search(r'<script id="chart-data" type="application/json">(.*?)</script>', page, re.S).group(1))
         self.assertEqual([v["id"] for v in data["views"]], ["cornell/front", "basic/overview"])
         self.assertTrue(all(len(v["images"]) >= 3 and v["fronts"]["relMSE|own|median"] for v in data["views"]))
 

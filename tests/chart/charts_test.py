@@ -4,7 +4,9 @@ Usage: charts_test.py [unittest options]. Python's standard library only.
 """
 import json
 import os
+import pathlib
 import random
+import re
 import sys
 import tempfile
 import unittest
@@ -12,6 +14,7 @@ import unittest
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
 sys.path.insert(0, os.path.join(ROOT, "samples", "chart"))
 from pareto import pareto_front  # noqa: E402
+import report  # noqa: E402
 import results as charts  # noqa: E402
 
 
@@ -89,6 +92,49 @@ class Means(unittest.TestCase):
         self.assertEqual([m["settings"] for m in means], ["x"])
         self.assertIsNone(charts.value(means[0]))  # one of its views is too noisy
         self.assertEqual(sorted(settings for _, settings, _ in left), ["x", "y"])
+
+
+class Page(unittest.TestCase):
+    """The seam by which instruments join the report."""
+
+    def test_every_instrument_has_its_place(self):
+        known = report.instruments()
+        self.assertIn("chart", [name for name, _ in known])
+        for _, module in known:
+            self.assertTrue(module.FILE.endswith(".json") and callable(module.make), module)
+        self.assertEqual(len({module.FILE for _, module in known}), len(known))
+        self.assertEqual([module.ORDER for _, module in known], sorted(module.ORDER for _, module in known))
+
+    def test_sections_stand_side_by_side(self):
+        """Neither texts nor scripts of one section reach another; what comes from a file stays text."""
+        hostile = {"name": "</script><!-- <b>", "more": "<!--SCRIPTS-->"}
+        one = report.Section("One & only", "<p>first</p>", hostile, "const data2 = data.name;", ".one-x { color: red; }")
+        two = report.Section("Two", "<p><!--TITLE--></p>", None, "const data2 = 1;")
+        text = report.page([("one", one), ("two", two)], "/* d3 */")
+        self.assertIn('<a href="#one">One &amp; only</a>', text)
+        self.assertIn('<section id="two"><h1>Two</h1>', text)
+        self.assertIn(".one-x { color: red; }", text)
+        [data] = re.findall(r'<script id="one-data" type="application/json">(.*?)</script>', text, re.S)
+        self.assertEqual(json.loads(data), hostile)
+        self.assertEqual(text.count("<script"), text.count("</script>"))
+        self.assertIn("<p><!--TITLE--></p>", text)  # parts are not searched for places
+        self.assertNotIn("<nav>", report.page([("one", one)], ""))
+        with self.assertRaises(ValueError):
+            report.page([("one", report.Section("One", "", float("nan")))], "")
+
+    def test_tables_escape(self):
+        text = report.table(["a", "b"], [("<i>", 1)], numbers_from=1)
+        self.assertIn("<td>&lt;i&gt;</td><td class=number>1</td>", text)
+
+    def test_what_is_no_result_is_refused(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, "results.json")
+            with self.assertRaisesRegex(report.ReportError, "no-such"):
+                report.read_json(pathlib.Path(folder, "no-such.json"), "f 1")
+            for text, said in (('{"format": "f 0"}', "expected format f 1, got f 0"), ("[]", "got list"), ('{"format"', "results.json")):
+                path.write_text(text, encoding="ascii")
+                with self.assertRaisesRegex(report.ReportError, said):
+                    report.read_json(path, "f 1")
 
 
 if __name__ == "__main__":

@@ -1,17 +1,40 @@
-"""The report: one HTML file with everything in it, so that it opens offline."""
-import base64
+"""Section of the report for `lightwell chart`: error against time."""
 import html
-import json
-import pathlib
 
-from plots import colour_of
-from results import METRICS, TIMES, TRUTHS, errors, front, is_drawn, means_over_views
+from report import HERE, Section, data_uri, table
+from results import METRICS, TIMES, TRUTHS, Results, errors, front, is_drawn, means_over_views
 
-HERE = pathlib.Path(__file__).resolve().parent
+FILE, ORDER = "results.json", 10
 PICTURES_PER_TECHNIQUE = 5  # in a view; each is some 100 kB
 
+BODY = """<p>Every point is a technique with one set of parameters: milliseconds per frame, from the host's images to the
+host's output, against its error. Left and low is good; the grey line is the Pareto front: what nothing beats in both.
+Points with a ring are named settings. Wheel and drag zoom a chart, a double click shows all again; a click on
+a point shows its picture, where there is one, below.</p>
+<p>A technique is judged against the truth of as many bounces as it models; the choice below compares all of them with the
+light of all bounces. No point is drawn where the truth's own noise exceeds a tenth of its error.</p>
+<form id="choices">
+  <label>error <select id="metric"></select></label>
+  <label>against <select id="truth"></select></label>
+  <label>time <select id="time"></select></label>
+</form>
+<section id="summary"></section>
+{left}
+<section id="views"></section>
+<h2>All figures</h2>
+<p><input id="filter" type="search" placeholder="filter: scene, technique, vpls=256 ..." size="40">
+A click on a head sorts. Figures in grey are not drawn: the truth is too noisy for them.</p>
+<div class="wide"><table id="figures"><thead></thead><tbody></tbody></table></div>
+<h2>Truths</h2>
+<div class="wide">{truths}</div>
+<h2>Measured on</h2>
+<div class="wide">{head}</div>
+"""
 
-def write_page(results, d3):
+
+def make(folder):
+    from plots import colour_of, write_plots  # once the results are known to be right: matplotlib takes a second
+    results = Results(folder)
     means, left = means_over_views(results)
     data = {"views": [describe_view(results, view) for view in results.views],
             "mean": {"id": "mean", "title": f"Geometric means over {len(results.views)} views",
@@ -19,16 +42,9 @@ def write_page(results, d3):
             "colours": {t: colour_of(results, t) for t in results.techniques},
             "metrics": {key: {"title": title, "onAll": on_all} for key, (title, on_all, _) in METRICS.items()},
             "truths": TRUTHS, "times": TIMES}
-    text = (HERE / "report.html").read_text(encoding="utf-8")
-    parts = {"STYLE": (HERE / "report.css").read_text(encoding="utf-8"), "D3": d3,
-             "SCRIPT": (HERE / "report.js").read_text(encoding="utf-8"), "HEAD": head(results),
-             "TRUTHS": truth_table(results), "LEFT": left_out(results, left),
-             "DATA": json.dumps(data, separators=(",", ":")).replace("</", "<\\/")}
-    for name, part in parts.items():
-        text = text.replace(f"<!--{name}-->", part)
-    path = results.folder / "report.html"
-    path.write_text(text, encoding="utf-8")
-    return path.name
+    body = BODY.format(left=left_out(left), truths=truth_table(results), head=head(results))
+    script = (HERE / "chart_section.js").read_text(encoding="utf-8")
+    return Section("Speed against accuracy", body, data, script, written=write_plots(results))
 
 
 def describe_point(point, pictures=()):
@@ -51,9 +67,9 @@ def fronts(points):
 def describe_view(results, view):
     points = results.of_view(view)
     chosen = pictured(results, points)
-    images = {p["id"]: {"picture": data_uri(results, p["images"]["picture"]), "error": data_uri(results, p["images"]["error"]),
+    images = {p["id"]: {"picture": data_uri(results.folder / p["images"]["picture"]), "error": data_uri(results.folder / p["images"]["error"]),
                         "truth": f"truth_{p['bounces'] or 'all'}"} for p in chosen}
-    truths = {key: data_uri(results, path) for key, path in view["images"].items()}
+    truths = {key: data_uri(results.folder / path) for key, path in view["images"].items()}
     return {"id": view["id"], "title": f"{view['scene']}, camera {view['camera']}", "truths": truths, "images": images,
             "points": [describe_point(p, chosen) for p in points], "fronts": fronts(points)}
 
@@ -70,10 +86,6 @@ def pictured(results, points):
             others = [others[round(i * (len(others) - 1) / max(1, room - 1))] for i in range(room)]
         chosen += named + others
     return chosen
-
-
-def data_uri(results, name):
-    return "data:image/jpeg;base64," + base64.b64encode((results.folder / name).read_bytes()).decode("ascii")
 
 
 def head(results):
@@ -111,14 +123,8 @@ def truth_table(results):
     return table(["scene", "camera", "bounces", "samples per pixel", "noise (relMSE)", "points too accurate for it"], rows)
 
 
-def left_out(results, left):
+def left_out(left):
     if not left:
         return ""
     items = "".join(f"<li>{html.escape(t)} {html.escape(s)}: {html.escape(why)}</li>" for t, s, why in left)
     return f"<details><summary>{len(left)} settings are not in the means</summary><ul>{items}</ul></details>"
-
-
-def table(titles, rows):
-    head_row = "".join(f"<th>{html.escape(str(t))}</th>" for t in titles) if any(titles) else ""
-    body = "".join("<tr>" + "".join(f"<td>{html.escape(str(c))}</td>" for c in row) + "</tr>" for row in rows)
-    return f"<table><thead><tr>{head_row}</tr></thead><tbody>{body}</tbody></table>"

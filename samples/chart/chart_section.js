@@ -1,6 +1,5 @@
-// Charts (D3), sortable table and sliders of the report. All figures come with the page; nothing is loaded.
+// Charts (D3), sortable table and sliders. Runs as a function of (root, data, d3), see report.py.
 "use strict";
-const data = JSON.parse(document.getElementById("data").textContent);
 const choice = {metric: "relMSE", truth: "own", time: "median"};
 const tip = d3.select("body").append("div").attr("class", "tip");
 const SIZE = {width: 760, height: 430, left: 64, right: 16, top: 12, bottom: 44};
