@@ -111,12 +111,14 @@ double biasChange(const StabilitySequence& sequence, int t) {
 void findDrift(const StabilitySequence& sequence, StabilityIndices& result) {
     const int count = sequence.count(), window = std::max(3, count / 4);
     if (count < 2 * window) return;
-    std::vector<double> curve{0.0};
+    std::vector<double> curve{0.0}, medians;
     for (int t = 1; t < count; ++t) curve.push_back(curve.back() + biasChange(sequence, t));
-    for (int t = 0; t < count; ++t) result.frames[std::size_t(t)].drift = curve[std::size_t(t)];
-    std::vector<double> medians;
     for (int first = 0; first + window <= count; ++first)
         medians.push_back(median({curve.begin() + first, curve.begin() + first + window}));
+    for (int t = 0; t < count; ++t) {
+        const int first = std::clamp(t - window / 2, 0, count - window);
+        result.frames[std::size_t(t)].drift = medians[std::size_t(first)] - medians[0];
+    }
     const auto [low, high] = std::minmax_element(medians.begin(), medians.end());
     result.drift = *high - *low;
 }
@@ -129,11 +131,11 @@ void findWorstFrame(StabilityIndices& result) {
     for (std::size_t t = 0; t < result.frames.size(); ++t) {
         const FrameIndices& frame = result.frames[t];
         const std::pair<StabilityReason, double> shares[] = {
+            {StabilityReason::Spike, frame.spike.value_or(0.0) / kNoticeable.spike},
             {StabilityReason::Flicker, frame.flicker.value_or(0.0) / kNoticeable.flicker},
             {StabilityReason::Ghost, frame.ghost.value_or(0.0) / kNoticeable.ghost},
             {StabilityReason::Leak, frame.leak.value_or(0.0) / kNoticeable.leak},
-            {StabilityReason::Drift, std::abs(frame.drift.value_or(0.0)) / kNoticeable.drift},
-            {StabilityReason::Spike, frame.spike.value_or(0.0) / kNoticeable.spike}};
+            {StabilityReason::Drift, std::abs(frame.drift.value_or(0.0)) / kNoticeable.drift}};
         for (const auto& [reason, share] : shares)
             if (share > worst) {
                 worst = share;

@@ -42,7 +42,7 @@ struct FrameIndices {
     std::optional<double> flicker;  // against the frame before
     std::optional<double> ghost;    // of what changed kGhostAge frames before
     std::optional<double> leak;
-    std::optional<double> drift;  // change of the relative bias since the first frame, on matched pixels
+    std::optional<double> drift;  // median of the relative bias around it, less the first frames'
     std::optional<double> spike;  // the worst tile's
 };
 
@@ -58,10 +58,10 @@ struct StabilityIndices {
 constexpr int kGhostAge = 2;     // frames after a change, when an image should have followed it
 constexpr int kSettledAge = 12;  // frames after it, when it counts as settled
 
-// What a viewer begins to notice, roughly: weighs the indices against each other to name a sequence's
-// worst frame.
+// What a viewer begins to notice in one frame, roughly: weighs the indices against each other to name a
+// sequence's worst frame. Flicker and spike alike: what differs in one frame only is a spike.
 struct StabilityNoticeable {
-    double flicker = 0.05, ghost = 1.0, leak = 0.01, drift = 0.1, spike = 0.25;
+    double spike = 0.25, flicker = 0.25, ghost = 1.0, leak = 0.01, drift = 0.1;
 };
 
 // All indices are relative to the truth's mean light: the unit of light does not matter, and lightless
