@@ -49,6 +49,13 @@ private:
     float perRadiance_ = 0.0f;  // density per area of a triangle of mean radiance 1
 };
 
+// A ray's share of light that it and another way both find, by the balance heuristic: `byRay`, `byOther`
+// are the densities of finding it. (A direction in the horizon, which rounding may give, has no density
+// and no share; an infinite density has all.)
+inline float rayShare(float byRay, float byOther) {
+    return byRay > 0.0f ? 1.0f / (1.0f + byOther / byRay) : 0.0f;
+}
+
 // One estimate of the irradiance from emissive surfaces and sky straight to `at`: a point on an emitter
 // and a cosine-distributed ray, shadows included.
 glm::vec3 extendedIrradiance(const RayScene& scene, const AreaLights& lights, const Surface& at,

@@ -38,12 +38,6 @@ float rayDensity(float cosine, float geometricCosine, float squaredDistance) {
     return cosine * geometricCosine / (kPi * squaredDistance);
 }
 
-// The ray's share of what both ways find, by the balance heuristic. (A direction in the horizon, which
-// rounding may give, has no density and no share; an infinite density has all.)
-float rayShare(float byRay, float byLamp) {
-    return byRay > 0.0f ? 1.0f / (1.0f + byLamp / byRay) : 0.0f;
-}
-
 // The normal a shadow map's texel has, on the lit side of its surface: the shading normal, unless that
 // leans away from the lamp although the surface faces it.
 glm::vec3 lobeNormal(const glm::vec3& litSide, const glm::vec3& shading, const glm::vec3& toLamp) {

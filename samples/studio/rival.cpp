@@ -50,10 +50,19 @@ void require(bool isTrue, const char* name, const char* expectation, std::uint64
                                 std::to_string(came));
 }
 
+void requireSize(const char* name, int width, int height, const PlanarBuffer& buffer) {
+    if (buffer.width() == width && buffer.height() == height) return;
+    throw std::invalid_argument("rival: " + std::string(name) + ": expected " + std::to_string(width) +
+                                " x " + std::to_string(height) + " pixels, got " +
+                                std::to_string(buffer.width()) + " x " +
+                                std::to_string(buffer.height()));
+}
+
 }  // namespace
 
 struct Rival::Impl {
     RivalOptions options;
+    int width, height;  // of the picture
     TracedGrid grid;
     int tileSide;
     WorkerPool pool;
@@ -80,7 +89,8 @@ struct Rival::Impl {
     void traceLeftOver(const GBuffer& g, const std::vector<PixelPlace>& pixels, PlanarBuffer& to);
 };
 
-Rival::Impl::Impl(const RivalOptions& o, int fullWidth, int fullHeight) : options(o) {
+Rival::Impl::Impl(const RivalOptions& o, int fullWidth, int fullHeight)
+    : options(o), width(fullWidth), height(fullHeight) {
     const int factor = 1 << int(o.resolution);
     require(o.bounces == 1 || o.bounces == 2, "bounces", "1 or 2", o.bounces);
     require(o.levels <= 5, "levels", "0 to 5", o.levels);  // wider windows pass PaddedPlanes::kPad
@@ -173,6 +183,10 @@ Rival::~Rival() = default;
 RivalTimes Rival::render(const RayScene& rayScene, const GBuffer& g, PlanarBuffer& irradiance,
                          PlanarBuffer& validity) {
     Impl& s = *impl_;
+    requireSize("position", s.width, s.height, g.position);
+    requireSize("normal", s.width, s.height, g.normal);
+    requireSize("irradiance", s.width, s.height, irradiance);
+    requireSize("validity", s.width, s.height, validity);
     if (s.scene == nullptr || s.sceneId != rayScene.id()) {
         s.scene = std::make_unique<RivalScene>(rayScene);
         s.sceneId = rayScene.id();

@@ -12,6 +12,7 @@ namespace studio {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kStep = 1e30f;  // the ramp's slope where cones coincide: any difference of cosines fills it
 
 STUDIO_SIMD void sunArrivals(const PathBatch& b, const float* toLight, Arrivals& to) {
     for (int i = 0; i < b.count; ++i) {
@@ -26,9 +27,10 @@ STUDIO_SIMD void sunArrivals(const PathBatch& b, const float* toLight, Arrivals&
     }
 }
 
-// `scale`, `shift`: of the cosine off the axis, to the ramp between the cones.
-STUDIO_SIMD void lampArrivals(const PathBatch& b, const float* position, const float* axis, float scale,
-                              float shift, Arrivals& to) {
+// The ramp between the cones: (cosine off the axis - outer) * scale. The difference comes first, as the
+// cosines of narrow cones agree in all but their last digits.
+STUDIO_SIMD void lampArrivals(const PathBatch& b, const float* position, const float* axis, float outer,
+                              float scale, Arrivals& to) {
     for (int i = 0; i < b.count; ++i) {
         const float x = position[0] - b.position[0][i], y = position[1] - b.position[1][i],
                     z = position[2] - b.position[2][i];
@@ -41,7 +43,7 @@ STUDIO_SIMD void lampArrivals(const PathBatch& b, const float* position, const f
         to.reach[i] = squared * inverse * (1.0f - RayScene::kLightGap);
         const float cosine = b.normal[0][i] * lx + b.normal[1][i] * ly + b.normal[2][i] * lz;
         const float side = b.face[0][i] * lx + b.face[1][i] * ly + b.face[2][i] * lz;
-        float ramp = shift - scale * (axis[0] * lx + axis[1] * ly + axis[2] * lz);
+        float ramp = (-axis[0] * lx - axis[1] * ly - axis[2] * lz - outer) * scale;
         ramp = ramp > 0.0f ? ramp : 0.0f;
         ramp = ramp < 1.0f ? ramp : 1.0f;
         to.strength[i] = cosine > 0.0f && side > 0.0f ? cosine * ramp * ramp * inverse * inverse : 0.0f;
@@ -56,14 +58,13 @@ void findArrivals(const Light& light, const PathBatch& batch, Arrivals& to) {
         sunArrivals(batch, &toLight.x, to);
         return;
     }
-    float scale = 0.0f, shift = 1.0f;
+    float outer = -2.0f, scale = 1.0f;  // beyond every cosine: 1 all round
     if (light.kind == LightKind::Spot) {
-        const float outer = std::cos(light.outerCone), inner = std::cos(light.innerCone);
-        // Cones that coincide: a step, as steep as floats tell angles apart.
-        scale = 1.0f / std::max(inner - outer, 1e-6f);
-        shift = -outer * scale;
+        outer = std::cos(light.outerCone);
+        const float width = std::cos(light.innerCone) - outer;
+        scale = width > 0.0f ? 1.0f / width : kStep;
     }
-    lampArrivals(batch, &light.position.x, &light.direction.x, scale, shift, to);
+    lampArrivals(batch, &light.position.x, &light.direction.x, outer, scale, to);
 }
 
 }  // namespace studio

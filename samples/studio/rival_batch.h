@@ -30,6 +30,7 @@ struct ShadowBatch {
     alignas(64) float origin[3][PathBatch::kSize], direction[3][PathBatch::kSize];
     alignas(64) float reach[PathBatch::kSize], irradiance[3][PathBatch::kSize];
     alignas(64) std::int32_t target[PathBatch::kSize];
+    alignas(64) std::uint32_t mesh[PathBatch::kSize], primitive[PathBatch::kSize];  // of a glowing end
     alignas(64) std::int32_t lit[PathBatch::kSize];
 };
 

@@ -26,6 +26,13 @@ float largest(const glm::vec3& c) {
     return std::max(c.x, std::max(c.y, c.z));
 }
 
+// The square of a small triangle's area is beyond floats.
+glm::vec3 unitOf(const glm::vec3& v) {
+    const glm::vec3 sizes = glm::abs(v);
+    const glm::vec3 scaled = v / largest(sizes);
+    return scaled / glm::length(scaled);
+}
+
 // Owen-scrambled Sobol points of this pair of dimensions, as sampler.h makes them.
 STUDIO_SIMD void drawPoints(const std::uint32_t* index, int count, std::uint64_t a, std::uint64_t b,
                             float* u, float* v) {
@@ -107,7 +114,7 @@ void RivalPaths::shade(int bounce, float* const sums[3]) {
         }
         const RivalTriangle& triangle = scene_->triangle(b.mesh[i], b.primitive[i]);
         const glm::vec3 direction = at(b.direction, i);
-        glm::vec3 face = glm::normalize(at(b.hitFace, i));
+        glm::vec3 face = unitOf(at(b.hitFace, i));
         const float facing = glm::dot(face, direction);
         if (facing > 0.0f) face = -face;
 
@@ -115,7 +122,7 @@ void RivalPaths::shade(int bounce, float* const sums[3]) {
         if (bounce > 0 && largest(emission) > 0.0f) {
             const float byRay = std::abs(facing) * glm::dot(at(b.normal, i), direction) * kInversePi;
             const float byLamp = emitters.areaDensity(emission) * b.distance[i] * b.distance[i];
-            add(sums, b.target[i], throughput * emission * (kPi * byRay / (byRay + byLamp)));
+            add(sums, b.target[i], throughput * emission * (kPi * rayShare(byRay, byLamp)));
         }
         if (bounce == bounces_) continue;
 
@@ -156,8 +163,8 @@ void RivalPaths::queue(int vertex, const glm::vec3& direction, float reach,
     shadow_.target[to] = batch_->target[vertex];
 }
 
-void RivalPaths::connect(float* const sums[3]) {
-    findLit(scene_->rays().embree(), shadow_, asPackets_);
+// What arrives of the queued rays, whose `lit` is known.
+void RivalPaths::addLit(float* const sums[3]) {
     shadowRays += std::uint64_t(shadow_.count);
     for (int i = 0; i < shadow_.count; ++i)
         if (shadow_.lit[i]) add(sums, shadow_.target[i], at(shadow_.irradiance, i));
@@ -187,12 +194,13 @@ void RivalPaths::punctualLights(float* const sums[3]) {
             // What connections to lit points leave to rays: the balance heuristic, as in integrator.cpp.
             float share = found.strength[i];
             if (litPoints_ != nullptr)
-                share /=
-                    1.0f + litPoints_->density(l, at(b.position, i), at(b.face, i)) / b.rayDensity[i];
+                share *= rayShare(b.rayDensity[i],
+                                  litPoints_->density(l, at(b.position, i), at(b.face, i)));
             queue(i, at(found.direction, i), found.reach[i],
                   at(b.throughput, i) * lights[l].emitted * share);
         }
-        connect(sums);
+        findLit(scene_->rays().embree(), shadow_, asPackets_);
+        addLit(sums);
     }
 }
 
@@ -202,21 +210,19 @@ void RivalPaths::emitters(float* const sums[3]) {
     for (int i = 0; i < b.count; ++i) {
         const AreaLights::Point lamp = scene_->emitters().pick({b.point[0][i], b.point[1][i]});
         const Link link = linkTo(i, lamp.position);
-        const float side = glm::dot(lamp.normal, link.direction);
-        if (link.cosine <= 0.0f || side == 0.0f) continue;
-        if (scene_->isHole(lamp.mesh, lamp.triangle, lamp.weights)) continue;
+        const float side = std::abs(glm::dot(lamp.normal, link.direction));
+        if (link.cosine <= 0.0f || side <= 0.0f) continue;
         const glm::vec3& emission =
             scene_->emission(scene_->triangle(unsigned(lamp.mesh), unsigned(lamp.triangle)));
-        const glm::vec3 end =
-            scene_->rays().offset(lamp.position, side > 0.0f ? -lamp.normal : lamp.normal);
-        const float reach = glm::length(end - at(b.position, i));
-        if (reach <= 0.0f) continue;
-        const float byRay = link.cosine * std::abs(side) * kInversePi,
+        const float byRay = link.cosine * side * kInversePi,
                     byLamp = scene_->emitters().areaDensity(emission) * link.squared;
-        queue(i, (end - at(b.position, i)) / reach, reach,
-              at(b.throughput, i) * emission * (kPi * byRay / (byRay + byLamp)));
+        shadow_.mesh[shadow_.count] = std::uint32_t(lamp.mesh);
+        shadow_.primitive[shadow_.count] = std::uint32_t(lamp.triangle);
+        queue(i, link.direction, link.distance,
+              at(b.throughput, i) * emission * (kPi * rayShare(byRay, byLamp)));
     }
-    connect(sums);
+    findGlowing(scene_->rays().embree(), shadow_, asPackets_);
+    addLit(sums);
 }
 
 // Each vertex is joined to one place that a lamp shines on, found by a ray from the lamp: where the lamp
@@ -236,10 +242,11 @@ void RivalPaths::litPoints(float* const sums[3]) {
         const float byRay = link.cosine * litCosine * kInversePi / link.squared;
         queue(i, link.direction, link.distance,
               at(b.throughput, i) * found.albedo * lamp.irradiance *
-                  (lampCosine * byRay / (byRay + found.density)));
+                  (lampCosine * rayShare(byRay, found.density)));
     }
     rays += std::uint64_t(b.count);
-    connect(sums);
+    findLit(scene_->rays().embree(), shadow_, asPackets_);
+    addLit(sums);
 }
 
 void RivalPaths::trace(const RivalScene& scene, const LitPoints* litPoints, std::uint64_t seed,

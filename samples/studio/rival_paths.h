@@ -36,7 +36,7 @@ private:
     Link linkTo(int vertex, const glm::vec3& position) const;
     // Adds a shadow ray to shadow_; `irradiance`: what it brings to the pixel if nothing is in its way.
     void queue(int vertex, const glm::vec3& direction, float reach, const glm::vec3& irradiance);
-    void connect(float* const sums[3]);  // traces and empties shadow_, adds what arrives
+    void addLit(float* const sums[3]);  // empties shadow_
 
     int bounces_;
     bool asPackets_;

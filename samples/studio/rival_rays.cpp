@@ -156,4 +156,33 @@ void findLit(RTCSceneTy* scene, ShadowBatch& s, bool asPackets) {
     }
 }
 
+void findGlowing(RTCSceneTy* scene, ShadowBatch& s, bool asPackets) {
+    Context context;
+    if (!asPackets) {
+        RTCRayHit ray;
+        for (int i = 0; i < s.count; ++i) {
+            fillRay(ray.ray, s.origin, s.direction, i);
+            ray.ray.tfar = kInfinity;
+            ray.hit.geomID = ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+            find1(scene, context, &ray);
+            s.lit[i] = ray.hit.geomID == s.mesh[i] && ray.hit.primID == s.primitive[i];
+        }
+        return;
+    }
+    RTCRayHit16 packet;
+    for (int first = 0; first < s.count; first += kLanes) {
+        fillRays(packet.ray, s.origin, s.direction, first);
+        alignas(64) int valid[kLanes];
+        for (int i = 0; i < kLanes; ++i) {
+            valid[i] = first + i < s.count ? -1 : 0;
+            packet.ray.tfar[i] = kInfinity;
+            packet.hit.geomID[i] = packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+        }
+        find16(valid, scene, context, &packet);
+        for (int i = 0; i < kLanes; ++i)
+            s.lit[first + i] = packet.hit.geomID[i] == s.mesh[first + i] &&
+                               packet.hit.primID[i] == s.primitive[first + i];
+    }
+}
+
 }  // namespace studio

@@ -72,17 +72,6 @@ RivalScene::RivalScene(const RayScene& rayScene) : scene_(rayScene), emitters_(r
     }
 }
 
-bool RivalScene::isHole(int mesh, int primitive, const glm::vec2& weights) const {
-    const Scene& scene = scene_.scene();
-    const Mesh& owner = scene.meshes[std::size_t(mesh)];
-    const Material& material = scene.materials[std::size_t(owner.material)];
-    if (material.alphaCutoff <= 0.0f || material.texture < 0 || owner.uvs.empty()) return false;
-    const glm::uvec3& t = owner.triangles[std::size_t(primitive)];
-    const glm::vec2 uv = owner.uvs[t.x] * (1.0f - weights.x - weights.y) + owner.uvs[t.y] * weights.x +
-                         owner.uvs[t.z] * weights.y;
-    return scene.textures[std::size_t(material.texture)].lookup(uv).a < material.alphaCutoff;
-}
-
 std::uint64_t RivalScene::bytes() const {
     std::uint64_t sum = triangles_.size() * sizeof(RivalTriangle);
     for (const SmallTexture& texture : textures_) sum += texture.texels.size() * sizeof(glm::vec3);

@@ -46,8 +46,6 @@ public:
     glm::vec3 albedo(const RivalTriangle& t, float u, float v) const;
     const AreaLights& emitters() const { return emitters_; }
     bool hasSky() const { return scene_.scene().sky != glm::vec3(0.0f); }
-    // Whether an alpha mask has cut this point out (weights: barycentric, as Hit's u and v).
-    bool isHole(int mesh, int primitive, const glm::vec2& weights) const;
     std::uint64_t bytes() const;
 
 private:

@@ -60,14 +60,15 @@ Planes rowOf(const PlanarBuffer& buffer, int y) {
 inline Vec load(const Planes& p, int x) {
     return {p.at[0][x], p.at[1][x], p.at[2][x]};
 }
-inline Vec way(const Planes& p, int x, const Vec& from) {
-    return {p.at[0][x] - from.x, p.at[1][x] - from.y, p.at[2][x] - from.z};
+inline Vec way(const Planes& p, int x, const Vec& from, float unit) {
+    return {(p.at[0][x] - from.x) * unit, (p.at[1][x] - from.y) * unit, (p.at[2][x] - from.z) * unit};
 }
 
 struct RowJob {
     Planes position, above, below, normal;
     int left, step, last;  // first pixel, pixels between, last column of the picture
     float floor;           // RayScene::offsetFloor
+    float unit;            // ways times this: their fourth powers stay within floats in any scene
     float *p[3], *o[3], *f[3], *n[3];
 };
 
@@ -78,15 +79,15 @@ STUDIO_SIMD void readPixels(const RowJob& job, int count) {
     float *mx = job.n[0], *my = job.n[1], *mz = job.n[2];
     const Planes position = job.position, above = job.above, below = job.below, normals = job.normal;
     const int left = job.left, step = job.step, last = job.last;
-    const float floor = job.floor;
+    const float floor = job.floor, unit = job.unit;
 #pragma GCC ivdep
     for (int i = 0; i < count; ++i) {
         int x = left + i * step;
         x = x < last ? x : last;
         const int right = x < last ? x + 1 : x, before = x > 0 ? x - 1 : x;
         const Vec at = load(position, x), normal = load(normals, x);
-        const Vec u = alongSurface(way(position, right, at), way(position, before, at), normal);
-        const Vec v = alongSurface(way(below, x, at), way(above, x, at), normal);
+        const Vec u = alongSurface(way(position, right, at, unit), way(position, before, at, unit), normal);
+        const Vec v = alongSurface(way(below, x, at, unit), way(above, x, at, unit), normal);
         Vec face = {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
         const float squared = dot(face, face), cosine = dot(face, normal);
         const bool isGood = cosine * cosine > kFaceCosine * kFaceCosine * squared;
@@ -120,6 +121,7 @@ void TilePixels::readRow(const GBuffer& view, const TracedGrid& grid, int left, 
     job.step = grid.factor;
     job.last = view.width - 1;
     job.floor = floor;
+    job.unit = std::exp2(-std::round(std::log2(floor)));  // a power of two: nothing is rounded
     for (int c = 0; c < 3; ++c) {
         job.p[c] = to.position[c] + at;
         job.o[c] = to.origin[c] + at;

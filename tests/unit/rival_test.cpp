@@ -1,61 +1,16 @@
 // The rival against values that are known without it and against the reference path tracer.
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <memory>
 #include <vector>
 
-#include "path_tracer.h"
-#include "rival.h"
 #include "rival_filter.h"
+#include "support/rival_view.h"
 
 namespace {
 
 using namespace studio;
 
-struct View {
-    std::shared_ptr<Scene> scene;
-    RayScene rays;
-    GBuffer gbuffer;
-    View(const char* name, int width, int height)
-        : scene(std::make_shared<Scene>(loadScene(name))),
-          rays(scene, 0.0f),
-          gbuffer(renderGBuffer(rays, scene->cameraAt(0, 0.0f), width, height, scene->cameraAt(0, 0.0f),
-                                0.0f)) {}
-};
-
-struct Result {
-    PlanarBuffer irradiance, validity;
-    RivalTimes times;
-};
-
-Result render(const View& view, const RivalOptions& options) {
-    Result result{PlanarBuffer(view.gbuffer.width, view.gbuffer.height, 3),
-                  PlanarBuffer(view.gbuffer.width, view.gbuffer.height, 1),
-                  {}};
-    Rival rival(options, view.gbuffer.width, view.gbuffer.height);
-    result.times = rival.render(view.rays, view.gbuffer, result.irradiance, result.validity);
-    return result;
-}
-
-RivalOptions unfiltered(std::uint32_t bounces, std::uint32_t spp) {
-    RivalOptions options;
-    options.bounces = bounces;
-    options.spp = spp;
-    options.filter = 0;
-    return options;
-}
-
-double meanOf(const Result& result) {
-    double sum = 0.0, count = 0.0;
-    for (int c = 0; c < 3; ++c)
-        for (int y = 0; y < result.validity.height(); ++y)
-            for (int x = 0; x < result.validity.width(); ++x) {
-                if (result.validity.row(0, y)[x] == 0.0f) continue;
-                sum += double(result.irradiance.row(c, y)[x]);
-                count += 1.0;
-            }
-    return sum / count;
-}
+using namespace rival_test;
 
 bool sameBits(const Result& a, const Result& b) {
     for (int c = 0; c < 3; ++c)
@@ -63,39 +18,6 @@ bool sameBits(const Result& a, const Result& b) {
             for (int x = 0; x < a.validity.width(); ++x)
                 if (a.irradiance.row(c, y)[x] != b.irradiance.row(c, y)[x]) return false;
     return true;
-}
-
-// Sum of the first `bounces` layers at a pixel.
-double truthAt(const Image& truth, int bounces, int channel, int x, int y) {
-    const std::string name(1, "RGB"[channel]);
-    const auto at = std::size_t(y) * std::size_t(truth.width) + std::size_t(x);
-    double sum = double(truth.plane("bounce1." + name)[at]);
-    if (bounces == 2) sum += double(truth.plane("bounce2." + name)[at]);
-    return sum;
-}
-
-struct Error {
-    double nrmse = 0.0, bias = 0.0;
-};
-
-Error errorOf(const Result& result, const Image& truth, int bounces) {
-    double squares = 0.0, difference = 0.0, sum = 0.0, count = 0.0;
-    for (int c = 0; c < 3; ++c)
-        for (int y = 0; y < truth.height; ++y)
-            for (int x = 0; x < truth.width; ++x) {
-                if (result.validity.row(0, y)[x] == 0.0f) continue;
-                const double t = truthAt(truth, bounces, c, x, y);
-                const double e = double(result.irradiance.row(c, y)[x]) - t;
-                squares += e * e, difference += e, sum += t, count += 1.0;
-            }
-    return {std::sqrt(squares / count) / (sum / count), difference / sum};
-}
-
-Image truthOf(const View& view, int samples) {
-    PathTracerOptions options;
-    options.samplesPerPixel = samples;
-    options.maxBounces = 2;
-    return tracePaths(view.rays, view.gbuffer, options);
 }
 
 }  // namespace
