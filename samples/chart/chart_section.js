@@ -1,6 +1,6 @@
 // Charts (D3), sortable table and sliders. Runs as a function of (root, data, d3), see report.py.
 "use strict";
-const choice = {metric: "relMSE", truth: "own", time: "median"};
+const choice = {metric: "relMSE", truth: "own", time: data.time};
 const tip = d3.select("body").append("div").attr("class", "tip");
 const SIZE = {width: 760, height: 430, left: 64, right: 16, top: 12, bottom: 44};
 
@@ -17,8 +17,10 @@ const short = value => value === null || value === undefined ? "" : Number(value
 function describe(point) {
   const own = point.errors.own || {};
   return `${point.technique}${point.label ? " (" + point.label + ")" : ""}\n${point.settings}\n` +
-    `${short(point.ms.median)} ms, p99 ${short(point.ms.p99)} ms\nrelMSE ${short(own.relMSE)}, nRMSE ${short(own.nrmse)}, ` +
-    `score ${short(own.score)}, FLIP ${short(own.flip)}`;
+    `${short(point.ms.median)} ms, p99 ${short(point.ms.p99)} ms` +
+    (point.ms.processor ? `, processor ${short(point.ms.processor)} ms` : "") + `\nrelMSE ${short(own.relMSE)}, nRMSE ${short(own.nrmse)}, ` +
+    `score ${short(own.score)}, FLIP ${short(own.flip)}` +
+    (own.views < data.views.length ? `\nmean of ${own.views} views of ${data.views.length}` : "");
 }
 
 // Axes that hold all points, a little wider; never empty, and never under half a decade, where small differences
@@ -30,10 +32,16 @@ function domainOf(values) {
   return [low / margin, high * margin];
 }
 
-const plainTick = value => {
-  const digit = Math.round(value / Math.pow(10, Math.floor(Math.log10(value) + 1e-9)));
-  return [1, 2, 5].includes(digit) ? d3.format("~g")(Number(value.toPrecision(3))) : "";
+// Plain numbers, readable also within one decade and not too many in several.
+const ticksOf = scale => {
+  const [low, high] = scale.domain();
+  const digits = high / low < 8 ? [1, 1.5, 2, 3, 4, 5, 7] : high / low < 2e3 ? [1, 2, 5] : [1];
+  const ticks = [];
+  for (let decade = Math.floor(Math.log10(low)); decade <= Math.log10(high); ++decade)
+    for (const digit of digits) ticks.push(Number(`${digit}e${decade}`));
+  return ticks.filter(tick => tick >= low && tick <= high);
 };
+const plainTick = value => d3.format("~g")(value);
 
 function drawChart(section, group) {
   const points = group.points.filter(point => errorOf(point) !== null);
@@ -66,11 +74,16 @@ function drawChart(section, group) {
   const names = plot.selectAll(".name").data(points.filter(point => point.label)).enter().append("text").attr("class", "name")
     .text(point => point.label);
   const place = (x, y) => {
-    xAxis.call(d3.axisBottom(x).ticks(12, plainTick));
-    yAxis.call(d3.axisLeft(y).ticks(10, plainTick));
+    xAxis.call(d3.axisBottom(x).tickValues(ticksOf(x)).tickFormat(plainTick));
+    yAxis.call(d3.axisLeft(y).tickValues(ticksOf(y)).tickFormat(plainTick));
     marks.attr("transform", point => `translate(${x(timeOf(point))},${y(errorOf(point))})`);
     names.attr("x", point => x(timeOf(point)) + 8).attr("y", point => y(errorOf(point)) - 6);
-    front.attr("d", d3.line().curve(d3.curveStepAfter).x(point => x(timeOf(point))).y(point => y(errorOf(point)))(onFront));
+    const steps = onFront.map(point => [x(timeOf(point)), y(errorOf(point))]);
+    if (steps.length) {  // from the upper edge down, and to the right edge
+      steps.unshift([steps[0][0], SIZE.top]);
+      steps.push([SIZE.width - SIZE.right, steps[steps.length - 1][1]]);
+    }
+    front.attr("d", d3.line().curve(d3.curveStepAfter)(steps));
   };
   place(x0, y0);
   const zoom = d3.zoom().scaleExtent([1, 200]).on("zoom", () => {
@@ -153,7 +166,7 @@ function addGroup(parent, group) {
 const COLUMNS = [
   ["scene", p => p.scene], ["camera", p => p.camera], ["technique", p => p.technique], ["settings", p => p.settings],
   ["name", p => p.label], ["bounces", p => p.bounces || "all"], ["frames", p => p.frames], ["ms", p => p.ms && p.ms.median],
-  ["p99 ms", p => p.ms && p.ms.p99],
+  ["p99 ms", p => p.ms && p.ms.p99], ["processor ms", p => p.ms && p.ms.processor],
   ...["relMSE", "nrmse", "bias", "p99", "score", "flip"].map(key => [key, p => p.errors.own && p.errors.own[key], "own"]),
   ["noise", p => p.errors.own && p.errors.own.noise],
   ["relMSE, all bounces", p => p.errors.all && p.errors.all.relMSE, "all"],
@@ -195,7 +208,7 @@ function drawAll() {
 for (const [id, names] of [["metric", data.metrics], ["truth", data.truths], ["time", data.times]]) {
   const select = d3.select("#" + id);
   for (const [key, name] of Object.entries(names)) select.append("option").attr("value", key).text(name.title || name);
-  select.on("change", function () { choice[id] = this.value; drawAll(); });
+  select.property("value", choice[id]).on("change", function () { choice[id] = this.value; drawAll(); });
 }
 addGroup("#summary", data.mean);
 for (const view of data.views) addGroup("#views", view);

@@ -2,7 +2,7 @@
 import html
 
 from report import HERE, Section, data_uri, table
-from results import METRICS, TIMES, TRUTHS, Results, errors, front, is_drawn, means_over_views
+from results import METRICS, TRUTHS, Results, counted, errors, front, is_drawn, means_over_views
 
 FILE, ORDER = "results.json", 10
 PICTURES_PER_TECHNIQUE = 5  # in a view; each is some 100 kB
@@ -37,11 +37,11 @@ def make(folder):
     results = Results(folder)
     means, left = means_over_views(results)
     data = {"views": [describe_view(results, view) for view in results.views],
-            "mean": {"id": "mean", "title": f"Geometric means over {len(results.views)} views",
-                     "points": [describe_point(p) for p in means], "fronts": fronts(means)},
+            "mean": {"id": "mean", "title": "Geometric means over " + counted(len(results.views), "view"),
+                     "points": [describe_point(p) for p in means], "fronts": fronts(results, means)},
             "colours": {t: colour_of(results, t) for t in results.techniques},
             "metrics": {key: {"title": title, "onAll": on_all} for key, (title, on_all, _) in METRICS.items()},
-            "truths": TRUTHS, "times": TIMES}
+            "truths": TRUTHS, "times": results.times, "time": results.time()}
     body = BODY.format(left=left_out(left), truths=truth_table(results), head=head(results))
     script = (HERE / "chart_section.js").read_text(encoding="utf-8")
     return Section("Speed against accuracy", body, data, script, written=write_plots(results))
@@ -58,10 +58,10 @@ def describe_point(point, pictures=()):
     return described
 
 
-def fronts(points):
+def fronts(results, points):
     """Ids on the front for every choice that the page offers."""
     return {f"{metric}|{truth}|{time}": [p["id"] for p in front(points, metric, truth, time)]
-            for metric, (_, on_all, _) in METRICS.items() for truth in TRUTHS if on_all or truth == "own" for time in TIMES}
+            for metric, (_, on_all, _) in METRICS.items() for truth in TRUTHS if on_all or truth == "own" for time in results.times}
 
 
 def describe_view(results, view):
@@ -71,7 +71,7 @@ def describe_view(results, view):
                         "truth": f"truth_{p['bounces'] or 'all'}"} for p in chosen}
     truths = {key: data_uri(results.folder / path) for key, path in view["images"].items()}
     return {"id": view["id"], "title": f"{view['scene']}, camera {view['camera']}", "truths": truths, "images": images,
-            "points": [describe_point(p, chosen) for p in points], "fronts": fronts(points)}
+            "points": [describe_point(p, chosen) for p in points], "fronts": fronts(results, points)}
 
 
 def pictured(results, points):
@@ -99,10 +99,12 @@ def head(results):
     rows += list(header["versions"].items())
     frames = header["frames"]
     rows.append(("frames", f"{frames['warm_up']} unmeasured, then at least {frames['fewest']} and {frames['seconds']} s "
-                 f"(slow ones: at least 3 and {frames['patience']} s, very slow ones one), at most {frames['most']}"))
-    loads = [p["load_average"] for p in results.points]
-    if loads:
-        rows.append(("load average", f"{min(loads):.1f} to {max(loads):.1f} while measuring"))
+                 f"(slow ones: at least 3 and {frames['patience']} s, very slow ones one, cold), at most {frames['most']}"))
+    if results.loads():
+        rows.append(("load average", "{:.1f} to {:.1f} while measuring".format(*results.loads()) +
+                     (": other work lengthened the host clock's times" if results.is_busy() else "")))
+    if header.get("run_seconds"):
+        rows.append(("the last run took", ", ".join(f"{name} {seconds:.0f} s" for name, seconds in header["run_seconds"].items())))
     others = sum(p.get("build", header["build"]) != header["build"] for p in results.points)
     if others:
         rows.append(("builds", f"{others} of {len(results.points)} points are of another build than the last run"))
@@ -127,4 +129,4 @@ def left_out(left):
     if not left:
         return ""
     items = "".join(f"<li>{html.escape(t)} {html.escape(s)}: {html.escape(why)}</li>" for t, s, why in left)
-    return f"<details><summary>{len(left)} settings are not in the means</summary><ul>{items}</ul></details>"
+    return f"<details><summary>{len(left)} settings are not drawn in the means</summary><ul>{items}</ul></details>"

@@ -7,7 +7,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter  # noqa: E402
 
-from results import front, is_drawn, means_over_views, value  # noqa: E402
+from results import TRUTHS, counted, front, is_drawn, means_over_views, value  # noqa: E402
 
 # Okabe and Ito's colours: told apart by most colour-blind readers, too.
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#F0E442"]
@@ -24,22 +24,30 @@ def write_plots(results):
     names = []
     for scene in results.scenes:
         views = [view for view in results.views if view["scene"] == scene]
-        names += save(results, scene, [(f"{scene}, {v['camera']}", results.of_view(v)) for v in views])
+        charts = [(f"{scene}, {v['camera']}", results.of_view(v)) for v in views]
+        names += save(results, scene, [[(*chart, truth) for chart in charts] for truth in present_truths(results.points)])
     means, _ = means_over_views(results)
-    title = f"geometric means over {len(results.views)} views"
-    return names + save(results, "summary", [(title, means)])
+    title = "geometric means over " + counted(len(results.views), "view")
+    return names + save(results, "summary", [[(title, means, truth) for truth in present_truths(means)]])
 
 
-def save(results, name, charts):
-    figure, axes = plt.subplots(1, len(charts), figsize=(6.4 * len(charts), 4.8), squeeze=False)
-    for axis, (title, points) in zip(axes[0], charts):
-        draw(results, axis, title, points)
-    figure.text(0.01, 0.01, caption(results), fontsize=6.5, color="0.4")
-    figure.tight_layout(rect=(0, 0.05, 1, 1))
+def present_truths(points):
+    """All bounces only where they were traced."""
+    return [truth for truth in TRUTHS if truth == "own" or any(is_drawn(p, truth) for p in points)]
+
+
+def save(results, name, rows):
+    """`rows` of (title, points, truth) side by side."""
+    size = (6.4 * len(rows[0]), 4.6 * len(rows) + 0.2)
+    figure, axes = plt.subplots(len(rows), len(rows[0]), figsize=size, squeeze=False)
+    for axis, chart in zip(axes.flat, [chart for row in rows for chart in row]):
+        draw(results, axis, *chart)
+    figure.text(0.01, 0.02 / len(rows), caption(results), fontsize=6.5, color="0.4")
+    figure.tight_layout(rect=(0, 0.05 / len(rows), 1, 1))
     written = []
     for extension in ("svg", "png"):
         path = results.folder / f"{name}.{extension}"
-        figure.savefig(path, dpi=130, metadata={"Date": None} if extension == "svg" else None)
+        figure.savefig(path, dpi=130 if len(rows[0]) == 1 else 100, metadata={"Date": None} if extension == "svg" else None)
         written.append(path.name)
     plt.close(figure)
     return written
@@ -47,50 +55,68 @@ def save(results, name, charts):
 
 def caption(results):
     header = results.header
-    return (f"{results.device_text()}, {header['versions']['threads']} threads; {header['size'][0]} x {header['size'][1]}; \n"
-            f"time from the host's images to the host's output, warm; Lightwell {header['versions']['lightwell']}, {header['written'][:10]}")
+    load = "load average {:.1f} to {:.1f}".format(*results.loads()) if results.loads() else ""
+    return (f"{results.device_text()}, {header['versions']['threads']} threads; {header['size'][0]} x {header['size'][1]}\n"
+            f"{load}; time from the host's images to the host's output, warm; Lightwell {header['versions']['lightwell']}, {header['written'][:10]}")
 
 
-def widen(axis, drawn):
+def widen(axis, places):
     """Axes of half a decade at least, where small differences would look large."""
-    for read, limit in ((lambda p: p["ms"]["median"], axis.set_xlim), (value, axis.set_ylim)):
-        values = [read(p) for p in drawn] or [1.0]
+    for index, limit in ((0, axis.set_xlim), (1, axis.set_ylim)):
+        values = [place[index] for place in places] or [1.0]
         margin = max(1.15, (max(values) / min(values)) ** 0.06, math.sqrt(math.sqrt(10.0) * min(values) / max(values)))
         limit(min(values) / margin, max(values) * margin)
 
 
-def draw(results, axis, title, points):
-    drawn = [p for p in points if value(p) is not None]
+def label_axis(one, limits):
+    """Plain numbers, readable also within one decade and not too many in several."""
+    span = limits[1] / limits[0]
+    digits = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0) if span < 8.0 else (1.0, 2.0, 5.0) if span < 2e3 else (1.0,)
+    one.set_major_locator(LogLocator(subs=digits, numticks=50))
+    one.set_major_formatter(StrMethodFormatter("{x:g}"))
+    one.set_minor_formatter(NullFormatter())
+
+
+def draw_front(axis, places):
+    """The staircase of what is attained: from the chart's upper edge down, to its right edge."""
+    (left, right), (low, high) = axis.get_xlim(), axis.get_ylim()
+    del left, low
+    xs = [places[0][0]] + [x for x, _ in places] + [right]
+    ys = [high] + [y for _, y in places] + [places[-1][1]]
+    axis.plot(xs, ys, color="0.35", linewidth=1.0, zorder=0, drawstyle="steps-post", label="Pareto front")
+
+
+def draw(results, axis, title, points, truth):
+    time = results.time()
+    place = lambda p: (p["ms"][time], value(p, truth=truth))  # noqa: E731
+    drawn = [p for p in points if value(p, truth=truth) is not None]
     for technique in results.techniques:
         of_technique = [p for p in drawn if p["technique"] == technique]
         for bounces in sorted({p["bounces"] for p in of_technique}):
             some = [p for p in of_technique if p["bounces"] == bounces]
             name = technique if len({p["bounces"] for p in of_technique}) == 1 else f"{technique}, bounces={bounces}"
-            axis.scatter([p["ms"]["median"] for p in some], [value(p) for p in some], s=22, linewidths=0, alpha=0.85,
+            axis.scatter([place(p)[0] for p in some], [place(p)[1] for p in some], s=22, linewidths=0, alpha=0.85,
                          color=colour_of(results, technique), marker=MARKERS.get(bounces, "^"), label=name)
-    best = front(points)
+    widen(axis, [place(p) for p in drawn])
+    axis.set_xscale("log")
+    axis.set_yscale("log")
+    best = front(points, truth=truth, time=time)
     if best:
-        axis.plot([p["ms"]["median"] for p in best], [value(p) for p in best], color="0.35", linewidth=1.0, zorder=0,
-                  drawstyle="steps-post", label="Pareto front")
+        draw_front(axis, [place(p) for p in best])
     for point in drawn:
         if point["label"]:
-            axis.annotate(point["label"], (point["ms"]["median"], value(point)), xytext=(5, 5), textcoords="offset points",
-                          fontsize=7, color=colour_of(results, point["technique"]))
-            axis.scatter([point["ms"]["median"]], [value(point)], s=60, facecolors="none",
+            axis.annotate(point["label"], place(point), xytext=(5, 5), textcoords="offset points", fontsize=7,
+                          color=colour_of(results, point["technique"]))
+            axis.scatter(*[[c] for c in place(point)], s=60, facecolors="none",
                          edgecolors=colour_of(results, point["technique"]), linewidths=1.0)
-    hidden = sum(1 for p in points if not is_drawn(p))
+    hidden = sum(1 for p in points if not is_drawn(p, truth))
     if hidden:
         axis.set_title(f"{hidden} of {len(points)} not drawn: the truth is too noisy for them", loc="right", fontsize=7,
                        color="0.4")
-    widen(axis, drawn)
-    axis.set_xscale("log")
-    axis.set_yscale("log")
-    for one in (axis.xaxis, axis.yaxis):  # plain numbers, readable also within one decade
-        one.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-        one.set_major_formatter(StrMethodFormatter("{x:g}"))
-        one.set_minor_formatter(NullFormatter())
+    label_axis(axis.xaxis, axis.get_xlim())
+    label_axis(axis.yaxis, axis.get_ylim())
     axis.set_title(title, loc="left")
-    axis.set_xlabel("milliseconds per frame")
-    axis.set_ylabel("relative MSE, truth of the bounces modelled")
+    axis.set_xlabel(results.times[time])
+    axis.set_ylabel("relative MSE, " + TRUTHS[truth])
     if drawn:
         axis.legend(fontsize=7, loc="best")

@@ -28,6 +28,7 @@ and with NAME_*.py, .js, .css beside it as it needs. What a section gives:
 import base64
 import html
 import importlib
+import importlib.util
 import json
 import os
 import pathlib
@@ -130,6 +131,9 @@ def make_report(folder):
     if not folder.is_dir():
         raise ReportError(f"{folder}: expected a folder of results, found none")
     d3 = find_d3()
+    if importlib.util.find_spec("matplotlib") is None:
+        raise ReportError(f"the report needs matplotlib, which {sys.executable} has not; on Debian: apt-get install python3-matplotlib, "
+                          "and /usr/bin/python3")
     known = instruments()
     present = [(name, module) for name, module in known if (folder / module.FILE).exists()]
     if not present:

@@ -94,8 +94,9 @@ void addChart(CLI::App& app) {
     command->add_option("--size", arguments->size, "Picture size, WIDTHxHEIGHT; default: 1280x720");
     command->add_option("--noise", arguments->noise, "relMSE to which truths are traced; default: 1e-3");
     command
-        ->add_option("--truth-seconds", options.truth.seconds,
-                     "Most time for the truths of one view; the next chart goes on from there. 0: no limit")
+        ->add_option(
+            "--truth-seconds", options.truth.seconds,
+            "Most time for the truths of one view; the next chart goes on from there. 0: no limit")
         ->check(CLI::NonNegativeNumber)
         ->capture_default_str();
     command->add_flag("--kept-truths", options.truth.takesKept,

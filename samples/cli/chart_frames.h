@@ -9,7 +9,7 @@ struct FrameLimits {
     int warmUp = 3;              // unmeasured frames, in which caches and clocks settle
     int fewest = 9, most = 200;  // measured ones: at least this many, unless each takes very long
     double seconds = 1.0;        // after which enough frames are enough
-    double patience = 6.0;  // after which 3 must do; after three times as long, or in warming up, one
+    double patience = 6.0;       // after which 3 must do; after three times as long, one; see timeFrames
 };
 
 struct TimeFigures {
@@ -18,14 +18,20 @@ struct TimeFigures {
 };
 
 struct ChartedFrames {
-    int frames = 0;
-    TimeFigures wall;    // the host's clock, from the host's images to the host's output
-    TimeFigures device;  // the device's clock
+    int frames = 0, warmUp = 0;  // measured, and rendered before these
+    TimeFigures wall;            // the host's clock, from the host's images to the host's output
+    TimeFigures processor;  // of this process, all its threads together: other load lengthens it less
+    TimeFigures device;     // the device's clock
     FrameSample last;
 };
 
 TimeFigures summarise(std::vector<double> milliseconds);
+// A frame that alone takes longer than the patience is measured cold: what warming up would save is
+// small beside it.
 ChartedFrames timeFrames(IndirectRenderer& renderer, const RenderInputs& inputs,
                          const FrameLimits& limits);
+
+// The picture that timeFrames ended with, without timing: as many frames, or fewer if they repeat.
+void renderAgain(IndirectRenderer& renderer, const RenderInputs& inputs, int frames);
 
 }  // namespace cli

@@ -70,9 +70,11 @@ void ChartResults::setHeader(const Json& header) {
     if (known["device"].is_null()) known["device"] = device;
 }
 
-bool ChartResults::isFresh(const std::string& id, const std::string& key) const {
+const Json* ChartResults::find(const std::string& id, const std::string& key) const {
     const auto found = impl_->points.find(id);
-    return found != impl_->points.end() && impl_->json["points"][found->second].at("key") == key;
+    if (found == impl_->points.end()) return nullptr;
+    const Json& point = impl_->json["points"][found->second];
+    return point.at("key") == key ? &point : nullptr;
 }
 
 void ChartResults::putView(Json view) {

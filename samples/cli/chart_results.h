@@ -17,8 +17,9 @@ public:
     ~ChartResults();
 
     void setHeader(const nlohmann::ordered_json& header);
-    // Whether a point of this id was measured under this key (everything that its figures depend on).
-    bool isFresh(const std::string& id, const std::string& key) const;
+    // The point of this id if it was timed under this key (everything that its times depend on), else
+    // null.
+    const nlohmann::ordered_json* find(const std::string& id, const std::string& key) const;
     // Replace what has the same "id", or come last.
     void putView(nlohmann::ordered_json view);
     void putPoint(nlohmann::ordered_json point);

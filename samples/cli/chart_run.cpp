@@ -1,12 +1,12 @@
 // `lightwell chart`: times every point of every view, judges it against the view's truth, keeps results.json.
-// A little over 300 lines: one class whose members share the run's state; the views, frames, references and
-// sweeps it works on have files of their own.
+// A little over 300 lines: one class whose members share the run's state; the views, points, references and
+// results that it works on have files of their own.
 #include "chart_run.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
+#include <chrono>
 #include <ctime>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -14,8 +14,8 @@
 #include <set>
 
 #include "build_identity.h"
-#include "chart_frames.h"
 #include "chart_judge.h"
+#include "chart_point.h"
 #include "chart_results.h"
 #include "cli.h"
 #include "film.h"
@@ -24,7 +24,6 @@
 #include "open_device.h"
 #include "parallel.h"
 #include "progress.h"
-#include "sweep.h"
 
 namespace cli {
 namespace {
@@ -32,46 +31,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // Part of every point's key: raise it when the way of measuring changes.
-constexpr const char* kProtocol = "2";
+constexpr const char* kProtocol = "3";
 constexpr std::size_t kBatch =
     6;  // points timed before their errors are computed, on all cores, and saved
-
-struct ChartedPoint {
-    std::string technique;
-    SweepPoint sweep;
-};
-
-Json parametersJson(const Parameters& parameters) {
-    Json json = Json::object();
-    for (const auto& [name, value] : parameters.resolved())
-        std::visit([&, key = name](const auto& held) { json[key] = held; }, value);
-    return json;
-}
-
-// `text` is one of the values of "a,b,c".
-bool isListed(const std::string& text, const std::string& list) {
-    return ("," + list + ",").find("," + text + ",") != std::string::npos;
-}
-
-bool isWanted(const Parameters& parameters, const std::vector<std::string>& only) {
-    const auto values = parameters.resolved();
-    return std::all_of(only.begin(), only.end(), [&](const std::string& assignment) {
-        const auto [name, text] = splitAssignment("--only", assignment);
-        return std::all_of(values.begin(), values.end(),
-                           [&, key = name, list = text](const auto& value) {
-                               return value.first != key || isListed(valueText(value.second), list);
-                           });
-    });
-}
-
-std::string shortHash(const std::string& text) {
-    return fmt::format("{:016x}", studio::hashBytes(text.data(), text.size(), 5));
-}
-
-double loadAverage() {
-    double load = -1.0;
-    return getloadavg(&load, 1) == 1 ? load : -1.0;
-}
 
 std::string utcNow() {
     const std::time_t now = std::time(nullptr);
@@ -80,10 +42,19 @@ std::string utcNow() {
     return text;
 }
 
-Json timesJson(const TimeFigures& times) {
-    if (times.median < 0.0) return nullptr;
-    return {{"median", times.median}, {"p99", times.p99}};
-}
+// Adds the seconds of its life to a sum.
+class Stopwatch {
+public:
+    explicit Stopwatch(double& sum) : sum_(sum) {}
+    ~Stopwatch() { sum_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
+    Stopwatch(const Stopwatch&) = delete;
+    Stopwatch& operator=(const Stopwatch&) = delete;
+
+private:
+    using Clock = std::chrono::steady_clock;
+    double& sum_;
+    Clock::time_point start_ = Clock::now();
+};
 
 class Charter {
 public:
@@ -101,9 +72,9 @@ private:
     void chartView(ChartView& view);
     void traceTruths(ChartView& view);
     Json describeView(const ChartView& view);
-    std::string pointId(const ChartView& view, const ChartedPoint& point) const;
-    std::string pointKey(const ChartView& view, const ChartedPoint& point) const;
-    Pending timePoint(const ChartView& view, const ChartedPoint& point);
+    std::string timeKey(const ChartView& view, const ChartedPoint& point) const;
+    std::string truthKey(const ChartView& view, const ChartedPoint& point) const;
+    void chartPoint(const ChartView& view, const ChartedPoint& point, std::vector<Pending>& pending);
     void judgeAll(const ChartView& view, std::vector<Pending>& pending);
     void report(double ofView, const std::string& note);
 
@@ -116,17 +87,18 @@ private:
     FrameLimits limits_;
     studio::ProgressLine line_{"charting"};
     double viewsBefore_ = 0.0, viewShare_ = 1.0;  // of the whole, in [0,1]
+    struct {
+        double scenes = 0.0, inputs = 0.0, truths = 0.0, points = 0.0, judging = 0.0;
+    } seconds_;  // where the run's own time goes
 };
 
 Charter::Charter(const ChartOptions& options)
-    : options_(options), results_((std::filesystem::path(options.folder) / "results.json").string()) {
-    bool needsDevice = false;
-    for (const std::string& technique : options.techniques)
-        for (SweepPoint& sweep : sweepOf(technique, options.quick)) {
-            if (!isWanted(sweep.parameters, options.only)) continue;
-            needsDevice = needsDevice || sweep.parameters.needsDevice();
-            points_.push_back({technique, std::move(sweep)});
-        }
+    : options_(options),
+      results_((std::filesystem::path(options.folder) / "results.json").string()),
+      points_(chartedPoints(options.techniques, options.quick, options.only)) {
+    const bool needsDevice = std::any_of(points_.begin(), points_.end(), [](const ChartedPoint& point) {
+        return point.sweep.parameters.needsDevice();
+    });
     if (needsDevice) {
         device_ = openDevice(options.device, std::uint32_t(options.deviceWidth));
         info_ = device_->info();
@@ -149,6 +121,7 @@ Json Charter::describeRun() const {
                             {"driver", info_.driver},
                             {"opencl", info_.openclVersion},
                             {"compute_units", info_.computeUnits},
+                            {"is_gpu", info_.isGpu != 0},
                             {"width", info_.width}};
     Json versions = Json::object();
     for (const auto& [name, version] : buildVersions()) versions[name] = version;
@@ -162,6 +135,11 @@ Json Charter::describeRun() const {
                         {"seconds", limits_.seconds},
                         {"patience", limits_.patience}};
     header["techniques"] = options_.techniques;
+    header["run_seconds"] = {{"scenes", seconds_.scenes},
+                             {"inputs", seconds_.inputs},
+                             {"truths", seconds_.truths},
+                             {"points", seconds_.points},
+                             {"judging", seconds_.judging}};
     return header;
 }
 
@@ -171,12 +149,19 @@ void Charter::run() {
         viewsBefore_ = double(i) / double(options_.scenes.size());
         chartScene(options_.scenes[i]);
     }
+    results_.setHeader(describeRun());
+    if (!options_.onlyTruths) results_.save();
     line_.finish(fmt::format("{} points", results_.pointCount()));
 }
 
 void Charter::chartScene(const std::string& name) {
-    const auto scene = asUsage([&] { return std::make_shared<studio::Scene>(studio::loadScene(name)); });
-    const auto rayScene = std::make_shared<studio::RayScene>(scene, 0.0f);
+    std::shared_ptr<const studio::Scene> scene;
+    std::shared_ptr<studio::RayScene> rayScene;
+    {
+        const Stopwatch watch(seconds_.scenes);
+        scene = asUsage([&] { return std::make_shared<studio::Scene>(studio::loadScene(name)); });
+        rayScene = asUsage([&] { return std::make_shared<studio::RayScene>(scene, 0.0f); });
+    }
     std::vector<std::size_t> cameras;
     for (std::size_t i = 0; i < scene->cameras.size(); ++i) {
         const bool moves =
@@ -189,9 +174,16 @@ void Charter::chartScene(const std::string& name) {
         InputOptions input;
         input.width = options_.width;
         input.height = options_.height;
-        ChartView view(rayScene, scene->cameras[camera], input);
-        traceTruths(view);
-        if (!options_.onlyTruths) chartView(view);
+        std::optional<ChartView> view;
+        {
+            const Stopwatch watch(seconds_.inputs);
+            view.emplace(rayScene, scene->cameras[camera], input);
+        }
+        {
+            const Stopwatch watch(seconds_.truths);
+            traceTruths(*view);
+        }
+        if (!options_.onlyTruths) chartView(*view);
         viewsBefore_ += viewShare_;
     }
 }
@@ -239,17 +231,19 @@ Json Charter::describeView(const ChartView& view) {
             {"images", writeViewPictures(view, options_.folder)}};
 }
 
-std::string Charter::pointId(const ChartView& view, const ChartedPoint& point) const {
-    return fmt::format("{}/{}/{}", view.id(), point.technique,
-                       shortHash(parametersJson(point.sweep.parameters).dump()).substr(0, 8));
-}
-
-std::string Charter::pointKey(const ChartView& view, const ChartedPoint& point) const {
+// What the times depend on.
+std::string Charter::timeKey(const ChartView& view, const ChartedPoint& point) const {
     std::string text =
         fmt::format("{} {} {} {} {}x{} {}", kProtocol, build_, view.hash(), pointId(view, point),
                     options_.width, options_.height, describeRun()["frames"].dump());
     if (point.sweep.parameters.needsDevice())
         text += fmt::format(" {} {} {}", info_.name, info_.driver, info_.width);
+    return shortHash(text);
+}
+
+// What the errors depend on besides.
+std::string Charter::truthKey(const ChartView& view, const ChartedPoint& point) const {
+    std::string text = kProtocol;
     for (const int bounces : {modelledBounces(point.sweep.parameters), 0})
         if (const auto truth = view.truths().find(bounces); truth != view.truths().end())
             text += fmt::format(" {} {}", truth->second.truth.name, truth->second.truth.samples);
@@ -260,51 +254,46 @@ void Charter::chartView(ChartView& view) {
     results_.putView(describeView(view));
     std::vector<Pending> pending;
     for (std::size_t i = 0; i < points_.size(); ++i) {
-        const ChartedPoint& point = points_[i];
-        if (!results_.isFresh(pointId(view, point), pointKey(view, point))) {
-            report(double(i) / double(points_.size()),
-                   fmt::format("{}, {} {}", view.id(), point.technique,
-                               describeDifference(point.sweep.parameters)));
-            pending.push_back(timePoint(view, point));
-        }
+        report(double(i) / double(points_.size()),
+               fmt::format("{}, {} {}", view.id(), points_[i].technique,
+                           describeDifference(points_[i].sweep.parameters)));
+        chartPoint(view, points_[i], pending);
         if (pending.size() == kBatch || i + 1 == points_.size()) judgeAll(view, pending);
     }
 }
 
-Charter::Pending Charter::timePoint(const ChartView& view, const ChartedPoint& point) {
-    const double load = loadAverage();
+// Nothing for a point that is measured already; where only the truth is another one, the picture is
+// rendered again and the times stay.
+void Charter::chartPoint(const ChartView& view, const ChartedPoint& point,
+                         std::vector<Pending>& pending) {
+    const std::string truth = truthKey(view, point);
+    const Json* known = results_.find(pointId(view, point), timeKey(view, point));
+    if (known != nullptr && known->at("truth") == truth) return;
+
+    const Stopwatch watch(seconds_.points);
     const auto renderer =
         makeRenderer(point.sweep.parameters, view.inputs(), device_ ? &*device_ : nullptr);
-    const ChartedFrames frames = timeFrames(*renderer, view.inputs(), limits_);
-
-    Pending pending;
-    Json& json = pending.point;
-    json["id"] = pointId(view, point);
-    json["key"] = pointKey(view, point);
-    json["build"] = build_;
-    json["scene"] = view.sceneName();
-    json["camera"] = view.cameraName();
-    json["technique"] = point.technique;
-    json["label"] = point.sweep.label;
-    json["settings"] = describeDifference(point.sweep.parameters);
-    json["parameters"] = parametersJson(point.sweep.parameters);
-    json["bounces"] = modelledBounces(point.sweep.parameters);
-    json["size"] = {options_.width, options_.height};
-    json["device"] = point.sweep.parameters.needsDevice() ? Json(info_.name) : Json();
-    json["frames"] = frames.frames;
-    json["ms"] = timesJson(frames.wall);
-    json["device_ms"] = timesJson(frames.device);
-    json["bytes"] = {{"device", frames.last.deviceBytes}, {"host_copies", frames.last.hostCopyBytes}};
-    json["load_average"] = load;
-    pending.picture.bounces = json["bounces"];
-    pending.picture.imageName = json["id"];
-    std::replace(pending.picture.imageName.begin(), pending.picture.imageName.end(), '/', '_');
-    pending.picture.irradiance = studio::Image(options_.width, options_.height);
-    addLayer(pending.picture.irradiance, "", renderer->irradiance());
-    return pending;
+    Pending made;
+    if (known == nullptr) {
+        made.point = timePoint(view, point, *renderer, limits_);
+        made.point["key"] = timeKey(view, point);
+        made.point["build"] = build_;
+        made.point["device"] = point.sweep.parameters.needsDevice() ? Json(info_.name) : Json();
+    } else {
+        made.point = *known;
+        renderAgain(*renderer, view.inputs(), int(made.point["warm_up"]) + int(made.point["frames"]));
+    }
+    made.point["truth"] = truth;
+    made.picture.bounces = made.point["bounces"];
+    made.picture.imageName = made.point["id"];
+    std::replace(made.picture.imageName.begin(), made.picture.imageName.end(), '/', '_');
+    made.picture.irradiance = studio::Image(options_.width, options_.height);
+    addLayer(made.picture.irradiance, "", renderer->irradiance());
+    pending.push_back(std::move(made));
 }
 
 void Charter::judgeAll(const ChartView& view, std::vector<Pending>& pending) {
+    const Stopwatch watch(seconds_.judging);
     studio::parallelFor(pending.size(), 0, [&](std::size_t i) {
         const Json judged = judge(pending[i].picture, view, options_.folder);
         pending[i].point["errors"] = {{"own", judged["own"]}, {"all", judged["all"]}};

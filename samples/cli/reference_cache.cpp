@@ -119,9 +119,9 @@ private:
             std::stoi(image.metadata.at("spp"));
             return image;
         } catch (const std::exception& error) {
-            throw std::runtime_error(fmt::format(
-                "{}: expected a kept truth: {}; delete it to have it traced anew", path_.string(),
-                error.what()));
+            throw std::runtime_error(
+                fmt::format("{}: expected a kept truth: {}; delete it to have it traced anew",
+                            path_.string(), error.what()));
         }
     }
 
@@ -130,9 +130,8 @@ private:
     }
 
     bool isGoodEnough(const studio::Image& image) const {
-        return std::all_of(request_.bounces.begin(), request_.bounces.end(), [&](int bounces) {
-            return noiseOf(image, bounces) <= request_.noise;
-        });
+        return std::all_of(request_.bounces.begin(), request_.bounces.end(),
+                           [&](int bounces) { return noiseOf(image, bounces) <= request_.noise; });
     }
 
     // Traces on until each count is good enough or time is up, and keeps the result if it is better.
@@ -250,8 +249,8 @@ std::vector<Truth> obtainTruths(const studio::RayScene& scene, const studio::GBu
     const bool isKnown = std::all_of(request.bounces.begin(), request.bounces.end(),
                                      [](int bounces) { return bounces >= 0 && bounces <= 2; });
     if (request.bounces.empty() || !isKnown)
-        throw std::invalid_argument(
-            fmt::format("truths of {} bounces: expected 1, 2 or 0 (all)", fmt::join(request.bounces, ", ")));
+        throw std::invalid_argument(fmt::format("truths of {} bounces: expected 1, 2 or 0 (all)",
+                                                fmt::join(request.bounces, ", ")));
     return ViewTruths(scene, view, request).obtain();
 }
 

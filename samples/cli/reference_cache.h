@@ -1,10 +1,10 @@
 // Path-traced truths that are kept: a view is traced once for everything that its truths depend on.
 //
-// One run of the path tracer makes the truths of all bounce counts that are asked for together. Their file
-// is named by hashes of scene (geometry, materials, textures, lights at the moment) and view, and by how
-// far paths go. While a truth is noisier than asked for, the path tracer's checkpoint lies beside the
-// file (192 bytes per pixel: 180 MB at 1280x720), and the next call goes on from there. A lock beside them
-// lets one process at a time trace a view; others wait for it.
+// One run of the path tracer makes the truths of all bounce counts that are asked for together. Their
+// file is named by hashes of scene (geometry, materials, textures, lights at the moment) and view, and
+// by how far paths go. While a truth is noisier than asked for, the path tracer's checkpoint lies beside
+// the file (192 bytes per pixel: 180 MB at 1280x720), and the next call goes on from there. A lock
+// beside them lets one process at a time trace a view; others wait for it.
 #pragma once
 
 #include <functional>

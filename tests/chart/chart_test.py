@@ -27,7 +27,7 @@ BOUNDS = {
 }
 SLACK = 1.1
 QUICK = ["--quick", "--techniques", "rsm", "--no-report"]
-POINT_KEYS = {"id", "key", "build", "scene", "camera", "technique", "label", "settings", "parameters", "bounces", "size", "device",
+POINT_KEYS = {"id", "key", "truth", "build", "warm_up", "processor_ms", "scene", "camera", "technique", "label", "settings", "parameters", "bounces", "size", "device",
               "frames", "ms", "device_ms", "bytes", "load_average", "errors", "images"}
 ERROR_KEYS = {"bounces", "relMSE", "nrmse", "bias", "p99", "noise", "trusted", "rmse", "ssim", "score", "score255", "flip"}
 
@@ -77,6 +77,7 @@ class Chart(unittest.TestCase):
         self.assertEqual((point["bounces"], own["bounces"]), (1, 1))
         self.assertGreaterEqual(point["frames"], 1)
         self.assertGreater(point["ms"]["median"], 0.0)
+        self.assertGreater(point["processor_ms"]["median"], 0.0)
         self.assertGreaterEqual(point["ms"]["p99"], point["ms"]["median"])
         self.assertLessEqual({"vpls", "sampling", "interleave", "filter", "resolution", "seed"}, set(point["parameters"]))
         for image in point["images"].values():
@@ -134,7 +135,12 @@ class Chart(unittest.TestCase):
             own = point["errors"]["own"]
             self.assertEqual(charts.value(point) is None, own["noise"] > 0.1 * own["relMSE"])
             self.assertNotIn(point["id"], [p["id"] for p in charts.front(drawn.points)] if not own["trusted"] else [])
-        self.chart(*arguments, "--noise", "0.01")  # a better truth: all points are judged anew
+        before = {p["id"]: p for p in self.results()["points"]}
+        self.chart(*arguments, "--noise", "0.01")  # a better truth: all points are judged anew, none is timed
+        for point in self.results()["points"]:
+            known = before[point["id"]]
+            self.assertEqual((point["ms"], point["frames"]), (known["ms"], known["frames"]))
+            self.assertNotEqual((point["truth"], point["errors"]), (known["truth"], known["errors"]))
         [better] = self.results()["views"][0]["truths"]
         self.assertLessEqual(better["noise"], 0.01)
         self.assertLess(sum(not p["errors"]["own"]["trusted"] for p in self.results()["points"]), len(hidden))
@@ -153,6 +159,8 @@ class Chart(unittest.TestCase):
     def test_refusals(self):
         self.assertIn("rsm", self.chart("--techniques", "nothing", code=2))
         self.assertIn("nothing", self.chart("--quick", "--scenes", "nothing", "--no-report", code=2))
+        for wrong in ("vpls=65", "vplz=64", "vpls"):  # none charts everything instead
+            self.assertIn("--only", self.chart(*QUICK, "--scenes", "cornell", "--only", wrong, code=2))
         with open(self.file, "w", encoding="ascii") as file:
             file.write("{}")
         self.assertIn("results.json", self.chart(*QUICK, "--scenes", "cornell", code=2))

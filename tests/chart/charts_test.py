@@ -52,9 +52,9 @@ def made_point(view, settings, ms, relmse, noise, label=""):
             "errors": {"own": own, "all": None}, "load_average": 0.0}
 
 
-def made_results(points):
+def made_results(points, header=()):
     views = sorted({p["scene"] for p in points})
-    data = {"format": "lightwell-chart 1", "header": {"size": [8, 8]}, "points": points,
+    data = {"format": "lightwell-chart 1", "header": dict({"size": [8, 8]}, **dict(header)), "points": points,
             "views": [{"id": v, "scene": v, "camera": "c", "truths": [], "images": {}} for v in views]}
     with tempfile.TemporaryDirectory() as folder:
         with open(os.path.join(folder, "results.json"), "w", encoding="ascii") as file:
@@ -90,8 +90,47 @@ class Means(unittest.TestCase):
         points = [made_point("a", "x", 1, 0.1, 0), made_point("b", "x", 1, 0.1, 0.1), made_point("a", "y", 1, 0.1, 0)]
         means, left = charts.means_over_views(made_results(points))
         self.assertEqual([m["settings"] for m in means], ["x"])
-        self.assertIsNone(charts.value(means[0]))  # one of its views is too noisy
+        self.assertIsNone(charts.value(means[0]))  # one of its views is too noisy, and nothing is drawn in both
         self.assertEqual(sorted(settings for _, settings, _ in left), ["x", "y"])
+
+    def test_where_the_truth_is_too_noisy_the_ratio_to_another_setting_serves(self):
+        """"fine" is half of the default in a and b, and hidden in c, where the default is four times as bad."""
+        points = [made_point(view, "defaults", 1.0, error, 0.0, "default") for view, error in (("a", 0.1), ("b", 0.1), ("c", 0.4))]
+        points += [made_point("a", "fine", 8.0, 0.05, 0.0), made_point("b", "fine", 8.0, 0.05, 0.0),
+                   made_point("c", "fine", 8.0, 1e-6, 0.1)]
+        means, left = charts.means_over_views(made_results(points))
+        default, fine = means
+        self.assertAlmostEqual(charts.value(default), 0.1 * 4.0 ** (1.0 / 3.0))
+        self.assertAlmostEqual(charts.value(fine), 0.5 * charts.value(default))
+        self.assertEqual((default["errors"]["own"]["views"], fine["errors"]["own"]["views"]), (3, 2))
+        self.assertEqual(left, [])
+
+        points += [made_point("a", "rare", 8.0, 0.05, 0.0), made_point("b", "rare", 8.0, 0.05, 0.1), made_point("c", "rare", 8.0, 0.05, 0.1)]
+        means, left = charts.means_over_views(made_results(points))
+        self.assertIsNone(charts.value(means[2]))  # drawn in one view of three
+        self.assertEqual([settings for _, settings, _ in left], ["rare"])
+
+
+class Times(unittest.TestCase):
+    def made(self, load, gpu=False, missing=False):
+        points = [made_point("a", "x", 10.0, 0.1, 0.0), made_point("a", "y", 20.0, 0.1, 0.0)]
+        for point in points:
+            point["load_average"], point["processor_ms"] = load, {"median": 6.0, "p99": 7.0}
+        if missing:
+            del points[1]["processor_ms"]
+        return made_results(points, {"device": {"is_gpu": gpu}, "versions": {"threads": "2"}})
+
+    def test_processor_time_is_that_of_all_threads(self):
+        results = self.made(0.5)
+        self.assertEqual(results.points[0]["ms"]["processor"], 3.0)
+        self.assertEqual((results.time(), results.is_busy()), ("median", False))
+
+    def test_it_is_drawn_where_other_work_lengthened_the_clocks(self):
+        self.assertEqual((self.made(9.0).time(), self.made(9.0).is_busy()), ("processor", True))
+
+    def test_it_says_nothing_of_a_gpu_and_must_be_complete(self):
+        for results in (self.made(9.0, gpu=True), self.made(9.0, missing=True)):
+            self.assertEqual((results.time(), "processor" in results.times), ("median", False))
 
 
 class Page(unittest.TestCase):
