@@ -3,23 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "cli.h"
-#include "film.h"
+#include "run_facts.h"
 
 namespace cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json parametersJson(const Parameters& parameters) {
-    Json json = Json::object();
-    for (const auto& [name, value] : parameters.resolved())
-        std::visit([&, key = name](const auto& held) { json[key] = held; }, value);
-    return json;
-}
 
 // `text` is one of the values of "a,b,c".
 bool isListed(const std::string& text, const std::string& list) {
@@ -37,21 +29,12 @@ bool isWanted(const Parameters& parameters, const std::vector<std::string>& only
     });
 }
 
-double loadAverage() {
-    double load = -1.0;
-    return getloadavg(&load, 1) == 1 ? load : -1.0;
-}
-
 Json timesJson(const TimeFigures& times) {
     if (times.median < 0.0) return nullptr;
     return {{"median", times.median}, {"p99", times.p99}};
 }
 
 }  // namespace
-
-std::string shortHash(const std::string& text) {
-    return fmt::format("{:016x}", studio::hashBytes(text.data(), text.size(), 5));
-}
 
 std::string pointId(const ChartView& view, const ChartedPoint& point) {
     return fmt::format("{}/{}/{}", view.id(), point.technique,

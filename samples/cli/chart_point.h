@@ -22,7 +22,6 @@ struct ChartedPoint {
 std::vector<ChartedPoint> chartedPoints(const std::vector<std::string>& techniques, bool quick,
                                         const std::vector<std::string>& only);
 
-std::string shortHash(const std::string& text);
 std::string pointId(const ChartView& view, const ChartedPoint& point);
 
 // Warms up, times, and describes the point but for its errors; `renderer` holds the last picture.

@@ -13,18 +13,15 @@ namespace cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr const char* kFormat = "lightwell-chart 1";
 
-Json readResults(const std::string& path) {
+Json readResults(const std::string& path, const std::string& format) {
     std::ifstream file(path);
     const Json json = Json::parse(file, nullptr, false);
-    const bool isOurs = json.is_object() && json.value("format", "") == kFormat &&
+    const bool isOurs = json.is_object() && json.value("format", "") == format &&
                         json.contains("views") && json.contains("points");
     if (!isOurs)
-        throw UsageError(
-            fmt::format("{}: expected the results of `lightwell chart` (format \"{}\"); another "
-                        "--out, or remove it",
-                        path, kFormat));
+        throw UsageError(fmt::format(
+            "{}: expected results in the format \"{}\"; another --out, or remove it", path, format));
     return json;
 }
 
@@ -45,16 +42,17 @@ struct ChartResults::Impl {
     }
 };
 
-ChartResults::ChartResults(const std::string& path) : impl_(std::make_unique<Impl>()) {
+ChartResults::ChartResults(const std::string& path, const std::string& format)
+    : impl_(std::make_unique<Impl>()) {
     impl_->path = path;
     if (!std::filesystem::exists(path)) {
-        impl_->json = {{"format", kFormat},
+        impl_->json = {{"format", format},
                        {"header", Json::object()},
                        {"views", Json::array()},
                        {"points", Json::array()}};
         return;
     }
-    impl_->json = readResults(path);
+    impl_->json = readResults(path, format);
     for (const Json& view : impl_->json["views"])
         impl_->views.emplace(view.at("id"), impl_->views.size());
     for (const Json& point : impl_->json["points"])

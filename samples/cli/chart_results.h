@@ -1,6 +1,6 @@
-// results.json of a chart: what is measured so far. Written after every few points in one step, so that
-// an interrupted chart loses seconds; read by the next run, which measures only what is missing or
-// stale.
+// An instrument's results file (a chart's results.json, split.json): what is measured so far. Written
+// after every few points in one step, so that an interrupted run loses seconds; read by the next, which
+// measures only what is missing or stale.
 #pragma once
 
 #include <memory>
@@ -12,8 +12,9 @@ namespace cli {
 
 class ChartResults {
 public:
-    // Goes on from the file where there is one. UsageError when it is something else.
-    explicit ChartResults(const std::string& path);
+    // Goes on from the file where there is one. `format`: "lightwell-chart 1". UsageError when the file
+    // is of another.
+    ChartResults(const std::string& path, const std::string& format);
     ~ChartResults();
 
     void setHeader(const nlohmann::ordered_json& header);

@@ -1,13 +1,12 @@
-// `lightwell chart`: times every point of every view, judges it against the view's truth, keeps results.json.
-// A little over 300 lines: one class whose members share the run's state; the views, points, references and
-// results that it works on have files of their own.
+// `lightwell chart`: times every point of every view, judges it against the view's truth, keeps
+// results.json. A little over 300 lines: one class whose members share the run's state; the views,
+// points, references and results that it works on have files of their own.
 #include "chart_run.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
-#include <ctime>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -24,23 +23,18 @@
 #include "open_device.h"
 #include "parallel.h"
 #include "progress.h"
+#include "run_facts.h"
 
 namespace cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr const char* kFormat = "lightwell-chart 1";
 // Part of every point's key: raise it when the way of measuring changes.
 constexpr const char* kProtocol = "3";
 constexpr std::size_t kBatch =
     6;  // points timed before their errors are computed, on all cores, and saved
-
-std::string utcNow() {
-    const std::time_t now = std::time(nullptr);
-    char text[32];
-    std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", std::gmtime(&now));
-    return text;
-}
 
 // Adds the seconds of its life to a sum.
 class Stopwatch {
@@ -94,7 +88,7 @@ private:
 
 Charter::Charter(const ChartOptions& options)
     : options_(options),
-      results_((std::filesystem::path(options.folder) / "results.json").string()),
+      results_((std::filesystem::path(options.folder) / "results.json").string(), kFormat),
       points_(chartedPoints(options.techniques, options.quick, options.only)) {
     const bool needsDevice = std::any_of(points_.begin(), points_.end(), [](const ChartedPoint& point) {
         return point.sweep.parameters.needsDevice();
@@ -115,17 +109,8 @@ Json Charter::describeRun() const {
     header["size"] = {options_.width, options_.height};
     header["quick"] = options_.quick;
     header["device"] = nullptr;
-    if (device_)
-        header["device"] = {{"name", info_.name},
-                            {"platform", info_.platform},
-                            {"driver", info_.driver},
-                            {"opencl", info_.openclVersion},
-                            {"compute_units", info_.computeUnits},
-                            {"is_gpu", info_.isGpu != 0},
-                            {"width", info_.width}};
-    Json versions = Json::object();
-    for (const auto& [name, version] : buildVersions()) versions[name] = version;
-    header["versions"] = versions;
+    if (device_) header["device"] = deviceJson(info_);
+    header["versions"] = versionsJson();
     header["build"] = build_;
     header["noise_target"] = options_.truth.noise;
     header["noise_share"] = kNoiseShare;
@@ -162,13 +147,7 @@ void Charter::chartScene(const std::string& name) {
         scene = asUsage([&] { return std::make_shared<studio::Scene>(studio::loadScene(name)); });
         rayScene = asUsage([&] { return std::make_shared<studio::RayScene>(scene, 0.0f); });
     }
-    std::vector<std::size_t> cameras;
-    for (std::size_t i = 0; i < scene->cameras.size(); ++i) {
-        const bool moves =
-            std::any_of(scene->cameraTracks.begin(), scene->cameraTracks.end(),
-                        [&](const auto& track) { return std::size_t(track.target) == i; });
-        if (!moves && (cameras.empty() || !options_.firstCameraOnly)) cameras.push_back(i);
-    }
+    const std::vector<std::size_t> cameras = stillCameras(*scene, options_.firstCameraOnly);
     viewShare_ = 1.0 / double(options_.scenes.size()) / double(std::max<std::size_t>(1, cameras.size()));
     for (const std::size_t camera : cameras) {
         InputOptions input;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "film.h"
@@ -12,6 +13,17 @@ namespace cli {
 std::string bouncesText(int bounces) {
     if (bounces == 0) return "all bounces";
     return bounces == 1 ? "one bounce" : fmt::format("{} bounces", bounces);
+}
+
+std::vector<std::size_t> stillCameras(const studio::Scene& scene, bool firstOnly) {
+    std::vector<std::size_t> cameras;
+    for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
+        const bool moves =
+            std::any_of(scene.cameraTracks.begin(), scene.cameraTracks.end(),
+                        [&](const auto& track) { return std::size_t(track.target) == i; });
+        if (!moves && (cameras.empty() || !firstOnly)) cameras.push_back(i);
+    }
+    return cameras;
 }
 
 ChartView::ChartView(std::shared_ptr<studio::RayScene> scene, const studio::Camera& camera,

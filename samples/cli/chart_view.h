@@ -55,6 +55,9 @@ private:
     std::map<int, JudgedTruth> truths_;  // by bounces
 };
 
+// Cameras that keyframes don't move; of those the first alone, or all.
+std::vector<std::size_t> stillCameras(const studio::Scene& scene, bool firstOnly);
+
 // "one bounce", "2 bounces", "all bounces".
 std::string bouncesText(int bounces);
 

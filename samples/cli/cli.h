@@ -89,5 +89,6 @@ void addReference(CLI::App& app);
 void addCompare(CLI::App& app);
 void addTriptych(CLI::App& app);
 void addChart(CLI::App& app);
+void addSplit(CLI::App& app);
 
 }  // namespace cli

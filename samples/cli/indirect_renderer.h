@@ -62,6 +62,8 @@ public:
     virtual std::uint64_t estimatedBytes() const = 0;
     // What it runs on; null: the host's own cores, without an OpenCL device.
     virtual const LWDeviceInfo* device() const = 0;
+    // Of the last frame.
+    virtual bool hasDebugView(const std::string&) const { return false; }
     // UsageError listing the views when there is none of this name.
     virtual DebugPlanes readDebugView(const std::string& name) const = 0;
 };

@@ -74,6 +74,11 @@ FrameSample LibraryRenderer::renderFrame(const RenderInputs& inputs, bool reset)
     return describeFrame(technique_.stats(), wall.count());
 }
 
+bool LibraryRenderer::hasDebugView(const std::string& name) const {
+    const auto views = technique_.debugViews(&view_);
+    return std::any_of(views.begin(), views.end(), [&](const auto& info) { return name == info.name; });
+}
+
 DebugPlanes LibraryRenderer::readDebugView(const std::string& name) const {
     std::vector<std::string> names;
     for (const LWDebugView& info : technique_.debugViews(&view_)) {

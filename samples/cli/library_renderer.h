@@ -15,6 +15,7 @@ public:
     const studio::PlanarBuffer& validity() const override { return validity_; }
     std::uint64_t estimatedBytes() const override { return estimatedBytes_; }
     const LWDeviceInfo* device() const override { return &info_; }
+    bool hasDebugView(const std::string& name) const override;
     DebugPlanes readDebugView(const std::string& name) const override;
 
 private:

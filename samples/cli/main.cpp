@@ -77,6 +77,7 @@ int main(int argc, char** argv) {
         cli::addCompare(app);
         cli::addTriptych(app);
         cli::addChart(app);
+        cli::addSplit(app);
         return parse(app, argc, argv);
     } catch (const cli::UsageError& error) {
         printError(error.what());

@@ -14,13 +14,13 @@
 #include "render_inputs.h"
 #include "render_report.h"
 #include "render_sequence.h"
+#include "vpl_view.h"
 
 namespace cli {
 namespace {
 
 // Direct light only: no device, no technique.
 constexpr const char* kNoTechnique = "none";
-constexpr std::uint32_t kVplChannels = 10;  // position, normal, flux, area
 
 struct RenderOptions {
     ViewOptions view;
@@ -113,23 +113,6 @@ std::uint64_t hashBits(const studio::PlanarBuffer& buffer) {
     return hash;
 }
 
-// The VPLs that light the picture; those that only fill the last group carry no flux.
-std::vector<studio::VplRecord> toVpls(const DebugPlanes& planes) {
-    if (planes.channels != kVplChannels)
-        throw std::runtime_error(
-            fmt::format("debug view vpls: expected {} channels, got {}", kVplChannels, planes.channels));
-    std::vector<studio::VplRecord> vpls;
-    for (std::size_t i = 0; i < std::size_t(planes.width) * planes.height; ++i) {
-        const auto vector = [&](std::uint32_t first) {
-            return glm::vec3(planes.plane(first)[i], planes.plane(first + 1)[i],
-                             planes.plane(first + 2)[i]);
-        };
-        const studio::VplRecord vpl{vector(0), vector(3), vector(6), planes.plane(9)[i]};
-        if (vpl.flux != glm::vec3(0.0f)) vpls.push_back(vpl);
-    }
-    return vpls;
-}
-
 // The channels c00, c01, ... of an intermediate buffer.
 void writeDebugView(const IndirectRenderer& renderer, const std::string& argument) {
     const auto [name, path] = splitAssignment("--debug-view", argument);
@@ -191,7 +174,7 @@ studio::Image renderWithTechnique(const RenderOptions& options, Sequence& sequen
     }
     report.hash = hashBits(renderer->irradiance());
     if (!options.vplsOut.empty()) {
-        studio::writeVpls(options.vplsOut, toVpls(renderer->readDebugView("vpls")));
+        studio::writeVpls(options.vplsOut, readVplView(*renderer));
         report.outputs.push_back(options.vplsOut);
     }
     if (!options.debugView.empty()) writeDebugView(*renderer, options.debugView);
