@@ -23,6 +23,8 @@
  *  - G-buffer `directRadiance` is the *diffuse* outgoing radiance L_d = albedo / pi * E_direct.
  *  - RSM `flux` is albedo * incident flux through the texel, in W.
  *  - the host composites L = L_d + albedo / pi * irradiance.
+ *  - positions lie within 1e9 units of the origin: a VPL beyond refuses its frame, a pixel or an RSM texel
+ *    counts as rejected and is no surface (a depth beyond is background).
  *
  * VERSIONING: structs that may grow begin with `structSize`; set it to sizeof(struct), which lwDefault*
  * and the LW_INIT macro do. The others (LWImage, LWCamera, LWVpl, LWBlocker, LWSourceView, and what the
@@ -254,7 +256,7 @@ typedef struct LWGBuffer {
     LWImage position;        /**< world position; 3 channels */
     LWImage depth;           /**< instead of `position`: 1 channel, with `camera` */
     LWImage normal;          /**< world normal; 3 channels; zero = no surface. With depth, pixels whose
-                                  depth does not unproject to a finite point have none either */
+                                  depth does not unproject to a point within reach have none either */
     LWImage albedo;          /**< diffuse reflectance in [0,1] */
     LWImage directRadiance;  /**< L_d, W/(sr m^2) */
     LWImage roughness;       /**< 1 channel, [0,1] */
@@ -278,7 +280,7 @@ typedef struct LWRsm {
     LWImage depth;     /**< depth with `camera` */
     LWImage normal;    /**< world normal on the lit side; zero = nothing lit */
     LWImage flux;      /**< reflected flux of the texel, W, 0 .. 1e30: texels outside count as rejected and
-                            carry nothing */
+                            carry nothing, as do texels whose area the camera makes infinite */
     LWCamera camera;   /**< orthographic for a directional light, perspective otherwise */
 } LWRsm;
 
@@ -351,7 +353,8 @@ typedef struct LWFrame {
  *  memory or cl_mem of the view's current size. A technique refuses an output it cannot make. */
 typedef struct LWOutput {
     uint32_t structSize;
-    LWImage irradiance;        /**< indirect diffuse irradiance, 3 channels, W/m^2 */
+    LWImage irradiance;        /**< indirect diffuse irradiance, 3 channels, W/m^2; finite and 0 or more whatever
+                                    the inputs hold: above 1e36 it is brought down ("saturated_pixels") */
     LWImage validity;          /**< 1 channel in [0,1]: share of the hemisphere accounted for */
     LWImage ambientOcclusion;  /**< 1 channel in [0,1]: 1 = open */
     LWImage specularRadiance;  /**< 3 channels */
@@ -485,7 +488,7 @@ typedef struct LWPassTime {
 } LWPassTime;
 
 typedef struct LWCount {
-    const char* name;    /**< "vpls", "rejected_pixels", "rejected_texels", "upsample_fallbacks", ... */
+    const char* name;    /**< "vpls", "rejected_pixels", "rejected_texels", "saturated_pixels", ... */
     uint64_t value;
 } LWCount;
 

@@ -1,6 +1,7 @@
 // A host's images as planes of float32, the form every other kernel reads. Rows are written up to the
 // next multiple of 16 pixels; the padding repeats the last pixel.
 #include "shared/pixel_read.h"
+#include "shared/surface.h"
 #include "shared/unproject_types.h"
 #include "shared/wide.h"
 
@@ -20,7 +21,7 @@ __kernel void gbuffer_input_unpack(__global const uchar* source, const LwPixels 
 LW_FN real lw_linear(float4 c, real i, real j) { return fma_(c.x, i, fma_(c.y, j, c.w)); }
 
 // One work-item = LW_WIDTH pixels of a row. World positions from depth, and the normals beside them: a
-// pixel whose depth does not unproject to a finite point in front of the eye has no surface, so its
+// pixel whose depth does not unproject to a point in front of the eye and within reach has no surface, so its
 // normal becomes zero, and its position zero rather than garbage.
 __kernel void gbuffer_input_unproject(__global const uchar* depthSource, const LwPixels depthPixels,
                                       __global const uchar* normalSource, const LwPixels normalPixels,
@@ -54,8 +55,7 @@ __kernel void gbuffer_input_unproject(__global const uchar* depthSource, const L
     p.x += u.origin.x;
     p.y += u.origin.y;
     p.z += u.origin.z;
-    // Squared distances must be finite too, or the gather would meet infinities.
-    valid = and_(valid, isfinite_(fma_(p.x, p.x, fma_(p.y, p.y, p.z * p.z))));
+    valid = and_(valid, is_within_reach(p.x, p.y, p.z));
 
     const real none = (real)0.0f;
     int at = positionLayout.x + y * positionLayout.y + x;

@@ -113,7 +113,8 @@ LW_FN rgb gather_subset(lw_surface s, __global const float* vpls, lw_subset_orde
 // One work-item = LW_WIDTH * LW_INTERLEAVE adjacent pixels of one row, of a width x height image.
 // vpls: float[12] each, subset by subset, order.capacity (even) of them per subset. masks: as
 // interleaved_gather_cull left them, an even number of bits to a word; not read when tiles.words is 0.
-// irradiance: 3 planes, W/m^2. counts[0]: pixels that are neither surface nor background.
+// irradiance: 3 planes, W/m^2. counts[0]: pixels that are neither surface nor background; counts[2]: pixels with
+// more light than LW_LARGEST_IRRADIANCE.
 __kernel void interleaved_gather_gather(__global const float* position, int4 positionLayout,
                                         __global const float* normal, int4 normalLayout, int width, int height,
                                         __global const float* vpls, lw_subset_order order,
@@ -142,7 +143,7 @@ __kernel void interleaved_gather_gather(__global const float* position, int4 pos
     LW_UNROLL for (int a = 0; a < 3; ++a) { deal_(p[a]); deal_(n[a]); }
 
     real e[3][LW_INTERLEAVE];
-    int rejectedHere = 0;
+    int rejectedHere = 0, saturatedHere = 0;
     // Not unrolled: at interleave 8 eight copies of the loop over VPLs cost seconds of compilation.
     for (int j = 0; j < LW_INTERLEAVE; ++j) {
         const lw_surface s = make_surface(p[0][j], p[1][j], p[2][j], n[0][j], n[1][j], n[2][j]);
@@ -152,10 +153,13 @@ __kernel void interleaved_gather_gather(__global const float* position, int4 pos
             sum = gather_subset(s, vpls, order, subset, masks, tiles, tile);
         }
         const real scale = (real)(M_1_PI_F * LW_INTERLEAVE * LW_INTERLEAVE);
-        e[0][j] = select_((real)0.0f, sum.r * scale, s.valid);
-        e[1][j] = select_((real)0.0f, sum.g * scale, s.valid);
-        e[2][j] = select_((real)0.0f, sum.b * scale, s.valid);
+        const real r = sum.r * scale, g = sum.g * scale, b = sum.b * scale, most = (real)LW_LARGEST_IRRADIANCE;
+        e[0][j] = select_((real)0.0f, fmin(r, most), s.valid);
+        e[1][j] = select_((real)0.0f, fmin(g, most), s.valid);
+        e[2][j] = select_((real)0.0f, fmin(b, most), s.valid);
+        const mask saturated = and_(s.valid, fmax(r, fmax(g, b)) > most);
         if (any_(s.rejected)) rejectedHere += count_(s.rejected);
+        if (any_(saturated)) saturatedHere += count_(saturated);
     }
     LW_UNROLL for (int a = 0; a < 3; ++a) {
         undeal_(e[a]);
@@ -166,6 +170,7 @@ __kernel void interleaved_gather_gather(__global const float* position, int4 pos
         }
     }
     if (rejectedHere) atomic_add(counts, rejectedHere);
+    if (saturatedHere) atomic_add(counts + 2, saturatedHere);
 }
 
 // One work-item = LW_WIDTH adjacent pixels: 1 where the gather lit a surface, 0 elsewhere.

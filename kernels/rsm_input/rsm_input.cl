@@ -1,5 +1,6 @@
 // The last steps of importing reflective shadow maps; unpacking itself is gbuffer_input's.
 #include "shared/rsm_types.h"
+#include "shared/surface.h"
 #include "shared/wide.h"
 
 // One work-item = one row of one map: its entry (first texel, width, map, 0) in the table of rows,
@@ -44,13 +45,11 @@ __kernel void rsm_input_finish(__global float* texels, int stride, __global uint
 
     // What is there: nothing (zero normal), something that can't be used, or a lit surface.
     const real n2 = fma_(nx, nx, fma_(ny, ny, nz * nz));
-    const real p2 = fma_(px, px, fma_(py, py, pz * pz));
     const mask empty = n2 == 0.0f;
-    const mask usable = and_(and_(isfinite_(n2), isfinite_(p2)),
+    const mask usable = and_(and_(isfinite_(n2), is_within_reach(px, py, pz)),
                              and_(lw_usable_flux(r), and_(lw_usable_flux(g), lw_usable_flux(b))));
     const mask occupied = and_(inside, not_(empty));
-    const mask rejected = and_(occupied, not_(usable));
-    const mask surface = and_(occupied, usable);
+    mask surface = and_(occupied, usable);
     mask covered = splat_mask(0);
     for (int c = 0; c < span.finerCount; ++c) {
         const real cx = lw_linear(span.finer[2 * c], i, j), cy = lw_linear(span.finer[2 * c + 1], i, j);
@@ -62,9 +61,6 @@ __kernel void rsm_input_finish(__global float* texels, int stride, __global uint
     nx = select_(none, nx / scale, surface);
     ny = select_(none, ny / scale, surface);
     nz = select_(none, nz / scale, surface);
-    px = select_(none, px, surface);
-    py = select_(none, py, surface);
-    pz = select_(none, pz, surface);
     real area;
     if (span.perspective) {
         const real lx = span.light.x - px, ly = span.light.y - py, lz = span.light.z - pz;
@@ -81,13 +77,17 @@ __kernel void rsm_input_finish(__global float* texels, int stride, __global uint
         area = span.texelArea / fmax(cosine, (real)LW_MIN_LIGHT_COSINE);
     }
 
+    // An eye beyond all distances, or a texel wider than float holds, leaves no area to bound the light by.
+    surface = and_(surface, isfinite_(area));
+    const mask rejected = and_(occupied, not_(surface));
+
     const mask lit = and_(surface, not_(covered));
-    store(px, at, 0);
-    store(py, at, stride);
-    store(pz, at, 2 * stride);
-    store(nx, at, 3 * stride);
-    store(ny, at, 4 * stride);
-    store(nz, at, 5 * stride);
+    store(select_(none, px, surface), at, 0);
+    store(select_(none, py, surface), at, stride);
+    store(select_(none, pz, surface), at, 2 * stride);
+    store(select_(none, nx, surface), at, 3 * stride);
+    store(select_(none, ny, surface), at, 4 * stride);
+    store(select_(none, nz, surface), at, 5 * stride);
     store(select_(none, r, lit), at, 6 * stride);
     store(select_(none, g, lit), at, 7 * stride);
     store(select_(none, b, lit), at, 8 * stride);

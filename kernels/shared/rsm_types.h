@@ -3,6 +3,7 @@
 #ifndef LW_RSM_TYPES_H
 #define LW_RSM_TYPES_H
 
+#include "input_limits.h"
 #include "portable.h"
 
 // Nested cascades of one directional light: each needs the footprints of all finer ones at once.
@@ -13,10 +14,6 @@
 // an area, and light close to them is bounded too late (spikes). Smaller: a texel whose normal is nearly
 // across the light (a silhouette, an interpolated normal) stands for a huge disc and loses its light.
 #define LW_MIN_LIGHT_COSINE 0.05f
-
-// Reflected flux of a texel above which it is refused as garbage. Sums over the most texels that fit stay
-// finite (2e8 * 1e30 < 3e38), and no lamp comes near it in any unit of length.
-#define LW_LARGEST_FLUX 1e30f
 
 // Planes of the texels.
 #define LW_RSM_POSITION 0

@@ -2,24 +2,28 @@
 #ifndef LW_SURFACE_H
 #define LW_SURFACE_H
 
+#include "input_limits.h"
 #include "wide.h"
 
 typedef struct {
     real px, py, pz;  // world position; 0 without a surface
     real nx, ny, nz;  // unit normal; 0 without a surface
     real scale;       // 1 / length of the normal as the host gave it
-    mask valid;       // a surface with finite position (squared) and a normal that can be normalised
+    mask valid;       // a surface with a position within LW_LARGEST_DISTANCE and a normal that can be normalised
     mask rejected;    // not a surface although the host did not mark it as background (zero normal)
 } lw_surface;
 
 LW_FN real squared_length(real x, real y, real z) { return fma_(x, x, fma_(y, y, z * z)); }
 
+LW_FN mask is_within_reach(real px, real py, real pz) {
+    return squared_length(px, py, pz) <= LW_LARGEST_DISTANCE * LW_LARGEST_DISTANCE;  // false for NaN
+}
+
 // Normals of compact formats are off unit length by quantisation: they are normalised, not refused.
-// Shorter than 1/2 or longer than 2 is no normal at all. Positions are squared later on: their squares must be
-// finite, too, or inf / inf would reach the picture.
+// Shorter than 1/2 or longer than 2 is no normal at all.
 LW_FN mask is_surface(real px, real py, real pz, real nx, real ny, real nz) {
     const real n2 = squared_length(nx, ny, nz);
-    return and_(and_(n2 > 0.25f, n2 < 4.0f), isfinite_(squared_length(px, py, pz)));
+    return and_(and_(n2 > 0.25f, n2 < 4.0f), is_within_reach(px, py, pz));
 }
 
 LW_FN lw_surface make_surface(real px, real py, real pz, real nx, real ny, real nz) {

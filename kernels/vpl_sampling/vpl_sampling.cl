@@ -127,7 +127,12 @@ __kernel void vpl_sampling_draw(__global const float* texels, int4 layout, __glo
     const int texel = row.x + find_sum(texelSums + row.x, row.y, v * rowTotal);
     __global const float* base = texels + layout.x;
     const float probability = texel_weight(base, layout.z, texel, uniformWeights) / total;
-    vpls[slot] = texel_vpl(base, layout.z, texel, 1.0f / ((float)sampleCount * probability));
+    const lw_vpl vpl = texel_vpl(base, layout.z, texel, 1.0f / ((float)sampleCount * probability));
+    // A texel with next to none of all flux (v = 0 falls on it nevertheless) would stand for an area beyond any: it
+    // lights nothing, and its numbers leave float's range.
+    const float largest = fmax(fmax(vpl.positionArea.w, vpl.flux.x), fmax(vpl.flux.y, vpl.flux.z));
+    if (isfinite(largest)) vpls[slot] = vpl;
+    else vpls[slot] = no_vpl();
 }
 
 // The same list when every texel is a VPL of its own, with its flux and area as they are.

@@ -5,7 +5,7 @@
 
 #include "api/call.h"
 #include "api/structs.h"
-#include "shared/rsm_types.h"
+#include "shared/input_limits.h"
 
 namespace lightwell {
 namespace {
@@ -113,13 +113,12 @@ void FrameArgument::checkNumbers() const {
     for (std::uint32_t i = 0; i < frame_.vplCount; ++i) {
         const LWVpl& vpl = frame_.vpls[i];
         const float* p = vpl.position;
-        // Squared, as the kernels meet it.
-        const bool good = std::isfinite(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + vpl.normal[0] +
-                                        vpl.normal[1] + vpl.normal[2] + vpl.area) &&
-                          vpl.area >= 0.0f;
-        if (!good)
-            fail(LW_ERROR_INVALID_ARGUMENT, "frame.vpls[", i,
-                 "]: expected finite numbers, positions below 1e19 and an area of 0 or more, got something else");
+        if (!(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] <= LW_LARGEST_DISTANCE * LW_LARGEST_DISTANCE))
+            fail(LW_ERROR_INVALID_ARGUMENT, "frame.vpls[", i, "].position: expected at most ", LW_LARGEST_DISTANCE,
+                 " from the origin, got ", p[0], " ", p[1], " ", p[2]);
+        if (!(vpl.area >= 0.0f && std::isfinite(vpl.area)))
+            fail(LW_ERROR_INVALID_ARGUMENT, "frame.vpls[", i, "].area: expected a finite number of 0 or more, got ",
+                 vpl.area);
         for (const float flux : vpl.flux)
             if (!(flux >= 0.0f && flux <= LW_LARGEST_FLUX))
                 fail(LW_ERROR_INVALID_ARGUMENT, "frame.vpls[", i, "].flux: expected 0 .. ", LW_LARGEST_FLUX,

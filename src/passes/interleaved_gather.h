@@ -44,7 +44,7 @@ public:
                     lw_subset_order order, const VplTiles& tiles);
     // Pass "interleaved_gather.gather": irradiance (3 planes) from one subset of the VPLs per pixel, times
     // the number of subsets; `masks` as recordCull left them for this image and list. counts[0] grows by
-    // the pixels with neither a surface nor a zero normal.
+    // the pixels with neither a surface nor a zero normal, counts[2] by those brought down to LW_LARGEST_IRRADIANCE.
     void recordGather(Executor& executor, const Planes& position, const Planes& normal, const Buffer& vpls,
                       lw_subset_order order, const Buffer& masks, const Planes& irradiance, const Buffer& counts);
     // Pass "interleaved_gather.filter"; irradiance and filtered are different images. interleave > 1 only.

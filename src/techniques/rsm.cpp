@@ -102,7 +102,8 @@ public:
         PlanarImage gathered, filtered, halfPosition, halfNormal;
         std::uint32_t gatheredWidth, gatheredHeight;  // at most
         VplTiles tiles;
-        Buffer counts;  // rejected pixels, up-sampling fallbacks
+        Buffer counts;  // rejected pixels, up-sampling fallbacks, saturated pixels
+        static constexpr std::size_t kCountBytes = 3 * sizeof(cl_int);
         Planes lastGathered, lastFiltered;  // empty where the last frame had no irradiance
         bool rendered = false;              // since the last update
     };
@@ -123,7 +124,7 @@ private:
 
 RsmTechnique::ViewState::ViewState(Device& device, const LWRsmDesc& desc, const View& view)
     : gatheredWidth(gatheredPixels(desc, view.maxWidth)), gatheredHeight(gatheredPixels(desc, view.maxHeight)),
-      counts(device, 2 * sizeof(cl_int), "counts of a view") {
+      counts(device, kCountBytes, "counts of a view") {
     const bool half = halfResolution(desc);
     const std::uint32_t width = gatheredWidth, height = gatheredHeight;
     if (half || filters(desc)) gathered = PlanarImage(device, width, height, 3, "gathered irradiance");
@@ -138,7 +139,7 @@ std::uint64_t RsmTechnique::ViewState::imageBytes(const LWRsmDesc& desc, std::ui
     const bool half = halfResolution(desc);
     const std::uint64_t w = paddedWidth(gatheredPixels(desc, width)), h = gatheredPixels(desc, height);
     const std::uint64_t images = (half || filters(desc) ? 1u : 0u) + (half && filters(desc) ? 1u : 0u) + (half ? 2u : 0u);
-    return images * 3 * w * h * sizeof(float) + 2 * sizeof(cl_int);
+    return images * 3 * w * h * sizeof(float) + kCountBytes;
 }
 
 void RsmTechnique::checkOutputs(const LWOutput& output, const View& view) const {
@@ -191,6 +192,7 @@ Report RsmTechnique::report() {
     for (const LWChoice& choice : unused_) report.choose(choice.name, choice.reason);
     report.counts.push_back({"rejected_pixels", 0});
     report.counts.push_back({"upsample_fallbacks", 0});
+    report.counts.push_back({"saturated_pixels", 0});
     states_.each([&](const ViewState& state) {
         if (!state.rendered) return;
         state.gbuffer.report(report);
@@ -199,6 +201,7 @@ Report RsmTechnique::report() {
         if (!state.lastGathered) return;
         report.read(device_, "rejected_pixels", state.counts, 0);
         report.read(device_, "upsample_fallbacks", state.counts, sizeof(cl_int));
+        report.read(device_, "saturated_pixels", state.counts, 2 * sizeof(cl_int));
     });
     return report;
 }

@@ -109,11 +109,14 @@ TEST_CASE("refused frames name the argument and change nothing", "[api]") {
     vpl.flux[2] = 2e30f;  // finite, but sums of such are not; of RSM texels the same is refused
     CHECK_THAT(refusal(&frame), Contains("frame.vpls[0].flux") && Contains("1e+30"));
     vpl.flux[2] = 0;
-    vpl.position[2] = 1e20f;  // its square is not finite
-    CHECK_THAT(refusal(&frame), Contains("frame.vpls[0]") && Contains("finite"));
+    vpl.position[2] = 1.01e9f;
+    CHECK_THAT(refusal(&frame), Contains("frame.vpls[0].position") && Contains("1e+09") && Contains("1.01e+09"));
     vpl.position[2] = std::nanf("");
-    CHECK_THAT(refusal(&frame), Contains("frame.vpls[0]") && Contains("finite"));
+    CHECK_THAT(refusal(&frame), Contains("frame.vpls[0].position") && Contains("nan"));
     vpl.position[2] = 0;
+    vpl.area = HUGE_VALF;
+    CHECK_THAT(refusal(&frame), Contains("frame.vpls[0].area") && Contains("inf"));
+    vpl.area = 0;
     vpl.normal[1] = 2;
     CHECK_THAT(refusal(&frame), Contains("frame.vpls[0].normal") && Contains("unit length, got 2"));
     frame = scene.frame;

@@ -337,6 +337,9 @@ TEST_CASE("background depth is no surface", "[gbuffer_input]") {
                    {2.0f, 0.0f, nan, inf, -1.0f}) == "10000");
     CHECK(surfaces(testCamera(kRightHanded, glm::dvec3(0)), LW_DEPTH_RADIAL,
                    {2.0f, 0.0f, nan, inf, 1e30f}) == "10000");
+    // The reach of positions, 1e9 units from the origin.
+    CHECK(surfaces(testCamera(kRightHanded, glm::dvec3(0)), LW_DEPTH_RADIAL,
+                   {2.0f, 0.99e9f, 1.01e9f, 1e10f, 1.0f}) == "11001");
 }
 
 TEST_CASE("a G-buffer that can't be used is refused by name", "[gbuffer_input]") {

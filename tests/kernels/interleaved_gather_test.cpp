@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "reference/surfaces.h"
+#include "shared/input_limits.h"
 #include "support/kernel_rig.h"
 #include "support/vpl_slots.h"
 
@@ -24,14 +25,14 @@ constexpr double kTwinTolerance = 2e-5;
 
 struct Gathered {
     Image irradiance;
-    int rejected;
+    int rejected, saturated;
 };
 
 Gathered gatherOn(KernelRig& rig, const Image& position, const Image& normal, const std::vector<lw_vpl>& vpls,
                   std::uint32_t n) {
     const std::uint32_t w = position.width, h = position.height;
     const Guarded p = rig.uploadPlanes(position.planes, w, h, 3, kNaN), nr = rig.uploadPlanes(normal.planes, w, h, 3, 1.0f);
-    const Guarded list = rig.upload(vpls), counts = rig.upload(std::vector<cl_int>{0, 0});
+    const Guarded list = rig.upload(vpls), counts = rig.upload(std::vector<cl_int>{0, 0, 0});
     const Guarded out = rig.makePlanes(w, h, 3);
     const lw_subset_order order = orderOf(vpls.size(), n);
     const Guarded masks = rig.upload(allSlots(VplTiles::layout(w, h, order, n), order));
@@ -39,7 +40,8 @@ Gathered gatherOn(KernelRig& rig, const Image& position, const Image& normal, co
     pass.recordGather(rig.executor(), rig.planes(p, w, h, 3), rig.planes(nr, w, h, 3), list, order, masks,
                       rig.planes(out, w, h, 3), counts);
     rig.device().finish();
-    Gathered result{Image(w, h), rig.download<cl_int>(counts)[0]};
+    const std::vector<cl_int> counted = rig.download<cl_int>(counts);
+    Gathered result{Image(w, h), counted[0], counted[2]};
     result.irradiance.planes = rig.downloadPlanes(rig.planes(out, w, h, 3));
     return result;
 }
@@ -210,6 +212,24 @@ TEST_CASE("background, bad pixels and coincident VPLs get no light and spoil non
             else
                 CHECK((e.x == c.x && std::isfinite(e.x)));
         }
+}
+
+TEST_CASE("light beyond float's range is brought down, counted, and harms no neighbour", "[interleaved_gather]") {
+    KernelRig rig(GENERATE(1u, 16u));
+    Image position(32, 4), normal(32, 4);
+    lookUp(position, normal);
+    for (std::uint32_t y = 0; y < 4; ++y)
+        for (std::uint32_t x = 0; x < 32; ++x) position.set(x, y, {double(x), double(y), x % 2 * 5.0});
+    std::vector<lw_vpl> vpls(64);
+    for (lw_vpl& vpl : vpls) vpl = reference::makeVpl({4, 2, 1e-9}, {0, 0, -1}, {1e30, 1, 0}, 0);
+    const Gathered out = gatherOn(rig, position, normal, vpls, 4);
+    CHECK(out.saturated == 1);
+    CHECK(out.irradiance.get(4, 2).x == double(LW_LARGEST_IRRADIANCE));
+    CHECK(out.irradiance.get(4, 2).y > 1e17);
+    CHECK(out.irradiance.get(4, 2).z == 0.0);
+    const Image filtered = filterOn(rig, position, normal, out.irradiance, 4);
+    for (const float value : filtered.planes) REQUIRE(std::isfinite(value));
+    CHECK(filtered.get(5, 2).x < 1e31);  // across an edge
 }
 
 TEST_CASE("normals of compact formats are normalised", "[interleaved_gather]") {

@@ -196,7 +196,8 @@ TEST_CASE("texels that can't be used are dark and counted", "[rsm_input]") {
     map.flux.set(18, 2, 2e38, 1, 1);  // sums of such would be infinite
     map.position.set(2, 0, nan, 0, 0);
     map.position.set(3, 1, 0, -inf, 0);
-    map.position.set(4, 1, 1e30, 0, 0);  // its square is infinite
+    map.position.set(4, 1, 1.01e9, 0, 0);  // out of reach
+    map.position.set(9, 1, 0.99e9, 0, 0);  // within
     map.normal.set(5, 1, nan, 1, 0);
     map.normal.set(6, 1, 0, 0, 0);  // nothing lit: not an error
     map.position.set(6, 1, nan, nan, nan);
@@ -215,6 +216,22 @@ TEST_CASE("texels that can't be used are dark and counted", "[rsm_input]") {
     CHECK(got.at(RsmInput::kNormalZ, texel(7, 1)) == Approx(0.8));
     CHECK(got.at(RsmInput::kNormalY, texel(8, 1)) == 1.0);
     CHECK(got.at(RsmInput::kFluxB, texel(9, 1)) == 3.0);
+}
+
+TEST_CASE("texels without a finite area are dark and counted", "[rsm_input]") {
+    KernelRig rig(GENERATE(1u, 16u));
+    // Texels 1e24 units wide, or so narrow and so far from the eye that their area is 0 times infinity.
+    const bool orthographic = GENERATE(true, false);
+    TestCamera camera = downward(0, 0, 4, orthographic ? 1e25 : 1e-24, orthographic);
+    if (!orthographic) camera.eye.y = 1e25;
+    Map map(20, 3, camera, {0, 1, 0});
+    for (std::uint32_t y = 0; y < 3; ++y)
+        for (std::uint32_t x = 0; x < 20; ++x) map.position.set(x, y, x, 0, y);
+    const std::vector<LWRsm> rsms{map.rsm()};
+    RsmInput input;
+    const Imported got = importLights(rig, {orthographic ? sun(rsms) : spot(rsms[0])}, input);
+    CHECK(got.rejected == 20 * 3);
+    for (const float value : got.texels) REQUIRE(value == 0.0f);
 }
 
 TEST_CASE("flux over area is albedo times direct irradiance", "[rsm_input]") {

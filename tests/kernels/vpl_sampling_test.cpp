@@ -158,6 +158,22 @@ TEST_CASE("flux-warped: equal flux each, the total kept, dark texels never", "[v
     CHECK(relative(area, litArea) < kAreaEstimate);
 }
 
+TEST_CASE("flux-warped: a texel of next to no flux leaves no infinite VPL", "[vpl_sampling]") {
+    KernelRig rig(GENERATE(1u, 16u));
+    // v = 0 of the first point falls on the first texel, whatever its share: here 1e-42 of all.
+    Maps maps({{16, 1}}, [](std::size_t, std::size_t column) { return column ? 1e30 : 1e-11; });
+    VplSamplingOptions options;
+    options.count = 64;
+    options.subsets = 4;
+    int lit = 0;
+    for (const lw_vpl& v : draw(rig, maps, options).vpls) {
+        REQUIRE(std::isfinite(v.positionArea.s[3]));
+        for (int c = 0; c < 3; ++c) REQUIRE(std::isfinite(v.flux.s[c]));
+        if (v.flux.s[0] > 0.0f) ++lit;
+    }
+    CHECK(lit == 63);
+}
+
 TEST_CASE("flux-warped: texels are drawn in proportion to their flux", "[vpl_sampling]") {
     KernelRig rig(16);
     Maps maps({{16, 8}, {20, 4}}, spotFlux);
