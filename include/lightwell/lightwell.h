@@ -34,18 +34,21 @@
  * THREADS: calls on one device are serialised by a lock of that device and may come from any thread;
  * devices are independent of each other. lwFinish, lwGetStats and lwReadDebugView wait with the lock open
  * for what was enqueued before them, so that other threads' frames go on meanwhile; lwPrewarm and
- * lwProbeDevice keep it to their end. A log callback must not call Lightwell (it gets LW_ERROR_REENTRANT).
+ * lwProbeDevice keep it to their end. A log callback must not call Lightwell (it gets LW_ERROR_REENTRANT), nor
+ * throw.
  *
  * OWNERSHIP: handles are reference-counted; lwCreate* gives one reference. A child (view, technique)
  * keeps its device alive. A released or foreign handle is refused with LW_ERROR_INVALID_HANDLE.
  * Structs and the arrays they point to are read during the call only; *pixels* (host memory and
- * cl_mem) must stay valid and unchanged until the signalled event, or lwFinish.
+ * cl_mem) must stay valid and unchanged until the signalled event, or lwFinish. (Until lwFinish also where
+ * the call failed for want of memory or for the device: some of its commands may be on their way.)
  *
  * ERRORS: every fallible call returns an LWStatus. The first failure since the last lwGetLastError is
  * kept with a message that names the argument, what was expected and what came. After a failed call
  * the objects are as they were before it, unless memory or the device failed: a technique then asks for
- * another lwUpdate (LW_ERROR_NOT_UPDATED). Errors of the device's execution surface at lwFinish, and at
- * the next lwUpdate or lwRender.
+ * another lwUpdate (LW_ERROR_NOT_UPDATED). Errors of the device's execution surface at the calls that wait,
+ * and at the next lwUpdate or lwRender; whose command it was is not known, so all of the device's techniques
+ * then ask for another lwUpdate.
  */
 #ifndef LIGHTWELL_LIGHTWELL_H
 #define LIGHTWELL_LIGHTWELL_H
@@ -93,8 +96,9 @@ typedef enum LWStatus {
     LW_ERROR_NO_DEVICE = 5,        /**< no OpenCL device matches the selector */
     LW_ERROR_BUILD_FAILED = 6,     /**< a kernel does not build; the message carries the log */
     LW_ERROR_DEVICE = 7,           /**< the OpenCL driver reported an error while executing */
-    LW_ERROR_NOT_UPDATED = 8,      /**< lwRender before any successful lwUpdate, or after one that memory
-                                        or the device failed; refused arguments leave the last in force */
+    LW_ERROR_NOT_UPDATED = 8,      /**< lwRender before any successful lwUpdate, after one that memory or
+                                        the device failed, or after the device failed to execute a command;
+                                        refused arguments leave the last in force */
     LW_ERROR_REENTRANT = 9,        /**< called from inside a log callback */
     LW_ERROR_INTERNAL = 10         /**< a defect of Lightwell; please report the message */
 } LWStatus;

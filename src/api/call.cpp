@@ -54,12 +54,17 @@ std::shared_ptr<View> Call::viewOfDevice(LWView handle, const char* argument, bo
     return object->view;
 }
 
-void Call::settle() {
+void Call::wait() {
     // Neither the queue nor the context can go away: this call holds the device.
     const Marker marker = device_->device.mark();
     lock_.unlock();
-    marker.wait();
+    // After a failure the standard leaves open what a marker waits for: then for all.
+    if (!marker.wait()) clFinish(device_->device.queue());
     lock_.lock();
+}
+
+void Call::settle() {
+    wait();
     device_->device.settle();
 }
 

@@ -20,8 +20,10 @@ public:
     // A second handle: must belong to the device that is locked. Null stays null where `optional`.
     std::shared_ptr<View> viewOfDevice(LWView handle, const char* argument, bool optional = false);
 
-    // Waits for what is enqueued so far, with the lock open, so that other threads' calls go on meanwhile; then
-    // throws what failed. Objects may change while the lock is open: take what is to be reported before.
+    // Waits for what is enqueued so far, with the lock open, so that other threads' calls go on meanwhile. Objects
+    // may change while the lock is open: take what is to be reported before. Throws before it waits, or not at all.
+    void wait();
+    // The same, then throws what failed.
     void settle();
     // Drops the last reference of an object under its device's lock.
     void dispose(std::shared_ptr<ViewObject> object);

@@ -57,7 +57,11 @@ struct TechniqueObject : Object {
     std::unique_ptr<Technique> technique;
     std::unique_ptr<FrameRecord> record;  // of the last lwUpdate; null before the first
     bool updated = false;
+    std::uint64_t failures = 0;  // that the device had seen at the last lwUpdate
     std::uint64_t frameIndex = 0;
+
+    // Whether the world part is what the last lwUpdate recorded. A command that failed may have been one of it.
+    bool current() const { return updated && failures == device->device.failures(); }
 
     // What the last lwGetStats pointed to.
     std::vector<LWPassTime> passes;

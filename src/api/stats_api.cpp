@@ -20,6 +20,11 @@ void enqueueDebugRead(Executor& executor, const DebugView& debug, Buffer& made, 
     enqueueReadPlanes(executor, planes, pixels);
 }
 
+// None before the first lwUpdate, and after one that failed: buffers may then hold anything.
+std::vector<DebugView> debugViewsOf(const TechniqueObject& object, const View* view) {
+    return object.current() ? object.technique->debugViews(view) : std::vector<DebugView>();
+}
+
 }  // namespace
 
 LWStatus lwGetStats(LWTechnique technique, LWStats* stats) {
@@ -36,9 +41,11 @@ LWStatus lwGetStats(LWTechnique technique, LWStats* stats) {
             profile = object->record->profile.snapshot();
             result.hostCopyBytes = object->record->executor.copiedBytes();
         }
-        Report report = object->technique->report();
-        call.settle();
-        report.resolve();
+        Report report;
+        if (object->current()) report = object->technique->report();
+        call.wait();
+        report.resolve();  // before anything is thrown: it waits for reads on their way, now with the lock held
+        call.owner()->device.settle();
         object->report = std::move(report);
         object->passes.clear();
         if (profile) {
@@ -60,7 +67,7 @@ LWStatus lwCountDebugViews(LWTechnique technique, LWView view, std::uint32_t* co
         const auto object = call.technique(technique);
         const auto own = call.viewOfDevice(view, "view", true);
         if (!count) fail(LW_ERROR_INVALID_ARGUMENT, "count: expected an address, got null");
-        *count = std::uint32_t(object->technique->debugViews(own.get()).size());
+        *count = std::uint32_t(debugViewsOf(*object, own.get()).size());
     });
 }
 
@@ -70,7 +77,7 @@ LWStatus lwDescribeDebugView(LWTechnique technique, LWView view, std::uint32_t i
         const auto object = call.technique(technique);
         const auto own = call.viewOfDevice(view, "view", true);
         const std::uint32_t size = checkedStructSize(info, "info");
-        const auto views = object->technique->debugViews(own.get());
+        const auto views = debugViewsOf(*object, own.get());
         if (index >= views.size())
             fail(LW_ERROR_INVALID_ARGUMENT, "index: expected less than ", views.size(), ", got ", index);
         const DebugView& debug = views[index];
@@ -93,7 +100,7 @@ LWStatus lwReadDebugView(LWTechnique technique, LWView view, const char* name, f
         if (!pixels) fail(LW_ERROR_INVALID_ARGUMENT, "pixels: expected an address, got null");
         Device& device = call.owner()->device;
         std::string names;
-        for (const DebugView& debug : object->technique->debugViews(own.get())) {
+        for (const DebugView& debug : debugViewsOf(*object, own.get())) {
             names += (names.empty() ? "" : ", ") + std::string(debug.name);
             if (std::strcmp(debug.name, name) != 0) continue;
             const std::uint64_t needed =
@@ -105,11 +112,12 @@ LWStatus lwReadDebugView(LWTechnique technique, LWView view, const char* name, f
             Buffer made;                   // held until the reads are done
             try {
                 enqueueDebugRead(scratch.executor, debug, made, pixels);
-                call.settle();
+                call.wait();
             } catch (...) {
                 clFinish(device.queue());  // `pixels` must not be written after this call
                 throw;
             }
+            device.settle();
             return;
         }
         fail(LW_ERROR_INVALID_ARGUMENT, "name: expected one of ", names.empty() ? "(none yet)" : names,

@@ -162,6 +162,7 @@ LWStatus lwUpdate(LWTechnique technique, const LWFrame* frame) {
         object->record = std::move(record);
         object->frameIndex = own.get().frameIndex;
         object->updated = true;
+        object->failures = device.failures();
     });
 }
 
@@ -176,9 +177,11 @@ LWStatus lwRender(LWTechnique technique, LWView view, const LWGBuffer* gbuffer, 
         if (!object->updated)
             fail(LW_ERROR_NOT_UPDATED, "technique: expected a successful lwUpdate before, got none");
         call.owner()->device.raiseFailure();
+        if (!object->current())
+            fail(LW_ERROR_NOT_UPDATED, "technique: expected another lwUpdate since commands failed on the device, got none");
         Executor& executor = object->record->executor;
-        executor.waitFor(sync.get());
         try {
+            executor.waitFor(sync.get());
             object->technique->render(executor, own, ownGBuffer, ownOutput);
             executor.signal(sync.get());
             executor.flush();

@@ -92,8 +92,8 @@ Device::~Device() {
         // host's, behind something that only the host can set off.
         watch_.collect();
         if (watch_.pending() == 0) programs_->saveBinaries();
-    } catch (const std::exception& error) {
-        log(LW_LOG_WARNING, std::string("cache: kernels are not saved: ") + error.what());
+    } catch (...) {
+        // No memory, or a log callback that throws: kernels are then compiled again next time.
     }
     release();
 }
@@ -191,9 +191,13 @@ void Device::log(LWLogLevel level, const std::string& message) const {
         if (level != LW_LOG_INFO) std::fprintf(stderr, "lightwell: %s\n", message.c_str());
         return;
     }
-    const Device* outer = std::exchange(insideLogOf, this);
+    // Also put back when the callback throws, which it must not: the thread would be locked out for good.
+    struct Inside {
+        const Device* outer;
+        ~Inside() { insideLogOf = outer; }
+    };
+    const Inside inside{std::exchange(insideLogOf, this)};
     log_(logUser_, level, message.c_str());
-    insideLogOf = outer;
 }
 
 bool Device::insideLog() const {

@@ -19,9 +19,9 @@ public:
     ~Marker() { clReleaseEvent(event_); }
     Marker(const Marker&) = delete;
     Marker& operator=(const Marker&) = delete;
-    // Until the queue gets there, from any thread and without the API's lock. What failed on the way is told
-    // by Device::settle.
-    void wait() const { clWaitForEvents(1, &event_); }
+    // Until the queue gets there, from any thread and without the API's lock. False when that is not sure, as
+    // something has failed; what, is told by Device::settle.
+    bool wait() const { return clWaitForEvents(1, &event_) == CL_SUCCESS; }
 
 private:
     cl_event event_;
@@ -68,6 +68,7 @@ public:
     void countSpecialisation() { ++kernelsSpecialised_; }
     void watch(cl_event event) { watch_.add(event); }  // finish() reports its failure
     const EventWatch& watched() const { return watch_; }
+    std::uint64_t failures() const { return watch_.failures(); }  // of commands, noticed since creation
     void warnOfCache(const std::string& problem);  // once per device
 
 private:

@@ -36,6 +36,7 @@ void EventWatch::clear() {
 }
 
 void EventWatch::noteFailure(const char* name) {
+    ++failures_;
     if (failure_.empty()) failure_ = name;
 }
 

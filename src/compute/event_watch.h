@@ -29,12 +29,13 @@ public:
     const std::string& failure() const { return failure_; }  // empty: none
     void noteFailure(const char* name);
     std::string takeFailure();
+    std::uint64_t failures() const { return failures_; }  // noted since creation
     std::uint64_t queries() const { return queries_; }  // of events' states, since creation
 
 private:
     std::deque<cl_event> events_;
     std::string failure_;
-    std::uint64_t queries_ = 0;
+    std::uint64_t failures_ = 0, queries_ = 0;
 };
 
 }  // namespace lightwell

@@ -1,15 +1,11 @@
 // Frames through the API: what is refused and leaves everything as it was, statistics, debug views,
 // events, threads, log callbacks.
-#define CL_TARGET_OPENCL_VERSION 120
-#define CL_USE_DEPRECATED_OPENCL_1_2_APIS
-#include <CL/cl.h>
-
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <thread>
 
-#include "api/api_scene.h"
+#include "api/api_rig.h"
 #include "lightwell/lightwell.hpp"
 
 using namespace lightwell::test;
@@ -17,33 +13,14 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-// A device with a view and a technique for one scene.
-struct Rig {
-    explicit Rig(const ApiScene& scene, std::uint32_t width = 16) : device(makeDevice(width)) {
-        const LWViewDesc desc = scene.viewDesc();
-        REQUIRE(lwCreateView(device, &desc, &view) == LW_SUCCESS);
-        REQUIRE(lwCreateRsm(device, nullptr, &technique) == LW_SUCCESS);
-    }
-    ~Rig() {
-        lwReleaseTechnique(technique);
-        lwReleaseView(view);
-        lwReleaseDevice(device);
-    }
-    LWStats stats() {
-        LWStats result{};
-        result.structSize = sizeof result;
-        CHECK(lwGetStats(technique, &result) == LW_SUCCESS);
-        return result;
-    }
+struct Rig : ApiRig {
+    explicit Rig(const ApiScene& scene, std::uint32_t width = 16) : ApiRig(makeDevice(width), scene) {}
     std::uint32_t launches() {
         const LWStats all = stats();
         std::uint32_t sum = 0;
         for (std::uint32_t i = 0; i < all.passCount; ++i) sum += all.passes[i].launches;
         return sum;
     }
-    LWDevice device;
-    LWView view = nullptr;
-    LWTechnique technique = nullptr;
 };
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <memory>
 
-#include "api/api_scene.h"
+#include "api/api_rig.h"
 #include "support/scoped.h"
 
 using namespace lightwell::test;
@@ -12,42 +12,11 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-struct ApiRig {
-    ApiRig(const ApiScene& scene, const LWRsmDesc& desc, const char* unified) {
-        const ScopedVariable variable("LIGHTWELL_UNIFIED_MEMORY", unified);
-        device = makeDevice(16);
-        const LWViewDesc viewDesc = scene.viewDesc();
-        REQUIRE(lwCreateView(device, &viewDesc, &view) == LW_SUCCESS);
-        REQUIRE(lwCreateRsm(device, &desc, &technique) == LW_SUCCESS);
-    }
-    ~ApiRig() {
-        lwReleaseTechnique(technique);
-        lwReleaseView(view);
-        lwReleaseDevice(device);
-    }
-    ApiRig(const ApiRig&) = delete;
-    ApiRig& operator=(const ApiRig&) = delete;
-    void frame(const ApiScene& scene) {
-        REQUIRE(lwUpdate(technique, &scene.frame) == LW_SUCCESS);
-        REQUIRE(lwRender(technique, view, &scene.gbuffer, &scene.output) == LW_SUCCESS);
-        REQUIRE(lwFinish(device) == LW_SUCCESS);
-    }
-    LWStats stats() {
-        LWStats result{};
-        result.structSize = sizeof result;
-        REQUIRE(lwGetStats(technique, &result) == LW_SUCCESS);
-        return result;
-    }
-    LWDeviceInfo info() {
-        LWDeviceInfo result{};
-        result.structSize = sizeof result;
-        REQUIRE(lwGetDeviceInfo(device, &result) == LW_SUCCESS);
-        return result;
-    }
-    LWDevice device = nullptr;
-    LWView view = nullptr;
-    LWTechnique technique = nullptr;
-};
+// `unified`: LIGHTWELL_UNIFIED_MEMORY.
+LWDevice deviceWith(const char* unified) {
+    const ScopedVariable variable("LIGHTWELL_UNIFIED_MEMORY", unified);
+    return makeDevice(16);
+}
 
 LWRsmDesc descOf(std::uint32_t vpls, std::uint32_t interleave, std::uint32_t filter, LWResolution resolution) {
     LWRsmDesc desc;
@@ -98,7 +67,7 @@ TEST_CASE("the estimate is what a frame comes to hold", "[api][memory]") {
     }
     scene.frame.vpls = vpls.data();
     scene.frame.vplCount = authored;
-    ApiRig rig(scene, desc, unified);
+    ApiRig rig(deviceWith(unified), scene, &desc);
     const LWViewDesc viewDesc = scene.viewDesc();
     std::uint64_t square = 0, exact = 0;
     const std::uint64_t before = rig.info().allocatedBytes;
@@ -129,7 +98,7 @@ TEST_CASE("several maps, and frames without light, are estimated too", "[api][me
     lights[1].rsms = &narrow;
     scene.frame.lights = lights.data();
     scene.frame.lightCount = GENERATE(0u, 1u, 3u);
-    ApiRig rig(scene, desc, unified);
+    ApiRig rig(deviceWith(unified), scene, &desc);
     std::uint64_t estimate = 0;
     REQUIRE(lwEstimateFrameMemory(rig.device, "rsm", &desc, &viewDesc, &scene.frame, &estimate) == LW_SUCCESS);
     rig.frame(scene);
@@ -139,7 +108,7 @@ TEST_CASE("several maps, and frames without light, are estimated too", "[api][me
 TEST_CASE("texels that no frame may have are refused by the estimate", "[api][memory]") {
     ApiScene scene;
     const LWRsmDesc desc = descOf(256, 4, 1, LW_RESOLUTION_FULL);
-    ApiRig rig(scene, desc, nullptr);
+    ApiRig rig(deviceWith(nullptr), scene, &desc);
     const LWViewDesc viewDesc = scene.viewDesc();
     const auto estimate = [&](std::uint64_t texels) {
         std::uint64_t bytes = 0;
@@ -189,7 +158,8 @@ TEST_CASE("a device without shared memory gives the same bits", "[api][memory]")
         scene.gbuffer.position = position.image();
         scene.gbuffer.normal = normal.image();
         scene.output.irradiance = irradiance.image();
-        ApiRig rig(scene, descOf(256, 4, 1, LW_RESOLUTION_HALF), unified);
+        const LWRsmDesc desc = descOf(256, 4, 1, LW_RESOLUTION_HALF);
+        ApiRig rig(deviceWith(unified), scene, &desc);
         if (unified[0] == '0') CHECK(rig.info().hostUnifiedMemory == 0);
         for (int i = 0; i < 2; ++i) rig.frame(scene);
         CHECK(irradiance.damagedBytes(layout.aligned) == 0);

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "api/api_scene.h"
+#include "api/api_rig.h"
 
 using namespace lightwell::test;
 
@@ -17,25 +17,17 @@ constexpr float kNaN = __builtin_nanf(""), kInfinity = __builtin_inff();
 constexpr float kValues[] = {kNaN,    kInfinity, -kInfinity, FLT_MAX, -FLT_MAX, 1e30f,  9.9e18f, 4e18f,  -1e10f, 1.1e9f,
                              0.9e9f,  1e5f,      1e-10f,     1e-20f,  -1e-30f,  1e-40f, 0.0f,    -0.0f,  1.0f,   -1.0f};
 
-struct Rig {
-    Rig(const ApiScene& scene, std::uint32_t width, std::uint32_t interleave, LWResolution resolution)
-        : device(makeDevice(width)) {
-        LWRsmDesc desc;
-        lwDefaultRsm(&desc);
-        desc.vpls = 64;
-        desc.interleave = interleave;
-        desc.resolution = resolution;
-        const LWViewDesc viewDesc = scene.viewDesc();
-        REQUIRE(lwCreateView(device, &viewDesc, &view) == LW_SUCCESS);
-        REQUIRE(lwCreateRsm(device, &desc, &technique) == LW_SUCCESS);
-    }
-    ~Rig() {
-        lwReleaseTechnique(technique);
-        lwReleaseView(view);
-        lwReleaseDevice(device);
-    }
-    Rig(const Rig&) = delete;
-    Rig& operator=(const Rig&) = delete;
+LWRsmDesc descOf(std::uint32_t interleave, LWResolution resolution) {
+    LWRsmDesc desc;
+    lwDefaultRsm(&desc);
+    desc.vpls = 64;
+    desc.interleave = interleave;
+    desc.resolution = resolution;
+    return desc;
+}
+
+struct Rig : ApiRig {
+    Rig(const ApiScene& scene, std::uint32_t width, const LWRsmDesc& desc) : ApiRig(makeDevice(width), scene, &desc) {}
 
     // What is wrong with the frame's picture, or nothing.
     std::string fault(ApiScene& scene) {
@@ -55,9 +47,6 @@ struct Rig {
                 }
         return "";
     }
-    LWDevice device;
-    LWView view = nullptr;
-    LWTechnique technique = nullptr;
     int refused = 0, rendered = 0;
 };
 
@@ -95,7 +84,7 @@ TEST_CASE("any float in any struct: refused, or a picture of finite numbers", "[
     const auto width = GENERATE(1u, 16u);
     const bool perspective = GENERATE(false, true);
     FullScene scene(perspective);
-    Rig rig(scene, width, 4, LW_RESOLUTION_FULL);
+    Rig rig(scene, width, descOf(4, LW_RESOLUTION_FULL));
     REQUIRE(rig.fault(scene) == "");
     const auto sweep = [&](const char* name, float* values, int count) {
         for (int i = 0; i < count; ++i) {
@@ -130,7 +119,7 @@ TEST_CASE("any float in pixels: a picture of finite numbers", "[api][numbers]") 
     const auto resolution = GENERATE(LW_RESOLUTION_FULL, LW_RESOLUTION_HALF);
     std::mt19937 random(7);
     const FullScene clean(false);
-    Rig rig(clean, width, interleave, resolution);
+    Rig rig(clean, width, descOf(interleave, resolution));
     const auto spoil = [&](HostImage& image, unsigned every) {
         const auto value = [&] { return double(kValues[random() % (sizeof kValues / sizeof kValues[0])]); };
         for (std::uint32_t y = 0; y < image.height(); ++y)

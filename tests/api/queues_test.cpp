@@ -1,9 +1,5 @@
 // Queues of the host's: order, waits that a refused call leaves behind, threads that wait while others go on,
 // kernels kept for the next start.
-#define CL_TARGET_OPENCL_VERSION 120
-#define CL_USE_DEPRECATED_OPENCL_1_2_APIS
-#include <CL/cl.h>
-
 #include <algorithm>
 #include <atomic>
 #include <catch2/catch.hpp>
@@ -11,7 +7,7 @@
 #include <future>
 #include <thread>
 
-#include "api/api_scene.h"
+#include "api/api_rig.h"
 #include "support/scoped.h"
 
 using namespace lightwell::test;
@@ -22,94 +18,6 @@ namespace {
 // Time for another thread to get into a call's wait; and for a call that must not wait, on a busy machine.
 constexpr auto kIntoWait = std::chrono::milliseconds(300);
 constexpr auto kPatience = std::chrono::seconds(20);
-
-// A context and a queue as a host would have them.
-class HostQueue {
-public:
-    explicit HostQueue(cl_command_queue_properties properties = 0) {
-        cl_platform_id platform = nullptr;
-        REQUIRE(clGetPlatformIDs(1, &platform, nullptr) == CL_SUCCESS);
-        REQUIRE(clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 1, &id_, nullptr) == CL_SUCCESS);
-        cl_int status = 0;
-        context_ = clCreateContext(nullptr, 1, &id_, nullptr, nullptr, &status);
-        REQUIRE(status == CL_SUCCESS);
-        queue_ = clCreateCommandQueue(context_, id_, properties, &status);
-        REQUIRE(status == CL_SUCCESS);
-    }
-    ~HostQueue() {
-        clReleaseCommandQueue(queue_);
-        clReleaseContext(context_);
-    }
-    HostQueue(const HostQueue&) = delete;
-    HostQueue& operator=(const HostQueue&) = delete;
-
-    LWDevice adopt() const {
-        LWDeviceDesc desc;
-        lwDefaultDevice(&desc);
-        desc.width = 16;
-        desc.clContext = context_;
-        desc.clQueue = queue_;
-        LWDevice device = nullptr;
-        REQUIRE(lwCreateDevice(&desc, &device) == LW_SUCCESS);
-        return device;
-    }
-    cl_context context() const { return context_; }
-    cl_command_queue queue() const { return queue_; }
-
-private:
-    cl_device_id id_ = nullptr;
-    cl_context context_ = nullptr;
-    cl_command_queue queue_ = nullptr;
-};
-
-// An event of the host's that has not happened yet; happens at the end of the scope at the latest.
-class Gate {
-public:
-    explicit Gate(const HostQueue& host) : event_(clCreateUserEvent(host.context(), nullptr)) {
-        sync_.structSize = sizeof sync_;
-        sync_.waitEventCount = 1;
-        sync_.waitEvents = &event_;
-    }
-    ~Gate() {
-        open();
-        clReleaseEvent(static_cast<cl_event>(event_));
-    }
-    Gate(const Gate&) = delete;
-    Gate& operator=(const Gate&) = delete;
-    const LWSync* sync() const { return &sync_; }
-    void open(cl_int status = CL_COMPLETE) {
-        if (!opened_) clSetUserEventStatus(static_cast<cl_event>(event_), status);
-        opened_ = true;
-    }
-    cl_uint references() const {
-        cl_uint count = 0;
-        clGetEventInfo(static_cast<cl_event>(event_), CL_EVENT_REFERENCE_COUNT, sizeof count, &count, nullptr);
-        return count;
-    }
-
-private:
-    void* event_;
-    LWSync sync_{};
-    bool opened_ = false;
-};
-
-struct AdoptedRig {
-    explicit AdoptedRig(const ApiScene& scene, cl_command_queue_properties properties = 0)
-        : host(properties), device(host.adopt()) {
-        const LWViewDesc desc = scene.viewDesc();
-        REQUIRE(lwCreateView(device, &desc, &view) == LW_SUCCESS);
-        REQUIRE(lwCreateRsm(device, nullptr, &technique) == LW_SUCCESS);
-    }
-    ~AdoptedRig() {
-        lwReleaseTechnique(technique);
-        lwReleaseView(view);
-        lwReleaseDevice(device);
-    }
-    HostQueue host;
-    LWDevice device;
-    LWView view = nullptr;
-    LWTechnique technique = nullptr;
-};
 
 bool supports(cl_command_queue_properties properties) {
     cl_platform_id platform = nullptr;
@@ -322,14 +230,8 @@ TEST_CASE("debug views are counted and described without a trace", "[api]") {
     AdoptedRig rig(scene);
     REQUIRE(lwUpdate(rig.technique, &scene.frame) == LW_SUCCESS);
     REQUIRE(lwRender(rig.technique, rig.view, &scene.gbuffer, &scene.output) == LW_SUCCESS);
-    const auto info = [&] {
-        LWDeviceInfo result{};
-        result.structSize = sizeof result;
-        CHECK(lwGetDeviceInfo(rig.device, &result) == LW_SUCCESS);
-        return result;
-    };
     REQUIRE(lwFinish(rig.device) == LW_SUCCESS);
-    const LWDeviceInfo before = info();
+    const LWDeviceInfo before = rig.info();
     // A frame that cannot run yet: whoever waits for the queue stays here.
     Gate gate(rig.host);
     scene.frame.sync = gate.sync();
@@ -348,13 +250,13 @@ TEST_CASE("debug views are counted and described without a trace", "[api]") {
     CHECK(asked.wait_for(kPatience) == std::future_status::ready);
     gate.open();
     CHECK(asked.get());
-    const LWDeviceInfo after = info();
+    const LWDeviceInfo after = rig.info();
     CHECK(after.allocatedBytes == before.allocatedBytes);
     CHECK(after.kernelsSpecialised == before.kernelsSpecialised);
     // Reading makes the view, and leaves nothing behind either.
     std::vector<float> pixels(1 << 16);
     REQUIRE(lwReadDebugView(rig.technique, nullptr, "vpls", pixels.data(), pixels.size()) == LW_SUCCESS);
-    CHECK(info().allocatedBytes == before.allocatedBytes);
+    CHECK(rig.info().allocatedBytes == before.allocatedBytes);
 }
 
 TEST_CASE("an out-of-order queue gives the bits of an in-order one", "[api][queues]") {
