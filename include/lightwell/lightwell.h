@@ -467,7 +467,7 @@ LW_API LWStatus lwReleaseTechnique(LWTechnique technique);
 LW_API LWStatus lwEstimateMemory(LWDevice device, const char* name, const void* desc,
                                  const LWViewDesc* view, uint64_t rsmTexels, uint64_t* bytes);
 /** The same for this frame's RSMs, whose sizes are those of their flux images, and its own VPLs. The frame is
- *  checked as lwUpdate checks it, images apart: their pixels are not read and may be absent. */
+ *  checked as lwUpdate checks it, images and cameras apart: pixels are not read and may be absent. */
 LW_API LWStatus lwEstimateFrameMemory(LWDevice device, const char* name, const void* desc,
                                       const LWViewDesc* view, const LWFrame* frame, uint64_t* bytes);
 

@@ -5,6 +5,7 @@
 
 #include "api/call.h"
 #include "api/structs.h"
+#include "inputs/rsm_input.h"
 #include "shared/input_limits.h"
 
 namespace lightwell {
@@ -12,7 +13,6 @@ namespace {
 
 // Counts beyond these are garbage that would be read past the end of some array.
 constexpr std::uint32_t kMaxLights = 4096;
-constexpr std::uint32_t kMaxRsms = 64;
 constexpr std::uint32_t kMaxVpls = 1u << 24;
 constexpr std::uint32_t kMaxBlockers = 1u << 20;
 constexpr std::uint32_t kMaxSourceViews = 64;
@@ -89,7 +89,8 @@ void FrameArgument::copyLights() {
         LWLight& light = lights_[i];
         const std::string name = "frame.lights[" + std::to_string(i) + "]";
         checkLight(light, name);
-        checkCount(light.rsmCount, light.rsms, kMaxRsms, name, "rsmCount", "rsms");
+        checkLightKind(light, name);
+        checkCount(light.rsmCount, light.rsms, light.rsmCount, name, "rsmCount", "rsms");
         rsms_.push_back(readStructs(light.rsms, light.rsmCount, name + ".rsms"));
         light.rsms = rsms_.back().data();
     }

@@ -120,8 +120,8 @@ LWStatus lwEstimateFrameMemory(LWDevice device, const char* name, const void* de
         for (std::uint32_t l = 0; l < own.get().lightCount; ++l)
             for (std::uint32_t r = 0; r < own.get().lights[l].rsmCount; ++r) {
                 const LWImage& flux = own.get().lights[l].rsms[r].flux;
-                if (flux.width > kMaxSide || flux.height > kMaxSide)
-                    fail(LW_ERROR_INVALID_ARGUMENT, "frame.lights[", l, "].rsms[", r, "].flux: expected at most ",
+                if (flux.width == 0 || flux.height == 0 || flux.width > kMaxSide || flux.height > kMaxSide)
+                    fail(LW_ERROR_INVALID_ARGUMENT, "frame.lights[", l, "].rsms[", r, "].flux: expected 1 .. ",
                          kMaxSide, " pixels a side, got ", flux.width, " x ", flux.height);
                 shape.addMap(flux.width, flux.height);
             }

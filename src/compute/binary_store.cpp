@@ -73,6 +73,8 @@ BinaryStore::Found BinaryStore::read(const StoreKey& key, Bytes& bytes) const {
     if (total < std::streamoff(sizeof header)) return Found::kDamaged;
     file.seekg(0);
     file.read(reinterpret_cast<char*>(&header), sizeof header);
+    // Before memory is taken for it: a file of any size, or a directory, may bear the name.
+    if (!file || header.size != std::uint64_t(total) - sizeof header) return Found::kDamaged;
     bytes.resize(std::size_t(total) - sizeof header);
     file.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(bytes.size()));
     const Header expected = headerOf(key, bytes);

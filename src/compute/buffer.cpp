@@ -41,20 +41,6 @@ Buffer Buffer::overHost(Device& device, void* host, std::size_t bytes, bool writ
     return buffer;
 }
 
-Buffer Buffer::withContents(Device& device, const void* data, std::size_t bytes, const char* what) {
-    if (bytes > device.maxAllocation())
-        fail(LW_ERROR_OUT_OF_MEMORY, what, ": ", bytes,
-             " bytes in one piece, the device allows at most ", device.maxAllocation());
-    cl_int status = CL_SUCCESS;
-    Buffer buffer;
-    buffer.memory_ = clCreateBuffer(device.context(), CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, bytes,
-                                    const_cast<void*>(data), &status);
-    checkCl(status, what);
-    buffer.device_ = &device;
-    buffer.bytes_ = bytes;
-    return buffer;
-}
-
 Buffer Buffer::retained(Device& device, cl_mem memory) {
     Buffer buffer;
     checkCl(clRetainMemObject(memory), "clRetainMemObject");

@@ -17,9 +17,6 @@ public:
     // Uninitialised device memory. Throws OUT_OF_MEMORY with `what` and the byte count; asks the device
     // for its largest allocation first, so that an impossible size fails here and not at first use.
     Buffer(Device& device, std::size_t bytes, const char* what);
-    // Device memory holding a copy of `data`, made before the call returns; not counted: it lives for the
-    // commands of one frame.
-    static Buffer withContents(Device& device, const void* data, std::size_t bytes, const char* what);
     // Host memory in place (CL_MEM_USE_HOST_PTR); not counted as allocated.
     static Buffer overHost(Device& device, void* host, std::size_t bytes, bool writable);
     // A reference to the host's own cl_mem; not counted.

@@ -23,6 +23,8 @@ void checkRange(const char* pass, const Buffer& buffer, std::size_t byteOffset, 
              " of a buffer of ", buffer.bytes());
 }
 
+void CL_CALLBACK dropCopy(cl_event, cl_int, void* copy) { delete static_cast<std::vector<unsigned char>*>(copy); }
+
 }  // namespace
 
 void Executor::setRaw(Kernel& kernel, cl_uint& index, std::size_t bytes, const void* value) {
@@ -84,6 +86,25 @@ void Executor::write(const char* pass, const Buffer& to, std::size_t byteOffset,
     checkCl(clEnqueueWriteBuffer(device_.queue(), to.get(), CL_FALSE, byteOffset, bytes, from, 0,
                                  nullptr, &event),
             "clEnqueueWriteBuffer");
+    copiedBytes_ += bytes;
+    done(pass, event);
+}
+
+void Executor::writeCopy(const char* pass, const Buffer& to, std::size_t byteOffset, std::size_t bytes,
+                         const void* from) {
+    startWaits();
+    checkRange(pass, to, byteOffset, bytes);
+    const auto* first = static_cast<const unsigned char*>(from);
+    auto copy = std::make_unique<std::vector<unsigned char>>(first, first + bytes);
+    cl_event event = nullptr;
+    checkCl(clEnqueueWriteBuffer(device_.queue(), to.get(), CL_FALSE, byteOffset, bytes, copy->data(), 0, nullptr,
+                                 &event),
+            "clEnqueueWriteBuffer");
+    // A driver without memory even for that: then wait, as the copy must not go before the command has ended.
+    if (clSetEventCallback(event, CL_COMPLETE, dropCopy, copy.get()) == CL_SUCCESS)
+        copy.release();
+    else
+        clWaitForEvents(1, &event);
     copiedBytes_ += bytes;
     done(pass, event);
 }

@@ -73,6 +73,8 @@ public:
     // Non-blocking transfers, timed as passes too. Host memory must stay valid until they are done.
     void write(const char* pass, const Buffer& to, std::size_t byteOffset, std::size_t bytes,
                const void* from);
+    // The same of memory that is read before the call returns: a copy of it waits for the command.
+    void writeCopy(const char* pass, const Buffer& to, std::size_t byteOffset, std::size_t bytes, const void* from);
     void read(const char* pass, cl_mem from, std::size_t byteOffset, std::size_t bytes, void* to);
     void fill(const char* pass, const Buffer& buffer, std::uint32_t pattern, std::size_t byteOffset,
               std::size_t bytes);

@@ -6,8 +6,8 @@
 #include "compute/buffer.h"
 #include "compute/executor.h"
 #include "inputs/image_check.h"
+#include "inputs/view.h"
 #include "shared/unproject_types.h"
-#include "techniques/technique.h"
 
 namespace lightwell {
 

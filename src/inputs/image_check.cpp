@@ -180,10 +180,6 @@ const ImageRole kOutputColourRole{3, formatSet({LW_COLOUR_FLOATS}), LW_ROLE_VALU
 const ImageRole kOutputScalarRole{1, formatSet({LW_FORMAT_FLOAT1}), LW_ROLE_VALUE, true};
 #undef LW_COLOUR_FLOATS
 
-const char* formatName(LWFormat format) {
-    return unsigned(format) < kFormatCount ? kFormats[format].name : "unknown";
-}
-
 std::uint32_t largestPixelBytes(const ImageRole& role) {
     std::uint32_t most = 0;
     for (unsigned format = 0; format < kFormatCount; ++format)

@@ -33,8 +33,6 @@ struct ImageRole {
 extern const ImageRole kPositionRole, kDepthRole, kNormalRole, kAlbedoRole, kRadianceRole, kScalarRole,
     kMotionRole, kMaskRole, kOutputColourRole, kOutputScalarRole;
 
-const char* formatName(LWFormat format);
-
 // The most bytes of a pixel, without gaps, that an image of this role can have.
 std::uint32_t largestPixelBytes(const ImageRole& role);
 

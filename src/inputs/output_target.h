@@ -5,8 +5,9 @@
 
 #include "compute/buffer.h"
 #include "compute/executor.h"
+#include "compute/report.h"
+#include "inputs/view.h"
 #include "lightwell/lightwell.h"
-#include "techniques/technique.h"
 
 namespace lightwell {
 

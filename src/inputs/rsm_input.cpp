@@ -89,7 +89,9 @@ void checkTexels(std::uint64_t padded, const char* name) {
              " texels in all (rows count as multiples of 16), got more");
 }
 
-void checkLight(const LWLight& light, const std::string& name) {
+}  // namespace
+
+void checkLightKind(const LWLight& light, const std::string& name) {
     const auto kind = rawEnum(light.kind);
     if (kind > LW_LIGHT_SPOT)
         fail(LW_ERROR_INVALID_ARGUMENT, name, ".kind: expected an LWLightKind (0 .. 2), got ", kind);
@@ -100,6 +102,8 @@ void checkLight(const LWLight& light, const std::string& name) {
         fail(LW_ERROR_INVALID_ARGUMENT, name, ".rsmCount: expected at most ", most,
              " for this kind of light, got ", light.rsmCount);
 }
+
+namespace {
 
 // The cascades of one directional light: parallel, finest first; each learns where the finer ones lie.
 void nestCascades(const LWLight& light, std::vector<CheckedRsm>& rsms, std::size_t first,
@@ -137,7 +141,7 @@ std::vector<CheckedRsm> checkLights(Device& device, const LWFrame& frame, std::v
     for (std::uint32_t l = 0; l < frame.lightCount; ++l) {
         const LWLight& light = frame.lights[l];
         const std::string name = "frame.lights[" + std::to_string(l) + "]";
-        checkLight(light, name);
+        checkLightKind(light, name);
         const std::size_t first = rsms.size();
         const bool perspective = light.kind != LW_LIGHT_DIRECTIONAL;
         for (std::uint32_t r = 0; r < light.rsmCount; ++r) {

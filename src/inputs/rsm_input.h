@@ -4,12 +4,14 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "compute/buffer.h"
 #include "compute/executor.h"
+#include "compute/report.h"
+#include "inputs/frame_shape.h"
 #include "lightwell/lightwell.h"
-#include "techniques/technique.h"
 
 namespace lightwell {
 
@@ -20,6 +22,9 @@ struct RsmSpan {
     std::uint32_t firstRow;    // in the table of rows
     std::uint32_t width, height;
 };
+
+// Throws INVALID_ARGUMENT naming `name`.kind or `name`.rsmCount: more maps than a light of this kind can have.
+void checkLightKind(const LWLight& light, const std::string& name);
 
 class RsmInput {
 public:

@@ -53,7 +53,7 @@ lw_vpl_tiles VplTiles::layout(std::uint32_t width, std::uint32_t height, lw_subs
     tiles.tileWidth = cl_int(tileWidth);
     tiles.columns = cl_int((width + tileWidth - 1) / tileWidth);
     tiles.rows = cl_int((height + LW_TILE_ROWS - 1) / LW_TILE_ROWS);
-    if (std::int64_t(order.subsets) * order.capacity <= kMostSlots) tiles.words = (order.capacity + 31) / 32;
+    if (skips(order)) tiles.words = (order.capacity + 31) / 32;
     return tiles;
 }
 

@@ -17,6 +17,8 @@ public:
     // Lists longer than this are left whole: their bits would take more memory than their time is worth.
     static constexpr std::int64_t kMostSlots = 16384;
 
+    static bool skips(lw_subset_order order) { return std::int64_t(order.subsets) * order.capacity <= kMostSlots; }
+
     // Makes room for images up to this size; allocates only where the list has grown.
     void reserve(Device& device, std::uint32_t width, std::uint32_t height, lw_subset_order order,
                  std::uint32_t interleave);

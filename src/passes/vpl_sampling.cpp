@@ -12,10 +12,10 @@ namespace {
 constexpr Range kGroup{64, 1};
 constexpr const char* kProgram = "vpl_sampling/vpl_sampling";
 
-// A list of work-items in rows of at most 2^18 (a multiple of every group): as many groups as a grid may have
-// without a driver telling it from a small one, whatever the list's length. See lw_list_index.
+// A list of work-items in rows of at most 2^17, a multiple of every group and of no more groups (of 4 at least) than
+// a grid may have without a driver telling it from a small one, whatever the list's length. See lw_list_index.
 Range gridOver(std::size_t count) {
-    constexpr std::size_t kRow = std::size_t(1) << 18;
+    constexpr std::size_t kRow = std::size_t(1) << 17;
     return {std::min(count, kRow), (count + kRow - 1) / kRow};
 }
 
@@ -64,6 +64,8 @@ void VplSampling::reserve(const RsmInput& rsms, std::uint32_t authoredCount) {
                                 : options_.count == 0 ? rsms.texels.width
                                                       : options_.count;
     const lw_subset_order order = subsetOrder(drawn + authoredCount, options_.subsets);
+    // A kernel's argument must be some memory, also where none is read.
+    authored_.reserve(device_, std::max(authoredCount, 1u) * sizeof(lw_vpl), "frame.vpls");
     vpls_.reserve(device_, std::size_t(order.subsets) * std::size_t(order.capacity) * sizeof(lw_vpl), "VPLs");
     if (drawn && options_.count) {
         texelSums_.reserve(device_, std::size_t(rsms.texels.width) * 4, "cumulative flux of texels");
@@ -77,9 +79,8 @@ void VplSampling::record(Executor& executor, const RsmInput& rsms, const LWVpl* 
                          std::uint32_t authoredCount) {
     reserve(rsms, authoredCount);
     static_assert(sizeof(LWVpl) == sizeof(lw_vpl), "LWVpl is uploaded as it is");
-    const lw_vpl none{};
-    authored_ = Buffer::withContents(device_, authoredCount ? static_cast<const void*>(authored) : &none,
-                                     std::max(authoredCount, 1u) * sizeof(lw_vpl), "frame.vpls");
+    if (authoredCount)
+        executor.writeCopy("vpl_sampling.upload", authored_, 0, authoredCount * sizeof(lw_vpl), authored);
     draw(executor, rsms, vplCount() - authoredCount);
 }
 

@@ -1,6 +1,7 @@
 // Frame part, per-view state, report and registration; the table of parameters is rsm_parameters.cpp's.
 #include "techniques/rsm.h"
 
+#include <algorithm>
 #include <optional>
 
 #include "compute/device.h"
@@ -27,6 +28,9 @@ VplSamplingOptions samplingOptions(const LWRsmDesc& desc) {
     return options;
 }
 
+// A list of any length takes the same kernels in the same groups.
+constexpr std::uint32_t kPrewarmVpls = 1024;
+
 bool halfResolution(const LWRsmDesc& desc) { return desc.resolution == LW_RESOLUTION_HALF; }
 std::uint32_t gatheredPixels(const LWRsmDesc& desc, std::uint32_t along) {
     return halfResolution(desc) ? JointBilateral::halved(along) : along;
@@ -49,6 +53,10 @@ std::vector<LWChoice> unusedInputs(const LWFrame& frame) {
         }
     return unused;
 }
+
+constexpr const char* kSkips = "VPLs that cannot light a tile of pixels are skipped there";
+constexpr const char* kSkipsNone = "none: a list of more than 16384 slots, of which every pixel takes its whole share";
+static_assert(VplTiles::kMostSlots == 16384, "kSkipsNone names it");
 
 class RsmTechnique final : public Technique {
 public:
@@ -83,7 +91,9 @@ public:
 
     void prewarm(Executor& executor, const std::shared_ptr<View>&) override {
         // A twin, so that this technique's frame stays as it is; kernels belong to the device.
-        RsmTechnique twin(device_, desc_);
+        LWRsmDesc desc = desc_;
+        desc.vpls = std::min(desc.vpls, kPrewarmVpls);
+        RsmTechnique twin(device_, desc);
         exerciseTechnique(executor, twin);
     }
 
@@ -199,6 +209,7 @@ Report RsmTechnique::report() {
         state.irradiance.report(report);
         state.validity.report(report);
         if (!state.lastGathered) return;
+        report.choose("tiles", VplTiles::skips(sampling_.order()) ? kSkips : kSkipsNone);
         report.read(device_, "rejected_pixels", state.counts, 0);
         report.read(device_, "upsample_fallbacks", state.counts, sizeof(cl_int));
         report.read(device_, "saturated_pixels", state.counts, 2 * sizeof(cl_int));

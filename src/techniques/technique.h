@@ -10,19 +10,13 @@
 
 #include "compute/executor.h"
 #include "compute/report.h"
+#include "inputs/frame_shape.h"
+#include "inputs/view.h"
 #include "lightwell/lightwell.h"
 
 namespace lightwell {
 
 class Device;
-
-// One viewport. Techniques keep their per-view buffers by view (PerView below).
-class View {
-public:
-    View(std::uint32_t maxW, std::uint32_t maxH) : maxWidth(maxW), maxHeight(maxH), width(maxW), height(maxH) {}
-    const std::uint32_t maxWidth, maxHeight;
-    std::uint32_t width, height;
-};
 
 // An intermediate buffer as planes. One that has to be made of something else is described by planes without
 // memory, and `fill` records the kernels that make it in the memory it gets for one read.
@@ -49,22 +43,6 @@ public:
     virtual Report report() = 0;
     virtual std::vector<DebugView> debugViews(const View* view) = 0;  // a query: allocates and enqueues nothing
     virtual std::uint64_t bytes() const = 0;
-};
-
-// What a technique's memory depends on in a frame.
-struct FrameShape {
-    std::uint64_t texels = 0;        // of all RSMs
-    std::uint64_t paddedTexels = 0;  // the same with rows rounded up to 16
-    std::uint64_t rows = 0;          // of all RSMs
-    std::uint64_t largestMap = 0;    // texels of the largest RSM
-    std::uint32_t vplCount = 0;      // the host's own VPLs
-    bool uploads = false;            // host memory goes through copies on the device (no unified memory)
-    void addMap(std::uint64_t width, std::uint64_t height) {
-        texels += width * height;
-        paddedTexels += (width + 15) / 16 * 16 * height;
-        rows += height;
-        if (width * height > largestMap) largestMap = width * height;
-    }
 };
 
 struct TechniqueEntry {

@@ -227,6 +227,63 @@ TEST_CASE("inputs that a technique does not read are named in the statistics", "
     CHECK(choices() == "frame.sourceViews frame.geometry frame.blockers frame.environment frame.lights ");
 }
 
+TEST_CASE("the statistics say from which list on tiles skip no VPLs", "[api]") {
+    ApiScene scene(16, 4);
+    LWRsmDesc desc;
+    lwDefaultRsm(&desc);
+    desc.interleave = 1;
+    const auto tiles = [&](std::uint32_t vpls) {
+        desc.vpls = vpls;
+        ApiRig rig(makeDevice(16), scene, &desc);
+        rig.frame(scene);
+        const LWStats stats = rig.stats();
+        std::string passes, choice;
+        for (std::uint32_t i = 0; i < stats.passCount; ++i) passes += stats.passes[i].name;
+        for (std::uint32_t i = 0; i < stats.choiceCount; ++i)
+            if (std::string(stats.choices[i].name) == "tiles") choice += stats.choices[i].reason;
+        CHECK((passes.find("interleaved_gather.cull") != std::string::npos) == (choice.find("skipped") != std::string::npos));
+        return choice;
+    };
+    CHECK_THAT(tiles(16384), Contains("skipped"));
+    CHECK_THAT(tiles(16385), Contains("none") && Contains("16384"));
+}
+
+TEST_CASE("the host's own VPLs may change as soon as the call is back", "[api]") {
+    ApiScene scene;
+    scene.frame.lightCount = 0;
+    std::vector<LWVpl> vpls(3);
+    const auto fill = [&](float flux) {
+        for (LWVpl& vpl : vpls) {
+            vpl = LWVpl{};
+            vpl.normal[1] = 1;
+            vpl.flux[0] = flux;
+        }
+    };
+    scene.frame.vpls = vpls.data();
+    scene.frame.vplCount = std::uint32_t(vpls.size());
+    AdoptedRig rig(scene);
+    const auto red = [&](ApiScene& from) { return from.irradiance.value(7, 5, 0); };
+    fill(1);
+    rig.frame(scene);
+    const double one = red(scene);
+    REQUIRE(one > 0.0);
+    const std::uint64_t held = rig.info().allocatedBytes;
+    // Three frames behind a closed gate, each with its own list in the same array.
+    Gate gate(rig.host);
+    ApiScene images[3];
+    scene.frame.sync = gate.sync();
+    for (int i = 0; i < 3; ++i) {
+        fill(float(1 << i));
+        REQUIRE(lwUpdate(rig.technique, &scene.frame) == LW_SUCCESS);
+        REQUIRE(lwRender(rig.technique, rig.view, &images[i].gbuffer, &images[i].output) == LW_SUCCESS);
+    }
+    vpls.assign(3, LWVpl{});
+    gate.open();
+    CHECK(rig.stats().hostCopyBytes == 3 * sizeof(LWVpl));
+    for (int i = 0; i < 3; ++i) CHECK(red(images[i]) == one * (1 << i));
+    CHECK(rig.info().allocatedBytes == held);
+}
+
 TEST_CASE("counts are those of the views rendered since the last update", "[api]") {
     ApiScene scene;
     Rig rig(scene);
@@ -336,6 +393,23 @@ TEST_CASE("prewarmed techniques compile nothing more for millions of VPLs", "[ap
     lwReleaseTechnique(technique);
     lwReleaseView(view);
     lwReleaseDevice(device);
+}
+
+TEST_CASE("prewarmed techniques compile nothing more for hundreds of thousands of RSM rows", "[api]") {
+    // More than 65,535 groups of 4 rows.
+    constexpr std::uint32_t kRows = 16384, kMaps = 17;
+    ApiScene scene(1, 1);
+    HostImage flux(LW_FORMAT_FLOAT3, 1, kRows);
+    for (std::uint32_t y = 0; y < kRows; ++y) flux.set(0, y, y % 7 == 0, 0.5, 0);
+    scene.rsm.position = scene.rsm.normal = scene.rsm.flux = flux.image();
+    const std::vector<LWLight> lights(kMaps, scene.light);
+    scene.frame.lights = lights.data();
+    scene.frame.lightCount = kMaps;
+    ApiRig rig(makeDevice(16), scene);
+    REQUIRE(lwPrewarm(rig.technique, rig.view) == LW_SUCCESS);
+    const std::uint64_t before = rig.info().kernelsSpecialised;
+    rig.frame(scene);
+    CHECK(rig.info().kernelsSpecialised == before);
 }
 
 TEST_CASE("debug views are listed, described and read", "[api]") {

@@ -244,6 +244,20 @@ TEST_CASE("the cache directory comes from the environment", "[cache]") {
     CHECK(defaultCacheDirectory() == "");
 }
 
+TEST_CASE("whatever bears an entry's name, reading it only says that it is damaged", "[cache]") {
+    const ScopedDirectory directory;
+    const BinaryStore store(directory.string());
+    const StoreKey key = hashKey({"odd"});
+    BinaryStore::Bytes bytes;
+    SECTION("a directory") { fs::create_directories(store.path(key)); }
+    SECTION("a file larger than memory") {
+        REQUIRE_FALSE(store.write(key, {1, 2, 3}).has_value());
+        fs::resize_file(store.path(key), std::uintmax_t(1) << 42);  // a hole
+    }
+    SECTION("nothing") { writeAll(store.path(key), ""); }
+    CHECK(store.read(key, bytes) == BinaryStore::Found::kDamaged);
+}
+
 TEST_CASE("keys differ where any part does", "[cache]") {
     const StoreKey key = hashKey({"ab", "c"});
     for (const auto& parts :

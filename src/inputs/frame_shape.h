@@ -1,0 +1,24 @@
+// The sizes of a frame's inputs, for estimates of memory.
+#pragma once
+
+#include <cstdint>
+
+namespace lightwell {
+
+// What a technique's memory depends on in a frame.
+struct FrameShape {
+    std::uint64_t texels = 0;        // of all RSMs
+    std::uint64_t paddedTexels = 0;  // the same with rows rounded up to 16
+    std::uint64_t rows = 0;          // of all RSMs
+    std::uint64_t largestMap = 0;    // texels of the largest RSM
+    std::uint32_t vplCount = 0;      // the host's own VPLs
+    bool uploads = false;            // host memory goes through copies on the device (no unified memory)
+    void addMap(std::uint64_t width, std::uint64_t height) {
+        texels += width * height;
+        paddedTexels += (width + 15) / 16 * 16 * height;
+        rows += height;
+        if (width * height > largestMap) largestMap = width * height;
+    }
+};
+
+}  // namespace lightwell
