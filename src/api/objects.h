@@ -56,7 +56,8 @@ struct TechniqueObject : Object {
     std::shared_ptr<DeviceObject> device;
     std::unique_ptr<Technique> technique;
     std::unique_ptr<FrameRecord> record;  // of the last lwUpdate; null before the first
-    bool updated = false;
+    bool begun = false;    // an lwUpdate was recorded, or failed on the way
+    bool updated = false;  // ... and the last one succeeded
     std::uint64_t failures = 0;  // that the device had seen at the last lwUpdate
     std::uint64_t frameIndex = 0;
 

@@ -147,6 +147,7 @@ LWStatus lwUpdate(LWTechnique technique, const LWFrame* frame) {
         const SyncArgument sync(own.get().sync, device.context(), "frame.sync");
         device.raiseFailure();
         auto record = std::make_unique<FrameRecord>(device);
+        object->begun = true;
         try {
             record->executor.waitFor(sync.get());
             object->technique->update(record->executor, own.get());

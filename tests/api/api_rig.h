@@ -43,9 +43,20 @@ struct ApiRig {
         CHECK(lwGetDeviceInfo(device, &result) == LW_SUCCESS);
         return result;
     }
+    std::uint32_t launches() {
+        const LWStats all = stats();
+        std::uint32_t sum = 0;
+        for (std::uint32_t i = 0; i < all.passCount; ++i) sum += all.passes[i].launches;
+        return sum;
+    }
     LWDevice device;
     LWView view = nullptr;
     LWTechnique technique = nullptr;
+};
+
+// On a device of the library's own.
+struct Rig : ApiRig {
+    explicit Rig(const ApiScene& scene, std::uint32_t width = 16) : ApiRig(makeDevice(width), scene) {}
 };
 
 // A context and a queue as a host would have them.

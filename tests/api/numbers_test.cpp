@@ -26,8 +26,8 @@ LWRsmDesc descOf(std::uint32_t interleave, LWResolution resolution) {
     return desc;
 }
 
-struct Rig : ApiRig {
-    Rig(const ApiScene& scene, std::uint32_t width, const LWRsmDesc& desc) : ApiRig(makeDevice(width), scene, &desc) {}
+struct NumbersRig : ApiRig {
+    NumbersRig(const ApiScene& scene, std::uint32_t width, const LWRsmDesc& desc) : ApiRig(makeDevice(width), scene, &desc) {}
 
     // What is wrong with the frame's picture, or nothing.
     std::string fault(ApiScene& scene) {
@@ -84,7 +84,7 @@ TEST_CASE("any float in any struct: refused, or a picture of finite numbers", "[
     const auto width = GENERATE(1u, 16u);
     const bool perspective = GENERATE(false, true);
     FullScene scene(perspective);
-    Rig rig(scene, width, descOf(4, LW_RESOLUTION_FULL));
+    NumbersRig rig(scene, width, descOf(4, LW_RESOLUTION_FULL));
     REQUIRE(rig.fault(scene) == "");
     const auto sweep = [&](const char* name, float* values, int count) {
         for (int i = 0; i < count; ++i) {
@@ -119,7 +119,7 @@ TEST_CASE("any float in pixels: a picture of finite numbers", "[api][numbers]") 
     const auto resolution = GENERATE(LW_RESOLUTION_FULL, LW_RESOLUTION_HALF);
     std::mt19937 random(7);
     const FullScene clean(false);
-    Rig rig(clean, width, descOf(interleave, resolution));
+    NumbersRig rig(clean, width, descOf(interleave, resolution));
     const auto spoil = [&](HostImage& image, unsigned every) {
         const auto value = [&] { return double(kValues[random() % (sizeof kValues / sizeof kValues[0])]); };
         for (std::uint32_t y = 0; y < image.height(); ++y)

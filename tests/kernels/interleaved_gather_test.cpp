@@ -7,8 +7,7 @@
 
 #include "reference/surfaces.h"
 #include "shared/input_limits.h"
-#include "support/kernel_rig.h"
-#include "support/vpl_slots.h"
+#include "support/gather_rig.h"
 
 using namespace lightwell;
 using namespace lightwell::test;
@@ -23,27 +22,9 @@ constexpr double kPi = 3.14159265358979323846;
 // where it grazes: absolute 1e-5 of the mean covers it.
 constexpr double kTwinTolerance = 2e-5;
 
-struct Gathered {
-    Image irradiance;
-    int rejected, saturated;
-};
-
 Gathered gatherOn(KernelRig& rig, const Image& position, const Image& normal, const std::vector<lw_vpl>& vpls,
                   std::uint32_t n) {
-    const std::uint32_t w = position.width, h = position.height;
-    const Guarded p = rig.uploadPlanes(position.planes, w, h, 3, kNaN), nr = rig.uploadPlanes(normal.planes, w, h, 3, 1.0f);
-    const Guarded list = rig.upload(vpls), counts = rig.upload(std::vector<cl_int>{0, 0, 0});
-    const Guarded out = rig.makePlanes(w, h, 3);
-    const lw_subset_order order = orderOf(vpls.size(), n);
-    const Guarded masks = rig.upload(allSlots(VplTiles::layout(w, h, order, n), order));
-    InterleavedGather pass(rig.device(), n);
-    pass.recordGather(rig.executor(), rig.planes(p, w, h, 3), rig.planes(nr, w, h, 3), list, order, masks,
-                      rig.planes(out, w, h, 3), counts);
-    rig.device().finish();
-    const std::vector<cl_int> counted = rig.download<cl_int>(counts);
-    Gathered result{Image(w, h), counted[0], counted[2]};
-    result.irradiance.planes = rig.downloadPlanes(rig.planes(out, w, h, 3));
-    return result;
+    return gatherImage(rig, position, normal, vpls, n, Bits::all);
 }
 
 Image filterOn(KernelRig& rig, const Image& position, const Image& normal, const Image& light, std::uint32_t n) {

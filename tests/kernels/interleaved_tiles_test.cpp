@@ -6,8 +6,7 @@
 
 #include "passes/interleaved_gather.h"
 #include "reference/surfaces.h"
-#include "support/kernel_rig.h"
-#include "support/vpl_slots.h"
+#include "support/gather_rig.h"
 
 using namespace lightwell;
 using namespace lightwell::test;
@@ -18,29 +17,9 @@ namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
-// With the tiles' own bits, or with all of them set: nothing is skipped then.
-enum class Bits { found, all };
-
 Image gatherOn(KernelRig& rig, const Image& position, const Image& normal, const std::vector<lw_vpl>& vpls,
                std::uint32_t n, Bits bits = Bits::found) {
-    const std::uint32_t w = position.width, h = position.height;
-    const Guarded p = rig.uploadPlanes(position.planes, w, h, 3, kNaN), nr = rig.uploadPlanes(normal.planes, w, h, 3, 1.0f);
-    const Guarded list = rig.upload(vpls), counts = rig.upload(std::vector<cl_int>{0, 0, 0});
-    const Guarded out = rig.makePlanes(w, h, 3);
-    const lw_subset_order order = orderOf(vpls.size(), n);
-    const Planes surfaces[2] = {rig.planes(p, w, h, 3), rig.planes(nr, w, h, 3)};
-    VplTiles tiles;
-    tiles.reserve(rig.device(), w, h, order, n);
-    InterleavedGather pass(rig.device(), n);
-    pass.recordCull(rig.executor(), surfaces[0], surfaces[1], list, order, tiles);
-    const lw_vpl_tiles layout = VplTiles::layout(w, h, order, n);
-    const Guarded all = rig.upload(allSlots(layout, order));
-    pass.recordGather(rig.executor(), surfaces[0], surfaces[1], list, order, bits == Bits::all ? all : tiles.masks(),
-                      rig.planes(out, w, h, 3), counts);
-    rig.device().finish();
-    Image result(w, h);
-    result.planes = rig.downloadPlanes(rig.planes(out, w, h, 3));
-    return result;
+    return gatherImage(rig, position, normal, vpls, n, bits).irradiance;
 }
 
 }  // namespace
