@@ -177,7 +177,9 @@ TEST_CASE("the host's own VPLs may change as soon as the call is back", "[api]")
     }
     vpls.assign(3, LWVpl{});
     gate.open();
-    CHECK(rig.stats().hostCopyBytes == 3 * sizeof(LWVpl));
+    const std::uint64_t copied = rig.stats().hostCopyBytes;
+    if (rig.info().hostUnifiedMemory) CHECK(copied == 3 * sizeof(LWVpl));  // else the images, too
+    CHECK(copied >= 3 * sizeof(LWVpl));
     for (int i = 0; i < 3; ++i) CHECK(red(images[i]) == one * (1 << i));
     CHECK(rig.info().allocatedBytes == held);
 }
