@@ -10,6 +10,7 @@
 #include "rival_filter.h"
 #include "rival_paths.h"
 #include "rival_scene.h"
+#include "rival_shrink.h"
 #include "rival_tile.h"
 #include "sampler.h"
 
@@ -35,13 +36,20 @@ std::vector<Surface> receiversOf(const GBuffer& g) {
     return receivers;
 }
 
-// Levels of the filter where the options leave them open: what noise is left decides how far neighbours
-// help more than they harm (docs/techniques/rival.md has the measurements). At a quarter of the
-// resolution the next pixel of the traced image is four pixels away.
+// Levels of the filter where the options leave them open. At a quarter of the resolution the next pixel
+// of the traced image is four pixels away.
 std::uint32_t filterLevels(const RivalOptions& options) {
     if (options.levels != 0) return options.levels;
-    const std::uint32_t levels = options.spp < 2 ? 3 : options.spp < 16 ? 2 : 1;
-    return options.resolution == RivalResolution::Quarter ? std::max(levels, 2u) - 1 : levels;
+    return options.resolution == RivalResolution::Quarter ? 2 : 3;
+}
+
+std::vector<std::vector<Tap>> filterWindows(const RivalOptions& options) {
+    std::vector<std::vector<Tap>> windows;
+    if (options.filter == 0) return windows;
+    if (options.pattern > 1) windows.push_back(patternWindow(int(options.pattern)));
+    for (std::uint32_t level = 0; level < filterLevels(options); ++level)
+        windows.push_back(splineWindow(1 << level));
+    return windows;
 }
 
 void require(bool isTrue, const char* name, const char* expectation, std::uint64_t came) {
@@ -62,7 +70,7 @@ void requireSize(const char* name, int width, int height, const PlanarBuffer& bu
 
 struct Rival::Impl {
     RivalOptions options;
-    int width, height;  // of the picture
+    int pictureWidth, pictureHeight;
     TracedGrid grid;
     int tileSide;
     WorkerPool pool;
@@ -79,18 +87,23 @@ struct Rival::Impl {
     };
     std::vector<Worker> workers;
     TracedSurfaces surfaces;
-    PaddedPlanes images[2];
+    std::vector<std::vector<Tap>> windows;  // of the filter
+    bool isGuided;                          // by the noise: two paths or more
+    PaddedPlanes images[2];                 // where it is not
+    ShrinkFilter shrink;                    // where it is
 
     Impl(const RivalOptions& o, int fullWidth, int fullHeight);
-    void tracePixels(Worker& worker, std::uint32_t spp);  // sums of worker.pixels
-    void traceTile(const GBuffer& g, int tile, Worker& worker, PaddedPlanes& to);
+    // Sums of worker.pixels; those of the second half of the paths lie `halfShift` behind the first's.
+    void tracePixels(Worker& worker, std::int32_t halfShift);
+    void traceTile(const GBuffer& g, int tile, Worker& worker);
+    const PaddedPlanes& filter();
     void writeOutput(const GBuffer& g, const PaddedPlanes& from, PlanarBuffer& irradiance,
                      PlanarBuffer& validity);
     void traceLeftOver(const GBuffer& g, const std::vector<PixelPlace>& pixels, PlanarBuffer& to);
 };
 
 Rival::Impl::Impl(const RivalOptions& o, int fullWidth, int fullHeight)
-    : options(o), width(fullWidth), height(fullHeight) {
+    : options(o), pictureWidth(fullWidth), pictureHeight(fullHeight) {
     const int factor = 1 << int(o.resolution);
     require(o.bounces == 1 || o.bounces == 2, "bounces", "1 or 2", o.bounces);
     require(o.levels <= 5, "levels", "0 to 5", o.levels);  // wider windows pass PaddedPlanes::kPad
@@ -101,10 +114,15 @@ Rival::Impl::Impl(const RivalOptions& o, int fullWidth, int fullHeight)
     tileSide = o.pattern == 8 ? 32 : 16;
     for (int i = 0; i < pool.threads(); ++i) {
         workers.emplace_back(o);
-        for (auto& plane : workers.back().sums) plane.resize(std::size_t(tileSide * tileSide));
+        for (auto& plane : workers.back().sums) plane.resize(std::size_t(2 * tileSide * tileSide));
     }
     surfaces = TracedSurfaces(grid.width, grid.height);
-    for (PaddedPlanes& image : images) image = PaddedPlanes(grid.width, grid.height, 3);
+    windows = filterWindows(o);
+    isGuided = !windows.empty() && o.spp > 1;
+    if (isGuided)
+        shrink = ShrinkFilter(grid.width, grid.height);
+    else
+        for (PaddedPlanes& image : images) image = PaddedPlanes(grid.width, grid.height, 3);
 
     for (int y = 0; y < tileSide; ++y)
         for (int x = 0; x < tileSide; ++x) order.push_back({x, y});
@@ -119,32 +137,59 @@ Rival::Impl::Impl(const RivalOptions& o, int fullWidth, int fullHeight)
               [&](const PixelPlace& a, const PixelPlace& b) { return key(a) < key(b); });
 }
 
-void Rival::Impl::tracePixels(Worker& worker, std::uint32_t spp) {
+void Rival::Impl::tracePixels(Worker& worker, std::int32_t halfShift) {
     PathBatch& batch = *worker.batch;
     const TilePixels& pixels = *worker.pixels;
     for (auto& plane : worker.sums) std::fill(plane.begin(), plane.end(), 0.0f);
     if (pixels.count == 0) return;
     float* const sums[3] = {worker.sums[0].data(), worker.sums[1].data(), worker.sums[2].data()};
-    for (std::uint32_t sample = 0; sample < spp;) {
-        for (batch.count = 0; sample < spp && batch.count + pixels.count <= PathBatch::kSize; ++sample)
-            pixels.addTo(batch, spp, sample);
+    for (std::uint32_t sample = 0; sample < options.spp;) {
+        for (batch.count = 0; sample < options.spp && batch.count + pixels.count <= PathBatch::kSize;
+             ++sample)
+            pixels.addTo(batch, options.spp, sample, sample < options.spp / 2 ? 0 : halfShift);
         worker.paths.trace(*scene, litPoints.get(), mixBits(options.seed), batch, sums);
     }
 }
 
-void Rival::Impl::traceTile(const GBuffer& g, int tile, Worker& worker, PaddedPlanes& to) {
+void Rival::Impl::traceTile(const GBuffer& g, int tile, Worker& worker) {
     const int across = (grid.width + tileSide - 1) / tileSide;
     const int left = tile % across * tileSide, top = tile / across * tileSide;
     worker.pixels->take(scene->rays(), g, grid, left, top, tileSide, int(options.pattern), order,
                         surfaces);
-    tracePixels(worker, options.spp);
+    const int halfShift = isGuided ? tileSide * tileSide : 0;
+    tracePixels(worker, halfShift);
+    const int first = int(options.spp / 2), second = int(options.spp) - first;
     const float perSample = 1.0f / float(options.spp);
-    for (int c = 0; c < 3; ++c)
-        for (int y = 0; y < tileSide && top + y < grid.height; ++y) {
+    PaddedPlanes& to = isGuided ? shrink.input() : images[0];
+    for (int y = 0; y < tileSide && top + y < grid.height; ++y) {
+        const int width = std::min(tileSide, grid.width - left);
+        float* noise = isGuided ? to.row(ShrinkFilter::kNoisePlane, top + y) + left : nullptr;
+        if (isGuided) std::fill_n(noise, width, 0.0f);
+        for (int c = 0; c < 3; ++c) {
             const float* from = worker.sums[c].data() + y * tileSide;
             float* row = to.row(c, top + y) + left;
-            for (int x = 0; x < tileSide && left + x < grid.width; ++x) row[x] = from[x] * perSample;
+            if (!isGuided) {
+                for (int x = 0; x < width; ++x) row[x] = from[x] * perSample;
+                continue;
+            }
+            const float scale = ShrinkFilter::noiseScale(first, second) / 3.0f;
+            const float perFirst = scale / float(first), perSecond = scale / float(second);
+            for (int x = 0; x < width; ++x) {
+                row[x] = (from[x] + from[x + halfShift]) * perSample;
+                noise[x] += from[x] * perFirst - from[x + halfShift] * perSecond;
+            }
         }
+    }
+}
+
+const PaddedPlanes& Rival::Impl::filter() {
+    if (isGuided) return shrink.filter(pool, surfaces, windows, int(options.spp));
+    PaddedPlanes *from = &images[0], *to = &images[1];
+    for (const std::vector<Tap>& window : windows) {
+        filterImage(pool, surfaces, window, *from, *to);
+        std::swap(from, to);
+    }
+    return *from;
 }
 
 void Rival::Impl::traceLeftOver(const GBuffer& g, const std::vector<PixelPlace>& pixels,
@@ -155,7 +200,7 @@ void Rival::Impl::traceLeftOver(const GBuffer& g, const std::vector<PixelPlace>&
         Worker& worker = workers[std::size_t(thread)];
         const std::size_t first = job * kPerJob, count = std::min(kPerJob, pixels.size() - first);
         worker.pixels->take(scene->rays(), g, &pixels[first], int(count));
-        tracePixels(worker, spp);
+        tracePixels(worker, 0);
         for (std::size_t i = 0; i < count; ++i)
             for (int c = 0; c < 3; ++c)
                 to.row(c, pixels[first + i].y)[pixels[first + i].x] = worker.sums[c][i] / float(spp);
@@ -183,10 +228,10 @@ Rival::~Rival() = default;
 RivalTimes Rival::render(const RayScene& rayScene, const GBuffer& g, PlanarBuffer& irradiance,
                          PlanarBuffer& validity) {
     Impl& s = *impl_;
-    requireSize("position", s.width, s.height, g.position);
-    requireSize("normal", s.width, s.height, g.normal);
-    requireSize("irradiance", s.width, s.height, irradiance);
-    requireSize("validity", s.width, s.height, validity);
+    requireSize("position", s.pictureWidth, s.pictureHeight, g.position);
+    requireSize("normal", s.pictureWidth, s.pictureHeight, g.normal);
+    requireSize("irradiance", s.pictureWidth, s.pictureHeight, irradiance);
+    requireSize("validity", s.pictureWidth, s.pictureHeight, validity);
     if (s.scene == nullptr || s.sceneId != rayScene.id()) {
         s.scene = std::make_unique<RivalScene>(rayScene);
         s.sceneId = rayScene.id();
@@ -204,34 +249,24 @@ RivalTimes Rival::render(const RayScene& rayScene, const GBuffer& g, PlanarBuffe
     };
     for (Impl::Worker& worker : s.workers) worker.paths.rays = worker.paths.shadowRays = 0;
 
-    std::vector<std::vector<Tap>> windows;
-    if (s.options.filter != 0) {
-        if (s.options.pattern > 1) windows.push_back(patternWindow(int(s.options.pattern)));
-        for (std::uint32_t level = 0; level < filterLevels(s.options); ++level)
-            windows.push_back(splineWindow(1 << level));
-    }
     const int across = (s.grid.width + s.tileSide - 1) / s.tileSide;
     const int down = (s.grid.height + s.tileSide - 1) / s.tileSide;
     s.pool.run(std::size_t(across * down), [&](std::size_t tile, int thread) {
-        s.traceTile(g, int(tile), s.workers[std::size_t(thread)], s.images[0]);
+        s.traceTile(g, int(tile), s.workers[std::size_t(thread)]);
     });
     finishPass("rival.trace");
 
-    PaddedPlanes *from = &s.images[0], *to = &s.images[1];
-    for (const std::vector<Tap>& window : windows) {
-        filterImage(s.pool, s.surfaces, window, *from, *to);
-        std::swap(from, to);
-    }
-    if (!windows.empty()) finishPass("rival.filter");
+    const PaddedPlanes& traced = s.filter();
+    if (!s.windows.empty()) finishPass("rival.filter");
     if (s.grid.factor > 1) {
         const std::vector<PixelPlace> leftOver =
-            upsampleImage(s.pool, s.grid.factor, s.surfaces, *from, g, irradiance);
+            upsampleImage(s.pool, s.grid.factor, s.surfaces, traced, g, irradiance);
         finishPass("rival.upsample");
         s.traceLeftOver(g, leftOver, irradiance);
         finishPass("rival.left_over");
         times.leftOver = leftOver.size();
     }
-    s.writeOutput(g, *from, irradiance, validity);
+    s.writeOutput(g, traced, irradiance, validity);
     finishPass("rival.output");
     times.total = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
     for (const Impl::Worker& worker : s.workers) {
@@ -245,6 +280,7 @@ std::uint64_t Rival::bytes() const {
     std::uint64_t sum = impl_->scene == nullptr ? 0 : impl_->scene->bytes();
     sum += impl_->surfaces.position.bytes() + impl_->surfaces.normal.bytes();
     for (const PaddedPlanes& image : impl_->images) sum += image.bytes();
+    sum += impl_->shrink.bytes();
     return sum;
 }
 

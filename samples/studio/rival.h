@@ -22,8 +22,8 @@ struct RivalOptions {
     std::uint32_t bounces = 1;  // 1 or 2
     std::uint32_t spp = 1;      // paths per traced pixel
     RivalResolution resolution = RivalResolution::Full;
-    std::uint32_t filter = 1;   // 1: edge-aware filter; 0: the traced image
-    std::uint32_t levels = 0;   // of the filter: each doubles its reach; 0: by the paths
+    std::uint32_t filter = 1;   // 1: edge-aware filter, from two paths on guided by their noise; 0: none
+    std::uint32_t levels = 0;   // of the filter: each doubles its reach; 0: three, two at a quarter
     std::uint32_t pattern = 0;  // n: pixels n apart share sample points; 0: no two pixels do
     RivalRays rays = RivalRays::Packets;
     // 1: paths are also joined to places that lamps shine on, found from the lamps (twice the rays).

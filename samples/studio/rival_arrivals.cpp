@@ -12,7 +12,8 @@ namespace studio {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kStep = 1e30f;  // the ramp's slope where cones coincide: any difference of cosines fills it
+constexpr float kStep =
+    1e30f;  // the ramp's slope where cones coincide: any difference of cosines fills it
 
 STUDIO_SIMD void sunArrivals(const PathBatch& b, const float* toLight, Arrivals& to) {
     for (int i = 0; i < b.count; ++i) {

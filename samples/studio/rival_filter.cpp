@@ -23,11 +23,13 @@ constexpr int kBandRows = 16;
 // Bilinear weight on its own surface that a pixel needs: less, and its light is traced for itself.
 constexpr float kLeastWeight = 1e-3f;
 
+constexpr int kMostPlanes = 4;  // of an image that is filtered
+
 // Rows of position, normal and colour: of a pixel's neighbour, or of the pixel itself.
 struct Row {
     const float* position[3];
     const float* normal[3];
-    const float* colour[3];
+    const float* colour[kMostPlanes];
 };
 
 template <class Surfaces>
@@ -41,7 +43,7 @@ Row rowOf(const Surfaces& surface, int y) {
 }
 Row rowOf(const TracedSurfaces& surface, const PaddedPlanes& colour, int y) {
     Row row = rowOf(surface, y);
-    for (int c = 0; c < 3; ++c) row.colour[c] = colour.row(c, y);
+    for (int c = 0; c < colour.planes(); ++c) row.colour[c] = colour.row(c, y);
     return row;
 }
 
@@ -53,22 +55,27 @@ struct RowTaps {
     float weight[kTogether] = {};
 };
 
-// sums[3] holds the weights' sum.
-STUDIO_SIMD void addTaps(const Row& p, const Row& q, const RowTaps& taps, int width,
-                         float* const* sums) {
+// sums[kPlanes] holds the weights' sum.
+template <int kPlanes>
+[[gnu::always_inline]] inline void addTaps(const Row& p, const Row& q, const RowTaps& taps, int width,
+                                           float* const* sums) {
     const float *px = p.position[0], *py = p.position[1], *pz = p.position[2];
     const float *nx = p.normal[0], *ny = p.normal[1], *nz = p.normal[2];
     const float *qx = q.position[0], *qy = q.position[1], *qz = q.position[2];
     const float *mx = q.normal[0], *my = q.normal[1], *mz = q.normal[2];
-    const float *red = q.colour[0], *green = q.colour[1], *blue = q.colour[2];
-    float* __restrict sr = sums[0], * __restrict sg = sums[1], * __restrict sb = sums[2], * __restrict sw = sums[3];
+    const float *q0 = q.colour[0], *q1 = q.colour[1], *q2 = kPlanes > 2 ? q.colour[2] : nullptr,
+                *q3 = kPlanes > 3 ? q.colour[3] : nullptr;
+    float* __restrict s0 = sums[0], * __restrict s1 = sums[1], * __restrict s2 = sums[2], * __restrict s3 = sums[3],
+        * __restrict s4 = sums[4];
     const int d0 = taps.dx[0], d1 = taps.dx[1], d2 = taps.dx[2], d3 = taps.dx[3], d4 = taps.dx[4];
     constexpr float kSteep = 1.0f / (1.0f - kNormalCosine);
     const float w0 = taps.weight[0] * kSteep, w1 = taps.weight[1] * kSteep, w2 = taps.weight[2] * kSteep,
                 w3 = taps.weight[3] * kSteep, w4 = taps.weight[4] * kSteep;
 #pragma GCC ivdep
     for (int x = 0; x < width; ++x) {
-        float r = sr[x], g = sg[x], b = sb[x], sum = sw[x];
+        float c0 = s0[x], c1 = s1[x], c2 = s2[x], c3 = 0.0f, c4 = 0.0f;
+        if (kPlanes > 2) c3 = s3[x];
+        if (kPlanes > 3) c4 = s4[x];
         const float ax = px[x], ay = py[x], az = pz[x], bx = nx[x], by = ny[x], bz = nz[x];
         const auto add = [&](int at, float weight) {
             const float ox = qx[at] - ax, oy = qy[at] - ay, oz = qz[at] - az;
@@ -78,19 +85,34 @@ STUDIO_SIMD void addTaps(const Row& p, const Row& q, const RowTaps& taps, int wi
             float w = agreement - kNormalCosine;
             w = w > 0.0f ? w * weight : 0.0f;
             w = off * off <= kSlope * kSlope * squared ? w : 0.0f;
-            r += w * red[at];
-            g += w * green[at];
-            b += w * blue[at];
-            sum += w;
+            c0 += w * q0[at];
+            c1 += w * q1[at];
+            if (kPlanes == 2) c2 += w;
+            if (kPlanes > 2) c2 += w * q2[at];
+            if (kPlanes == 3) c3 += w;
+            if (kPlanes > 3) c3 += w * q3[at], c4 += w;
         };
         add(x + d0, w0);
         add(x + d1, w1);
         add(x + d2, w2);
         add(x + d3, w3);
         add(x + d4, w4);
-        sr[x] = r, sg[x] = g, sb[x] = b, sw[x] = sum;
+        s0[x] = c0, s1[x] = c1, s2[x] = c2;
+        if (kPlanes > 2) s3[x] = c3;
+        if (kPlanes > 3) s4[x] = c4;
     }
 }
+
+STUDIO_SIMD void addTapsOf2(const Row& p, const Row& q, const RowTaps& taps, int width, float* const* sums) {
+    addTaps<2>(p, q, taps, width, sums);
+}
+STUDIO_SIMD void addTapsOf3(const Row& p, const Row& q, const RowTaps& taps, int width, float* const* sums) {
+    addTaps<3>(p, q, taps, width, sums);
+}
+STUDIO_SIMD void addTapsOf4(const Row& p, const Row& q, const RowTaps& taps, int width, float* const* sums) {
+    addTaps<4>(p, q, taps, width, sums);
+}
+
 // sums[3] holds the weights' sum. `q` is read at x + dx; weights[x] counts besides `weight`.
 STUDIO_SIMD void addTap(const Row& p, const Row& q, int dx, int begin, int end, float weight,
                         const float* weights, float* const* sums) {
@@ -117,24 +139,23 @@ STUDIO_SIMD void addTap(const Row& p, const Row& q, int dx, int begin, int end, 
     }
 }
 
-STUDIO_SIMD void divideRow(float* const* sums, int width, float* __restrict r, float* __restrict g,
-                           float* __restrict b) {
-    for (int x = 0; x < width; ++x) {
-        const float scale = sums[3][x] > 0.0f ? 1.0f / sums[3][x] : 0.0f;
-        r[x] = sums[0][x] * scale;
-        g[x] = sums[1][x] * scale;
-        b[x] = sums[2][x] * scale;
-    }
+STUDIO_SIMD void divideRow(const float* __restrict sum, const float* __restrict weight, int width,
+                           float* __restrict to) {
+    for (int x = 0; x < width; ++x) to[x] = weight[x] > 0.0f ? sum[x] * (1.0f / weight[x]) : 0.0f;
 }
 
-// Four rows of sums.
+// Rows of sums: of each plane, then of the weights.
 struct Sums {
     std::vector<float> values;
-    float* rows[4];
-    explicit Sums(int width) : values(std::size_t(width) * 4) {
-        for (int i = 0; i < 4; ++i) rows[i] = values.data() + std::ptrdiff_t(width) * i;
+    float* rows[kMostPlanes + 1];
+    explicit Sums(int width) : values(std::size_t(width) * (kMostPlanes + 1)) {
+        for (int i = 0; i <= kMostPlanes; ++i) rows[i] = values.data() + std::ptrdiff_t(width) * i;
     }
     void clear() { std::fill(values.begin(), values.end(), 0.0f); }
+    template <class Planes>
+    void divideTo(Planes& to, int planes, int y) const {
+        for (int c = 0; c < planes; ++c) divideRow(rows[c], rows[planes], to.width(), to.row(c, y));
+    }
 };
 
 // A coarse row stretched to the fine width: place x holds the coarse pixel left of it, x + factor the
@@ -191,7 +212,8 @@ std::vector<Tap> splineWindow(int step) {
 
 void filterImage(WorkerPool& pool, const TracedSurfaces& surface, const std::vector<Tap>& taps,
                  const PaddedPlanes& from, PaddedPlanes& to) {
-    const int width = from.width(), height = from.height();
+    const int width = from.width(), height = from.height(), planes = from.planes();
+    const auto addRow = planes == 2 ? addTapsOf2 : planes == 3 ? addTapsOf3 : addTapsOf4;
     pool.run(std::size_t((height + kBandRows - 1) / kBandRows), [&](std::size_t band, int) {
         Sums sums(width);
         const int first = int(band) * kBandRows;
@@ -205,9 +227,9 @@ void filterImage(WorkerPool& pool, const TracedSurfaces& surface, const std::vec
                     together.weight[i] = taps[t].weight;
                 }
                 if (y + dy >= 0 && y + dy < height)
-                    addTaps(rowOf(surface, y), rowOf(surface, from, y + dy), together, width, sums.rows);
+                    addRow(rowOf(surface, y), rowOf(surface, from, y + dy), together, width, sums.rows);
             }
-            divideRow(sums.rows, width, to.row(0, y), to.row(1, y), to.row(2, y));
+            sums.divideTo(to, planes, y);
         }
     });
 }
@@ -245,7 +267,7 @@ std::vector<PixelPlace> upsampleImage(WorkerPool& pool, int factor, const Traced
                 addTap(pixel, row.row, 0, 0, width, weight, nearLeft.data(), sums.rows);
                 addTap(pixel, row.row, factor, 0, width, weight, nearRight.data(), sums.rows);
             }
-            divideRow(sums.rows, width, to.row(0, y), to.row(1, y), to.row(2, y));
+            sums.divideTo(to, 3, y);
             for (int x = 0; x < width; ++x) {
                 if (sums.rows[3][x] >= kLeastWeight) continue;
                 const float *nx = pixel.normal[0], *ny = pixel.normal[1], *nz = pixel.normal[2];

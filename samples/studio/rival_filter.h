@@ -19,8 +19,8 @@ std::vector<Tap> patternWindow(int n);
 // The 5 x 5 B3 spline with `step` pixels between taps (Dammertz et al. 2010).
 std::vector<Tap> splineWindow(int step);
 
-// Weighted mean of `from` over the taps that lie on the pixel's own surface; no tap reaches farther than
-// PaddedPlanes::kPad sideways.
+// Weighted mean of each plane of `from` (2 to 4) over the taps that lie on the pixel's own surface; no tap
+// reaches farther than PaddedPlanes::kPad sideways.
 void filterImage(WorkerPool& pool, const TracedSurfaces& surface, const std::vector<Tap>& taps,
                  const PaddedPlanes& from, PaddedPlanes& to);
 

@@ -194,8 +194,8 @@ void RivalPaths::punctualLights(float* const sums[3]) {
             // What connections to lit points leave to rays: the balance heuristic, as in integrator.cpp.
             float share = found.strength[i];
             if (litPoints_ != nullptr)
-                share *= rayShare(b.rayDensity[i],
-                                  litPoints_->density(l, at(b.position, i), at(b.face, i)));
+                share *=
+                    rayShare(b.rayDensity[i], litPoints_->density(l, at(b.position, i), at(b.face, i)));
             queue(i, at(found.direction, i), found.reach[i],
                   at(b.throughput, i) * lights[l].emitted * share);
         }

@@ -28,7 +28,8 @@ private:
     void punctualLights(float* const sums[3]);
     void emitters(float* const sums[3]);
     void litPoints(float* const sums[3]);
-    // A straight way from a vertex: `cosine` at its shading normal, 0 where the way starts under its face.
+    // A straight way from a vertex: `cosine` at its shading normal, 0 where the way starts under its
+    // face.
     struct Link {
         glm::vec3 direction{0.0f};
         float distance = 0.0f, squared = 0.0f, cosine = 0.0f;

@@ -16,6 +16,7 @@ public:
         : width_(width), height_(height), buffer_(width + 2 * kPad, height, planes) {}
     int width() const { return width_; }
     int height() const { return height_; }
+    int planes() const { return buffer_.planes(); }
     // Readable from -kPad to width + kPad, and on to a whole vector of 16.
     float* row(int plane, int y) { return buffer_.row(plane, y) + kPad; }
     const float* row(int plane, int y) const { return buffer_.row(plane, y) + kPad; }

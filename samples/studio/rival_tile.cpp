@@ -86,7 +86,8 @@ STUDIO_SIMD void readPixels(const RowJob& job, int count) {
         x = x < last ? x : last;
         const int right = x < last ? x + 1 : x, before = x > 0 ? x - 1 : x;
         const Vec at = load(position, x), normal = load(normals, x);
-        const Vec u = alongSurface(way(position, right, at, unit), way(position, before, at, unit), normal);
+        const Vec u =
+            alongSurface(way(position, right, at, unit), way(position, before, at, unit), normal);
         const Vec v = alongSurface(way(below, x, at, unit), way(above, x, at, unit), normal);
         Vec face = {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
         const float squared = dot(face, face), cosine = dot(face, normal);
@@ -201,7 +202,8 @@ void TilePixels::take(const RayScene& scene, const GBuffer& view, const PixelPla
     }
 }
 
-void TilePixels::addTo(PathBatch& batch, std::uint32_t perPixel, std::uint32_t sample) const {
+void TilePixels::addTo(PathBatch& batch, std::uint32_t perPixel, std::uint32_t sample,
+                       std::int32_t targetShift) const {
     const int at = batch.count;
     const std::size_t bytes = std::size_t(count) * sizeof(float);
     for (int c = 0; c < 3; ++c) {
@@ -210,8 +212,10 @@ void TilePixels::addTo(PathBatch& batch, std::uint32_t perPixel, std::uint32_t s
         std::memcpy(batch.normal[c] + at, normal[c], bytes);
         std::fill_n(batch.throughput[c] + at, count, 1.0f);
     }
-    std::memcpy(batch.target + at, target, bytes);
-    for (int i = 0; i < count; ++i) batch.index[at + i] = index[i] * perPixel + sample;
+    for (int i = 0; i < count; ++i) {
+        batch.target[at + i] = target[i] + targetShift;
+        batch.index[at + i] = index[i] * perPixel + sample;
+    }
     batch.count += count;
 }
 

@@ -29,8 +29,9 @@ struct TilePixels {
               int side, int n, const std::vector<PixelPlace>& order, TracedSurfaces& surfaces);
     // Pixels of the picture, in any places; target: their number in the list.
     void take(const RayScene& scene, const GBuffer& view, const PixelPlace* pixels, int pixelCount);
-    // Paths with the sample points index * perPixel + sample.
-    void addTo(PathBatch& batch, std::uint32_t perPixel, std::uint32_t sample) const;
+    // Paths with the sample points index * perPixel + sample; their targets are shifted.
+    void addTo(PathBatch& batch, std::uint32_t perPixel, std::uint32_t sample,
+               std::int32_t targetShift) const;
 
 private:
     struct Rows {  // as they lie in the picture
