@@ -50,8 +50,8 @@ public:
     virtual ~IndirectRenderer() = default;
 
     // Renders the next frame of a sequence and waits for it. Inputs may change from frame to frame
-    // (camera, lights, objects), their size may not; `reset` forgets what a technique remembers of
-    // frames before.
+    // (camera, lights, objects), their size up to that of the first inputs (dynamic resolution); `reset`
+    // forgets what a technique remembers of frames before.
     virtual FrameSample renderFrame(const RenderInputs& inputs, bool reset = false) = 0;
 
     // Of the last frame: three planes of W/m^2, one plane of 0..1.
@@ -73,8 +73,8 @@ struct DeviceOptions {
     std::uint32_t width = 0;  // lanes per work-item; 0: by probe
 };
 
-// The renderer of `parameters.technique()`, for inputs of the size of `inputs`; everything is compiled
-// before this returns.
+// The renderer of `parameters.technique()`, for inputs of at most the size of `inputs`; everything is
+// compiled before this returns.
 std::unique_ptr<IndirectRenderer> makeRenderer(const Parameters& parameters, const RenderInputs& inputs,
                                                const DeviceOptions& options);
 // The same on a device that is open already (null: only for techniques of the host).

@@ -53,7 +53,16 @@ LibraryRenderer::LibraryRenderer(const lightwell::Device& device, const Paramete
     info_ = device_.info();
 }
 
+// The view changes its size without allocating; the host's pictures are made anew.
+void LibraryRenderer::fitSize(int width, int height) {
+    if (width == irradiance_.width() && height == irradiance_.height()) return;
+    view_.setSize(std::uint32_t(width), std::uint32_t(height));
+    irradiance_ = studio::PlanarBuffer(width, height, 3);
+    validity_ = studio::PlanarBuffer(width, height, 1);
+}
+
 FrameSample LibraryRenderer::renderFrame(const RenderInputs& inputs, bool reset) {
+    fitSize(inputs.gbuffer().width, inputs.gbuffer().height);
     const auto start = std::chrono::steady_clock::now();
     LWSourceView source{view_.get(), &inputs.lwGBuffer()};
     LWFrame frame = lightwell::make<LWFrame>();

@@ -19,6 +19,8 @@ public:
     DebugPlanes readDebugView(const std::string& name) const override;
 
 private:
+    void fitSize(int width, int height);
+
     lightwell::Device device_;
     LWDeviceInfo info_{};
     lightwell::View view_;

@@ -13,19 +13,22 @@ using studio::RivalOptions;
 class RivalRenderer final : public IndirectRenderer {
 public:
     RivalRenderer(const RivalOptions& options, const RenderInputs& inputs)
-        : rival_(options, inputs.gbuffer().width, inputs.gbuffer().height),
+        : options_(options),
+          rival_(std::make_unique<studio::Rival>(options, inputs.gbuffer().width,
+                                                 inputs.gbuffer().height)),
           irradiance_(inputs.gbuffer().width, inputs.gbuffer().height, 3),
           validity_(inputs.gbuffer().width, inputs.gbuffer().height, 1),
-          estimatedBytes_(rival_.bytes()) {}
+          estimatedBytes_(rival_->bytes()) {}
 
     FrameSample renderFrame(const RenderInputs& inputs, bool) override {
+        fitSize(inputs.gbuffer().width, inputs.gbuffer().height);
         const studio::RivalTimes times =
-            rival_.render(inputs.scene(), inputs.gbuffer(), irradiance_, validity_);
+            rival_->render(inputs.scene(), inputs.gbuffer(), irradiance_, validity_);
         FrameSample frame;
         for (const auto& [name, milliseconds] : times.passes)
             frame.passes.push_back({name, milliseconds, 1});
         frame.totalMilliseconds = frame.wallMilliseconds = times.total;
-        frame.deviceBytes = rival_.bytes();
+        frame.deviceBytes = rival_->bytes();
         frame.counts = {{"rays", times.rays},
                         {"shadow_rays", times.shadowRays},
                         {"left_over_pixels", times.leftOver}};
@@ -40,7 +43,16 @@ public:
     }
 
 private:
-    studio::Rival rival_;
+    // It remembers nothing of earlier frames but the scene's tables: another size is another rival.
+    void fitSize(int width, int height) {
+        if (width == irradiance_.width() && height == irradiance_.height()) return;
+        rival_ = std::make_unique<studio::Rival>(options_, width, height);
+        irradiance_ = studio::PlanarBuffer(width, height, 3);
+        validity_ = studio::PlanarBuffer(width, height, 1);
+    }
+
+    RivalOptions options_;
+    std::unique_ptr<studio::Rival> rival_;
     studio::PlanarBuffer irradiance_, validity_;
     std::uint64_t estimatedBytes_;
 };

@@ -76,7 +76,8 @@ LayerSample Integrator::tracePath(const Surface& pixel, const glm::vec3& punctua
         if (bounce < maxBounces_) add(bounce + 1, connect(at, sampler));
 
         // One ray brings the sky, the rest of the emission and of the lamplit surfaces, and the next
-        // vertex.
+        // vertex. Past the last bounce only sky and emission are left to find.
+        if (bounce == maxBounces_ && !hasExtendedLight_) break;
         const glm::vec3 direction = sampleCosine(at.normal, sampler.next());
         if (glm::dot(at.geometricNormal, direction) <= 0.0f) break;
         Hit hit;

@@ -19,7 +19,8 @@ public:
         : scene_(scene),
           areaLights_(scene),
           litPoints_(scene, receivers, !unshadowed),
-          maxBounces_(maxBounces) {}
+          maxBounces_(maxBounces),
+          hasExtendedLight_(!areaLights_.empty() || scene.scene().sky != glm::vec3(0.0f)) {}
 
     // Irradiance by a path from `pixel`; `punctual`: what scene.directIrradiance gives there.
     LayerSample tracePath(const Surface& pixel, const glm::vec3& punctual, Sampler& sampler) const;
@@ -40,6 +41,7 @@ private:
     AreaLights areaLights_;
     LitPoints litPoints_;
     int maxBounces_;
+    bool hasExtendedLight_;  // emissive surfaces or a sky
 };
 
 }  // namespace studio

@@ -46,7 +46,9 @@ Film integratePaths(const RayScene& scene, const GBuffer& view, const PixelSurfa
     const int most = options.untilRelMse > 0.0 ? options.maxSamplesPerPixel : options.samplesPerPixel;
     Run run(scene, view, pixels, options, film, std::uint32_t(options.samplesPerPixel / 2),
             std::uint32_t(most / 2));
-    const Integrator integrator(scene, pixels.shown(), options.maxBounces, options.unshadowed);
+    const Integrator integrator(
+        scene, options.guide != nullptr ? PixelSurfaces(scene, *options.guide).shown() : pixels.shown(),
+        options.maxBounces, options.unshadowed);
 
     run.fill([&](const Tile& tile, std::uint32_t first, std::uint32_t last) {
         forEachPixel(tile, film, pixels, [&](std::size_t pixel) {
@@ -56,7 +58,8 @@ Film integratePaths(const RayScene& scene, const GBuffer& view, const PixelSurfa
                                    : scene.directIrradiance(at.position, at.geometricNormal, at.normal);
             for (int half = 0; half < 2; ++half)
                 for (std::uint32_t s = first; s < last; ++s) {
-                    Sampler sampler(options.seed, 2 * pixel + std::size_t(half), s);
+                    const std::size_t stream = (options.commonPoints ? 0 : 2 * pixel) + std::size_t(half);
+                    Sampler sampler(options.seed, stream, s);
                     glm::dvec3* sums = film.at(pixel, half);
                     if (options.unshadowed) {
                         sums[0] += glm::dvec3(integrator.traceUnshadowed(at, sampler));

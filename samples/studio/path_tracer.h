@@ -37,6 +37,13 @@ struct PathTracerOptions {
     int maxSamplesPerPixel = 1 << 16;
     std::uint64_t seed = 1;
     int maxBounces = 64;  // of the "all" layer, with unbiased Russian roulette
+    // All pixels of a half take the same sample points. A surface at rest then keeps its noise from frame
+    // to frame of a sequence, wherever the camera sees it, so that frames differ by what changes; within
+    // one picture the noise is no longer independent from pixel to pixel.
+    bool commonPoints = false;
+    // The view whose pixels say which of the light matters; null: the one that is traced. One for all
+    // frames of a sequence keeps their sample points alike.
+    const GBuffer* guide = nullptr;
     // Every surface along the ray sends light, none blocks: the limit of a gather without visibility.
     // Light falls on those surfaces with its shadows. Only "bounce1" is made.
     bool unshadowed = false;

@@ -44,6 +44,11 @@ std::uint64_t hashOptions(const PathTracerOptions& options, int halves) {
     const std::uint64_t values[] = {options.seed, std::uint64_t(options.maxBounces),
                                     std::uint64_t(options.unshadowed), std::uint64_t(halves)};
     std::uint64_t hash = hashBytes(values, sizeof values, 3);
+    if (options.commonPoints) hash = hashBytes("common", 6, hash);
+    if (options.guide != nullptr) {
+        const std::uint64_t guide = hashView(*options.guide);
+        hash = hashBytes(&guide, sizeof guide, hash);
+    }
     if (options.vpls != nullptr)
         hash = hashBytes(options.vpls->data(), options.vpls->size() * sizeof(VplRecord), hash);
     return hash;

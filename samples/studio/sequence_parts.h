@@ -1,0 +1,44 @@
+// What the catalogue's sequences are made of; for sequence*.cpp only.
+#pragma once
+
+#include "sequence.h"
+
+namespace studio {
+
+struct SequenceMaker {
+    SequenceEntry entry;
+    FailureSequence (*make)(const SequenceSize& size);
+};
+// In the catalogue's order.
+const std::vector<SequenceMaker>& sequenceMakers();
+
+// A shipped scene (scene.h) that a sequence changes.
+std::shared_ptr<Scene> shippedScene(const std::string& name);
+// Scene "rooms" with its door as it stands at a time of its own.
+std::shared_ptr<Scene> roomsWithDoorAt(float time);
+// One light in place of all others.
+void setLight(Scene& scene, const Light& light);
+Light makeSpot(const glm::vec3& position, const glm::vec3& target, float intensity, float outerDegrees);
+Camera makeCamera(const glm::vec3& position, const glm::vec3& target, float degrees);
+// Turned about the vertical axis through its position.
+Camera yawed(const Camera& camera, float degrees);
+Camera moved(const Camera& camera, const glm::vec3& by);
+
+// Two yards under the open sky, `thickness` of wall between them, a lamp in the left one. Nothing rises
+// above the walls, so that no light gets across, at any bounce; a camera from above sees both.
+struct Yards {
+    static constexpr float kHeight = 1.0f;  // of all walls, m
+    static std::shared_ptr<Scene> make(float thickness);
+    static std::uint8_t region(float thickness, const glm::vec3& position);
+};
+// A lamp in an open-topped shaft as high as the walls of the yard that it stands in: nothing of the yard
+// gets light.
+struct Shaft {
+    static constexpr float kHalf = 0.4f;  // of its inner width, m
+    static std::shared_ptr<Scene> make();
+    static std::uint8_t region(const glm::vec3& position);
+};
+// A corridor along +x with blocks on both sides.
+std::shared_ptr<Scene> makeCorridor();
+
+}  // namespace studio
