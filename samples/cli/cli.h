@@ -90,5 +90,6 @@ void addCompare(CLI::App& app);
 void addTriptych(CLI::App& app);
 void addChart(CLI::App& app);
 void addSplit(CLI::App& app);
+void addStability(CLI::App& app);
 
 }  // namespace cli

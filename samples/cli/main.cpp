@@ -78,6 +78,7 @@ int main(int argc, char** argv) {
         cli::addTriptych(app);
         cli::addChart(app);
         cli::addSplit(app);
+        cli::addStability(app);
         return parse(app, argc, argv);
     } catch (const cli::UsageError& error) {
         printError(error.what());

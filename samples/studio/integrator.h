@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <utility>
 
 #include "area_lights.h"
 #include "lit_points.h"
@@ -13,12 +14,10 @@ using LayerSample = std::array<glm::vec3, kLayerCount>;
 
 class Integrator {
 public:
-    // `receivers`: what the picture shows, to find the light that matters there.
-    Integrator(const RayScene& scene, const std::vector<Surface>& receivers, int maxBounces,
-               bool unshadowed)
+    Integrator(const RayScene& scene, LitPoints litPoints, int maxBounces)
         : scene_(scene),
           areaLights_(scene),
-          litPoints_(scene, receivers, !unshadowed),
+          litPoints_(std::move(litPoints)),
           maxBounces_(maxBounces),
           hasExtendedLight_(!areaLights_.empty() || scene.scene().sky != glm::vec3(0.0f)) {}
 

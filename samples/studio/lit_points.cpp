@@ -14,7 +14,11 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <stdexcept>
 
+#include <fmt/format.h>
+
+#include "film.h"
 #include "parallel.h"
 #include "sun_fit.h"
 
@@ -125,6 +129,18 @@ LitPoints::LitPoints(const RayScene& scene, const std::vector<Surface>& receiver
         }
     });
     chooseCells(flux, useful);
+}
+
+LitPoints::LitPoints(const RayScene& scene, const LitPoints& like)
+    : scene_(scene), probability_(like.probability_), upTo_(like.upTo_) {
+    for (const Light& light : scene.lights()) charts_.emplace_back(scene, light);
+    if (charts_.size() != like.charts_.size())
+        throw std::invalid_argument(fmt::format("lit points: expected a scene of {} lights, got {}",
+                                                like.charts_.size(), charts_.size()));
+}
+
+std::uint64_t LitPoints::hash() const {
+    return hashBytes(probability_.data(), probability_.size() * sizeof(double), 4);
 }
 
 double LitPoints::transfer(const Hit& hit, double area, const std::vector<Surface>& judges,

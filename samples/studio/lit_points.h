@@ -18,7 +18,11 @@ public:
 
     // Points that matter to `receivers` are found more often; with `occlusion`, those that they see.
     LitPoints(const RayScene& scene, const std::vector<Surface>& receivers, bool occlusion);
+    // The same choice of rays in another scene, or in this one at another time, so that a frame's points are
+    // those of `like` moved with their lights. Throws std::invalid_argument unless both have as many lights.
+    LitPoints(const RayScene& scene, const LitPoints& like);
     bool empty() const { return probability_.empty(); }
+    std::uint64_t hash() const;  // of the choice
 
     // False when the light's ray meets nothing.
     bool sample(Sampler& sampler, Point& point) const { return sample(sampler.nextFine(), point); }

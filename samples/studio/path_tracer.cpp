@@ -46,9 +46,11 @@ Film integratePaths(const RayScene& scene, const GBuffer& view, const PixelSurfa
     const int most = options.untilRelMse > 0.0 ? options.maxSamplesPerPixel : options.samplesPerPixel;
     Run run(scene, view, pixels, options, film, std::uint32_t(options.samplesPerPixel / 2),
             std::uint32_t(most / 2));
-    const Integrator integrator(
-        scene, options.guide != nullptr ? PixelSurfaces(scene, *options.guide).shown() : pixels.shown(),
-        options.maxBounces, options.unshadowed);
+    const Integrator integrator(scene,
+                                options.guide != nullptr && !options.unshadowed
+                                    ? LitPoints(scene, *options.guide)
+                                    : LitPoints(scene, pixels.shown(), !options.unshadowed),
+                                options.maxBounces);
 
     run.fill([&](const Tile& tile, std::uint32_t first, std::uint32_t last) {
         forEachPixel(tile, film, pixels, [&](std::size_t pixel) {
@@ -109,6 +111,10 @@ void addLayer(Image& image, const Film& film, std::size_t layer, int half, doubl
 }
 
 }  // namespace
+
+std::unique_ptr<LitPoints> makeGuide(const RayScene& scene, const GBuffer& view) {
+    return std::make_unique<LitPoints>(scene, PixelSurfaces(scene, view).shown(), true);
+}
 
 Image tracePaths(const RayScene& scene, const GBuffer& view, const PathTracerOptions& options) {
     checkOptions(view, options);

@@ -12,6 +12,8 @@
 
 namespace studio {
 
+class LitPoints;
+
 // A virtual point light written by `lightwell render --vpls-out`.
 struct VplRecord {
     glm::vec3 position, normal, flux;
@@ -41,9 +43,9 @@ struct PathTracerOptions {
     // to frame of a sequence, wherever the camera sees it, so that frames differ by what changes; within
     // one picture the noise is no longer independent from pixel to pixel.
     bool commonPoints = false;
-    // The view whose pixels say which of the light matters; null: the one that is traced. One for all
-    // frames of a sequence keeps their sample points alike.
-    const GBuffer* guide = nullptr;
+    // Which of the light matters; null: judged by the view that is traced. One guide for all frames of a
+    // sequence keeps their sample points alike (makeGuide).
+    const LitPoints* guide = nullptr;
     // Every surface along the ray sends light, none blocks: the limit of a gather without visibility.
     // Light falls on those surfaces with its shadows. Only "bounce1" is made.
     bool unshadowed = false;
@@ -57,6 +59,9 @@ struct PathTracerOptions {
     // run with its current pass and comes out of tracePaths; all samples so far are in the checkpoint.
     std::function<void(double fraction, double relMse)> progress;
 };
+
+// For PathTracerOptions::guide. `scene` must live as long.
+std::unique_ptr<LitPoints> makeGuide(const RayScene& scene, const GBuffer& view);
 
 // Layers (irradiance, W/m^2, at the pixel's surface): "direct" from lights straight to the pixel,
 // "bounce1" (one indirect bounce), "bounce2" (the second alone), "all" (every bounce from the first

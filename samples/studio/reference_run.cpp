@@ -46,7 +46,7 @@ std::uint64_t hashOptions(const PathTracerOptions& options, int halves) {
     std::uint64_t hash = hashBytes(values, sizeof values, 3);
     if (options.commonPoints) hash = hashBytes("common", 6, hash);
     if (options.guide != nullptr) {
-        const std::uint64_t guide = hashView(*options.guide);
+        const std::uint64_t guide = options.guide->hash();
         hash = hashBytes(&guide, sizeof guide, hash);
     }
     if (options.vpls != nullptr)

@@ -124,7 +124,7 @@ FailureSequence makeThinWalls(const SequenceSize& size) {
     const Camera camera = makeCamera({0.3f, 4.2f, 3.0f}, {0.05f, 0.2f, -0.1f}, 42.0f);
     FailureSequence sequence;
     sequence.sweeps = "wall thickness, m";
-    sequence.truthSamples = 32;  // most of the picture is known to be dark
+    sequence.truthSamples = 16;  // most of the picture is known to be dark
     for (int f = 0; f < size.frames; ++f) {
         const double thickness = 0.3 * std::pow(0.001 / 0.3, shareOf(f, size));
         addFrame(sequence, size, Yards::make(float(thickness)), camera).value = thickness;
@@ -212,7 +212,7 @@ FailureSequence makeSphericalRoom(const SequenceSize& size) {
     });
     FailureSequence sequence =
         makeFlight(size, scene, [&](int) { return cameraOf(*scene, "inside"); });
-    sequence.truthSamples = 16;
+    sequence.truthSamples = 8;
     return sequence;
 }
 
@@ -267,7 +267,7 @@ FailureSequence makeBlockedLight(const SequenceSize& size) {
     });
     const Camera camera = makeCamera({0.3f, 4.6f, 2.4f}, {0.0f, 0.2f, -0.05f}, 40.0f);
     FailureSequence sequence = makeFlight(size, scene, [&](int) { return camera; });
-    sequence.truthSamples = 32;  // most of the picture is known to be dark
+    sequence.truthSamples = 16;  // most of the picture is known to be dark
     sequence.region = [](const SequenceFrame&, const glm::vec3& position) {
         return Shaft::region(position);
     };

@@ -48,7 +48,7 @@ struct FailureSequence {
     std::string sweeps;  // what SequenceFrame::value is, with its unit; "" = nothing
     SequenceTruth truth = SequenceTruth::Traced;
     // Paths per pixel of the truth, of both halves together: what keeps its floors low enough here.
-    int truthSamples = 64;
+    int truthSamples = 32;
     // 1 in the sealed room, 2 lit and outside, 0 neither; null: no sealed room. Positions in the
     // frames' own unit.
     std::function<std::uint8_t(const SequenceFrame& frame, const glm::vec3& position)> region;

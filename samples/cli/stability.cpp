@@ -1,0 +1,123 @@
+// `lightwell stability`: the catalogue of failures, every technique driven through it.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "chart_script.h"
+#include "cli.h"
+#include "interrupt.h"
+#include "parameters.h"
+#include "stability_results.h"
+#include "stability_run.h"
+
+namespace cli {
+namespace {
+
+struct Arguments {
+    StabilityOptions stability;
+    std::string size, compare;
+    int frames = 0;
+    bool onlyReport = false, skipsReport = false;
+};
+
+std::vector<std::string> sequenceNames(bool quickOnly) {
+    std::vector<std::string> names;
+    for (const studio::SequenceEntry& entry : studio::sequenceCatalogue())
+        if (entry.quick || !quickOnly) names.push_back(entry.name);
+    return names;
+}
+
+void complete(Arguments& arguments) {
+    StabilityOptions& options = arguments.stability;
+    if (options.techniques.empty()) options.techniques = techniqueNames();
+    for (const std::string& technique : options.techniques)
+        requireOneOf("technique", technique, techniqueNames());
+    if (options.sequences.empty()) options.sequences = sequenceNames(options.quick);
+    for (const std::string& sequence : options.sequences)
+        requireOneOf("sequence", sequence, sequenceNames(false));
+    if (options.deviceWidth != 0)
+        requireOneOf("--width", std::to_string(options.deviceWidth), {"1", "4", "8", "16"});
+    const Size size = parseSize(!arguments.size.empty() ? arguments.size
+                                : options.quick         ? "160x90"
+                                                        : "320x180");
+    options.size = {arguments.frames != 0 ? arguments.frames : options.quick ? 8 : 32, size.width,
+                    size.height};
+}
+
+// Throws when anything has become worse, so that the command's exit code says so.
+void reportComparison(const nlohmann::ordered_json& before, const nlohmann::ordered_json& now,
+                      const std::string& path) {
+    const StabilityComparison comparison = compareStability(before, now);
+    fmt::print("\nAgainst {}: {} figures compared, {} worse beyond noise, {} better\n", path,
+               comparison.compared, comparison.regressions.size(), comparison.improvements.size());
+    for (const std::string& text : comparison.regressions) fmt::print("WORSE   {}\n", text);
+    for (const std::string& text : comparison.improvements) fmt::print("better  {}\n", text);
+    for (const std::string& text : comparison.notes) fmt::print("note    {}\n", text);
+    if (!comparison.regressions.empty())
+        throw std::runtime_error(fmt::format("{} figure(s) worse than in {}, the first: {}",
+                                             comparison.regressions.size(), path,
+                                             comparison.regressions.front()));
+}
+
+void stability(Arguments& arguments) {
+    complete(arguments);
+    const StabilityOptions& options = arguments.stability;
+    nlohmann::ordered_json before;
+    if (!arguments.compare.empty()) before = readStability(arguments.compare);
+    const std::filesystem::path folder(options.folder);
+    asUsage([&] { std::filesystem::create_directories(folder / "images"); });
+    if (!arguments.onlyReport) {
+        const InterruptGuard guard;
+        runStability(options);
+    }
+    if (options.onlyTruths) return;
+    const std::string path = (folder / "stability.json").string();
+    const nlohmann::ordered_json now = readStability(path);
+    fmt::print("{}{}\n", stabilityTable(now), path);
+    if (!arguments.skipsReport) runChartScript("report.py", {options.folder});
+    if (!arguments.compare.empty()) reportComparison(before, now, arguments.compare);
+}
+
+}  // namespace
+
+void addStability(CLI::App& app) {
+    CLI::App* command = app.add_subcommand(
+        "stability", "The catalogue of failures: how techniques behave from frame to frame");
+    auto arguments = std::make_shared<Arguments>();
+    StabilityOptions& options = arguments->stability;
+    command
+        ->add_option("--out", options.folder,
+                     "Folder (made when missing) of stability.json and the worst frames' pictures")
+        ->required();
+    command->add_option("--techniques", options.techniques, "Techniques by name; default: all");
+    command->add_option("--sequences", options.sequences, "Sequences by name; default: the catalogue");
+    command->add_flag("--quick", options.quick,
+                      "About a minute: 8 frames of 160x90, the sequences that say most");
+    command->add_option("--frames", arguments->frames, "Frames of each sequence; default: 32")
+        ->check(CLI::Range(2, 10000));
+    command->add_option("--size", arguments->size, "Picture size, WIDTHxHEIGHT; default: 320x180");
+    command->add_option("--compare", arguments->compare,
+                        "stability.json of an earlier run: says what is worse beyond the noise of both; exit "
+                        "code 1 when anything is");
+    command
+        ->add_option("--truth-effort", options.truthEffort,
+                     "Times the paths per pixel that each sequence's truth is traced with")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    command->add_flag("--only-truths", options.onlyTruths,
+                      "Trace the truths into the cache, measure nothing");
+    command->add_option(
+        "--truth-cache", options.truthDirectory,
+        "Folder of the truths; default: references/ in LIGHTWELL_CACHE_DIR or the user's cache");
+    command->add_flag("--no-report", arguments->skipsReport, "Without the report; stability.json is written");
+    command->add_flag("--report-only", arguments->onlyReport,
+                      "Table, comparison and report of the results in DIR; nothing is measured");
+    command->add_option("--device", options.device, "As for render");
+    command->add_option("--width", options.deviceWidth,
+                        "Lanes per work-item: 1, 4, 8 or 16; default: by probe");
+    command->callback([arguments] { stability(*arguments); });
+}
+
+}  // namespace cli

@@ -1,0 +1,333 @@
+#include "stability_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "build_identity.h"
+#include "cli.h"
+#include "film.h"
+#include "indirect_renderer.h"
+#include "interrupt.h"
+#include "lit_points.h"
+#include "open_device.h"
+#include "path_tracer.h"
+#include "progress.h"
+#include "run_facts.h"
+#include "stability_judge.h"
+#include "stability_pictures.h"
+#include "stability_results.h"
+#include "stability_scaled.h"
+#include "sweep.h"
+
+namespace cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using studio::FailureSequence;
+using studio::SequenceFrame;
+
+constexpr const char* kProtocol = "1";  // part of every key: raise it when the way of measuring changes
+
+// One technique on its way through one sequence.
+struct Runner {
+    Parameters parameters;
+    int bounces = 1;
+    std::unique_ptr<IndirectRenderer> renderer;
+    std::vector<JudgedFrame> frames;
+
+    explicit Runner(const std::string& technique)
+        : parameters(technique), bounces(modelledBounces(parameters)) {}
+};
+
+// What two neighbouring frames need of each other.
+struct FrameScene {
+    SequenceFrame frame;
+    std::unique_ptr<studio::RayScene> scene;
+    studio::SeenFrame seen;
+
+    explicit FrameScene(const SequenceFrame& sequenceFrame)
+        : frame(sequenceFrame),
+          scene(std::make_unique<studio::RayScene>(frame.scene, frame.time)),
+          seen(studio::seeFrame(*scene, frame)) {}
+};
+
+std::vector<float> packed(const studio::PlanarBuffer& buffer) {
+    std::vector<float> values;
+    for (int plane = 0; plane < buffer.planes(); ++plane)
+        for (int y = 0; y < buffer.height(); ++y)
+            values.insert(values.end(), buffer.row(plane, y), buffer.row(plane, y) + buffer.width());
+    return values;
+}
+
+class Stability {
+public:
+    explicit Stability(const StabilityOptions& options);
+    void run();
+
+private:
+    Json describeRun() const;
+    bool isDone(const FailureSequence& sequence) const;
+    std::string keyOf(const FailureSequence& sequence, const Runner& runner) const;
+    void runSequence(const FailureSequence& sequence);
+    void runFrame(const FailureSequence& sequence, const FrameScene& now, const FrameScene* before);
+    void renderFrame(const FailureSequence& sequence, const FrameScene& now, const FrameScene* before,
+                     const studio::StabilityFrame& judged, const std::map<int, std::shared_ptr<const FrameTruth>>& truths);
+    std::map<int, std::shared_ptr<const FrameTruth>> truthsOf(const FailureSequence& sequence,
+                                                              const FrameScene& now,
+                                                              const studio::GBuffer& view);
+    void judge(const FailureSequence& sequence, Runner& runner);
+    int samplesOf(const FailureSequence& sequence) const;
+    void report(double ofFrame, const std::string& note = "");
+
+    const StabilityOptions& options_;
+    std::vector<FailureSequence> sequences_;
+    std::vector<Runner> runners_;
+    std::optional<lightwell::Device> device_;
+    LWDeviceInfo info_{};
+    StabilityResults results_;
+    SequenceTruths truths_;
+    std::string build_ = buildIdentity();
+    studio::ProgressLine line_{"stability"};
+    double done_ = 0.0, all_ = 0.0, frameCost_ = 0.0;  // in units of one sample of one frame
+
+    // Of the sequence at hand.
+    std::unique_ptr<studio::RayScene> middle_;  // the frame that the guide is of
+    std::unique_ptr<studio::LitPoints> guide_;
+    SequencePictures pictures_;
+    double load_ = -1.0;
+};
+
+// Inputs, techniques and indices of a frame cost about as much as this many samples of its truth.
+constexpr double kFrameSamples = 20.0;
+
+double costOf(const FailureSequence& sequence, int samples) {
+    const double truth = sequence.truth == studio::SequenceTruth::Dark ? 0.0 : double(samples);
+    return double(sequence.frames.size()) * (truth + kFrameSamples);
+}
+
+Stability::Stability(const StabilityOptions& options)
+    : options_(options),
+      results_((std::filesystem::path(options.folder) / "stability.json").string()),
+      truths_(options.truthDirectory) {
+    for (const std::string& name : options.sequences) {
+        sequences_.push_back(asUsage([&] { return studio::makeSequence(name, options.size); }));
+        all_ += costOf(sequences_.back(), samplesOf(sequences_.back()));
+    }
+    bool needsDevice = false;
+    for (const std::string& technique : options.techniques) {
+        runners_.emplace_back(technique);
+        needsDevice = needsDevice || runners_.back().parameters.needsDevice();
+    }
+    if (needsDevice && !options.onlyTruths) {
+        device_ = openDevice(options.device, std::uint32_t(options.deviceWidth));
+        info_ = device_->info();
+    }
+}
+
+int Stability::samplesOf(const FailureSequence& sequence) const {
+    return std::max(2, 2 * int(std::lround(0.5 * options_.truthEffort * sequence.truthSamples)));
+}
+
+Json Stability::describeRun() const {
+    Json header;
+    header["written"] = utcNow();
+    header["size"] = {options_.size.width, options_.size.height};
+    header["frames"] = options_.size.frames;
+    header["quick"] = options_.quick;
+    header["device"] = device_ ? deviceJson(info_) : Json();
+    header["versions"] = versionsJson();
+    header["build"] = build_;
+    header["techniques"] = options_.techniques;
+    return header;
+}
+
+void Stability::report(double ofFrame, const std::string& note) {
+    line_.update(std::min(1.0, (done_ + ofFrame * frameCost_) / std::max(1.0, all_)), note);
+    if (InterruptGuard::wasRaised())
+        throw Interrupted("interrupted; the same command goes on from " + options_.folder +
+                          "/stability.json and the truths that are kept");
+}
+
+void Stability::run() {
+    results_.setHeader(describeRun());
+    for (const FailureSequence& sequence : sequences_) {
+        const double cost = costOf(sequence, samplesOf(sequence)), before = done_;
+        frameCost_ = cost / double(sequence.frames.size());
+        results_.putSequence(describeSequence(sequence, samplesOf(sequence)));
+        if (options_.onlyTruths || !isDone(sequence)) runSequence(sequence);
+        done_ = before + cost;
+    }
+    results_.save();
+    line_.finish(fmt::format("{} frames of truth traced", truths_.tracedCount()));
+}
+
+std::string Stability::keyOf(const FailureSequence& sequence, const Runner& runner) const {
+    std::string text = fmt::format("{} {} {} {} {} {} {} {}", kProtocol, build_, info_.name, info_.driver,
+                                   info_.width, sequence.name, samplesOf(sequence), runner.bounces);
+    for (const auto& [name, value] : runner.parameters.resolved())
+        text += fmt::format(" {}={}", name, valueText(value));
+    for (const SequenceFrame& frame : sequence.frames)
+        text += fmt::format(" {}x{}", frame.width, frame.height);
+    return shortHash(text);
+}
+
+bool Stability::isDone(const FailureSequence& sequence) const {
+    return std::all_of(runners_.begin(), runners_.end(), [&](const Runner& runner) {
+        return results_.isFresh(runner.parameters.technique() + "/" + sequence.name,
+                                keyOf(sequence, runner));
+    });
+}
+
+void Stability::runSequence(const FailureSequence& sequence) {
+    load_ = loadAverage();
+    pictures_ = SequencePictures();
+    for (Runner& runner : runners_) {
+        runner.frames.clear();
+        runner.renderer.reset();
+    }
+    const SequenceFrame& middle = sequence.frames[sequence.frames.size() / 2];
+    if (sequence.truth == studio::SequenceTruth::Traced) {
+        middle_ = std::make_unique<studio::RayScene>(middle.scene, middle.time);
+        guide_ = studio::makeGuide(
+            *middle_, studio::renderGBuffer(*middle_, middle.camera, middle.width, middle.height,
+                                            middle.camera, middle.time));
+    }
+
+    std::unique_ptr<FrameScene> before;
+    for (const SequenceFrame& frame : sequence.frames) {
+        report(0.0, fmt::format("{}, frame {} of {}", sequence.name, int(&frame - sequence.frames.data()) + 1,
+                                sequence.frames.size()));
+        auto now = std::make_unique<FrameScene>(frame);
+        runFrame(sequence, *now, before.get());
+        before = std::move(now);
+        done_ += frameCost_;
+    }
+    if (options_.onlyTruths) return;
+    for (Runner& runner : runners_) judge(sequence, runner);
+    results_.save();
+}
+
+std::map<int, std::shared_ptr<const FrameTruth>> Stability::truthsOf(const FailureSequence& sequence,
+                                                                     const FrameScene& now,
+                                                                     const studio::GBuffer& view) {
+    std::map<int, std::shared_ptr<const FrameTruth>> truths;
+    for (const Runner& runner : runners_) {
+        if (truths.count(runner.bounces) != 0) continue;
+        if (sequence.truth == studio::SequenceTruth::Dark) {
+            truths[runner.bounces] = darkTruth(now.frame.width, now.frame.height);
+            continue;
+        }
+        SequenceTruths::Request request;
+        request.bounces = runner.bounces;
+        request.samples = samplesOf(sequence);
+        request.guide = guide_.get();
+        request.progress = [&](double fraction) { report(fraction); };
+        truths[runner.bounces] = truths_.obtain(*now.scene, view, request);
+    }
+    return truths;
+}
+
+void Stability::runFrame(const FailureSequence& sequence, const FrameScene& now,
+                         const FrameScene* before) {
+    const studio::GBuffer view = studio::renderGBuffer(
+        *now.scene, now.frame.camera, now.frame.width, now.frame.height, now.frame.camera, now.frame.time);
+    const auto truths = truthsOf(sequence, now, view);
+    if (options_.onlyTruths) return;
+    pictures_.addFrame(view);
+
+    studio::StabilityFrame judged;
+    judged.width = now.frame.width;
+    judged.height = now.frame.height;
+    judged.surface = now.seen.surface;
+    judged.isCut = now.frame.isCut;
+    const std::size_t count = judged.surface.size();
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    judged.previous = before == nullptr ? std::vector<glm::vec2>(count, glm::vec2(nan))
+                                        : studio::previousPositions(*now.scene, now.frame, before->frame,
+                                                                    before->seen);
+    if (sequence.region) {
+        judged.region.assign(count, 0);
+        for (std::size_t i = 0; i < count; ++i)
+            if (judged.surface[i] != 0)
+                judged.region[i] = sequence.region(now.frame, now.seen.position[i]);
+    }
+    renderFrame(sequence, now, before, judged, truths);
+}
+
+void Stability::renderFrame(const FailureSequence& sequence, const FrameScene& now,
+                            const FrameScene* before, const studio::StabilityFrame& frame,
+                            const std::map<int, std::shared_ptr<const FrameTruth>>& truths) {
+    ScaledFrame scaled(*now.scene, now.frame, sequence.scale);
+    InputOptions options;
+    options.width = now.frame.width;
+    options.height = now.frame.height;
+    options.time = now.frame.time;
+    studio::Camera previous;
+    if (before != nullptr && !now.frame.isCut) {
+        previous = scaled.camera(before->frame.camera);
+        options.previousCamera = &previous;
+        options.previousTime = before->frame.time;
+    }
+    const RenderInputs inputs(scaled.scene(), scaled.camera(now.frame.camera), options);
+    for (Runner& runner : runners_) {
+        if (runner.renderer == nullptr)
+            runner.renderer = makeRenderer(runner.parameters, inputs, device_ ? &*device_ : nullptr);
+        JudgedFrame judged;
+        judged.milliseconds = runner.renderer->renderFrame(inputs, now.frame.reset).wallMilliseconds;
+        judged.frame = frame;
+        judged.truth = truths.at(runner.bounces);
+        judged.frame.image = packed(runner.renderer->irradiance());
+        for (float& value : judged.frame.image) {
+            if (!std::isfinite(value)) {
+                value = 0.0f;
+                ++judged.notFinite;
+            }
+            judged.largest = std::max(judged.largest, std::abs(value));
+        }
+        if (sequence.scale != 1.0f)
+            dropUnlikePixels(inputs.gbuffer(), sequence.scale, now.seen, now.frame.camera.position,
+                             judged.frame.surface);
+        runner.frames.push_back(std::move(judged));
+    }
+}
+
+void Stability::judge(const FailureSequence& sequence, Runner& runner) {
+    const std::string technique = runner.parameters.technique();
+    const Verdict verdict = judgeSequence(runner.frames);
+    Json json;
+    json["id"] = technique + "/" + sequence.name;
+    json["key"] = keyOf(sequence, runner);
+    json["technique"] = technique;
+    json["sequence"] = sequence.name;
+    json["settings"] = describeDifference(runner.parameters);
+    json["parameters"] = parametersJson(runner.parameters);
+    json["bounces"] = runner.bounces;
+    json["device"] = runner.parameters.needsDevice() ? Json(info_.name) : Json();
+    json["build"] = build_;
+    json["load_average"] = load_;
+    json.update(verdict.toJson(runner.frames));
+    const bool isDark = sequence.truth == studio::SequenceTruth::Dark;
+    json["is_dark_truth"] = isDark;
+    json["passes"] = json["not_finite"] == 0 && (!isDark || json["largest"] == 0.0f);
+    const auto worst = std::size_t(verdict.indices.worstFrame);
+    json["images"] = pictures_.write(options_.folder, technique + "_" + sequence.name, worst,
+                                     runner.frames[worst]);
+    results_.putResult(json);
+    runner.frames.clear();
+    runner.renderer.reset();
+}
+
+}  // namespace
+
+void runStability(const StabilityOptions& options) {
+    Stability(options).run();
+}
+
+}  // namespace cli
