@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "lit_points.h"
 #include "noise.h"
 #include "parallel.h"
 
