@@ -36,6 +36,11 @@ FailureSequence makeFlight(const SequenceSize& size, const std::shared_ptr<Scene
     return sequence;
 }
 
+FailureSequence withSamples(int samples, FailureSequence sequence) {
+    sequence.truthSamples = samples;
+    return sequence;
+}
+
 template <class LightOf>  // Light(int frame), the only light
 void sweepLight(Scene& scene, const SequenceSize& size, LightOf lightOf) {
     setLight(scene, lightOf(0));
@@ -72,6 +77,7 @@ FailureSequence makeCut(const SequenceSize& size) {
     const Camera second = makeCamera({0.06f, 0.36f, 0.04f}, {0.5f, 0.12f, 0.36f}, 62.0f);
     FailureSequence sequence =
         makeFlight(size, scene, [&](int f) { return f < size.frames / 2 ? first : second; });
+    sequence.truthSamples = 128;  // two different frames in all
     SequenceFrame& cut = sequence.frames[std::size_t(size.frames / 2)];
     cut.isCut = cut.reset = true;
     return sequence;
@@ -97,7 +103,8 @@ FailureSequence makeQuickSweep(const SequenceSize& size) {
             glm::vec3(level * std::cos(angle), lamp.direction.y, level * std::sin(angle)));
         return light;
     });
-    return makeFlight(size, scene, [&](int) { return cameraOf(*scene, "lit_room"); });
+    // All of the light changes from frame to frame, and so does its noise.
+    return withSamples(64, makeFlight(size, scene, [&](int) { return cameraOf(*scene, "lit_room"); }));
 }
 
 FailureSequence makeMovingObject(const SequenceSize& size) {
@@ -144,7 +151,7 @@ FailureSequence makeGridCrossing(const SequenceSize& size) {
         return makeSpot(at, at + glm::vec3(2.2f, -1.2f, 0.4f), 25.0f, 32.0f);
     });
     const Camera start = makeCamera({0.8f, 1.2f, -0.5f}, {3.8f, 0.9f, 0.1f}, 60.0f);
-    return makeFlight(size, scene, [&](int f) { return moved(start, step * float(f)); });
+    return withSamples(64, makeFlight(size, scene, [&](int f) { return moved(start, step * float(f)); }));
 }
 
 // A patch of 2 cm, as bright as the whole floor under the usual lamp, wanders over the floor and the block.
@@ -154,14 +161,15 @@ FailureSequence makeTinyEmitter(const SequenceSize& size) {
     sweepLight(*scene, size, [&](int f) {
         return makeSpot(lamp, {0.47f - 0.008f * float(f), 0.0f, 0.14f}, 4000.0f, 1.5f);
     });
-    return makeFlight(size, scene, [&](int) { return cameraOf(*scene, "inside"); });
+    return withSamples(8, makeFlight(size, scene, [&](int) { return cameraOf(*scene, "inside"); }));
 }
 
 FailureSequence makeOffScreen(const SequenceSize& size) {
     const auto scene = roomsWithDoorAt(4.0f);
     Camera start = cameraOf(*scene, "lit_room");
     start.verticalFov = 45.0f * kPi / 180.0f;
-    return makeFlight(size, scene, [&](int f) { return yawed(start, 2.5f * float(f)); });
+    return withSamples(
+        16, makeFlight(size, scene, [&](int f) { return yawed(start, 2.5f * float(f)); }));
 }
 
 FailureSequence makeScaled(const SequenceSize& size, float scale) {
@@ -182,6 +190,7 @@ FailureSequence makeResolutionChange(const SequenceSize& size) {
     const auto scene = shippedScene("cornell");
     FailureSequence sequence =
         makeFlight(size, scene, [&](int) { return cameraOf(*scene, "inside"); });
+    sequence.truthSamples = 128;  // three different frames in all
     constexpr double kFactors[] = {1.0, 0.8, 0.5, 0.8};
     sequence.sweeps = "picture width, pixels";
     for (int f = 0; f < size.frames; ++f) {
@@ -197,8 +206,9 @@ FailureSequence makeResolutionChange(const SequenceSize& size) {
 FailureSequence makeGrazing(const SequenceSize& size) {
     const auto scene = roomsWithDoorAt(4.0f);
     const Camera start = makeCamera({-3.9f, 0.06f, 1.2f}, {0.0f, 0.03f, -0.4f}, 30.0f);
-    return makeFlight(size, scene,
-                      [&](int f) { return moved(start, {0.02f * float(f), 0.0f, -0.008f * float(f)}); });
+    return withSamples(16, makeFlight(size, scene, [&](int f) {
+                           return moved(start, {0.02f * float(f), 0.0f, -0.008f * float(f)});
+                       }));
 }
 
 // Irradiance at one bounce is the same everywhere, rho Phi / (4 pi R^2): from any place of a sphere every
@@ -222,6 +232,7 @@ FailureSequence makeOpeningDoor(const SequenceSize& size) {
     FailureSequence sequence =
         makeFlight(size, scene, [&](int) { return cameraOf(*scene, "dark_room"); });
     sequence.sweeps = "door's opening, degrees";
+    sequence.truthSamples = 64;  // little light comes through, and all of it changes
     for (int f = 0; f < size.frames; ++f) {
         sequence.frames[std::size_t(f)].time = float(4.0 + 4.0 * shareOf(f, size));
         sequence.frames[std::size_t(f)].value = 100.0 * shareOf(f, size);
