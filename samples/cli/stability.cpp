@@ -42,8 +42,10 @@ void complete(Arguments& arguments) {
     const Size size = parseSize(!arguments.size.empty() ? arguments.size
                                 : options.quick         ? "160x90"
                                                         : "320x180");
-    options.size = {arguments.frames != 0 ? arguments.frames : options.quick ? 8 : 32, size.width,
-                    size.height};
+    options.size = {arguments.frames != 0 ? arguments.frames
+                    : options.quick       ? 8
+                                          : 32,
+                    size.width, size.height};
 }
 
 // Throws when anything has become worse, so that the command's exit code says so.
@@ -98,9 +100,10 @@ void addStability(CLI::App& app) {
     command->add_option("--frames", arguments->frames, "Frames of each sequence; default: 32")
         ->check(CLI::Range(2, 10000));
     command->add_option("--size", arguments->size, "Picture size, WIDTHxHEIGHT; default: 320x180");
-    command->add_option("--compare", arguments->compare,
-                        "stability.json of an earlier run: says what is worse beyond the noise of both; exit "
-                        "code 1 when anything is");
+    command->add_option(
+        "--compare", arguments->compare,
+        "stability.json of an earlier run: says what is worse beyond the noise of both; exit "
+        "code 1 when anything is");
     command
         ->add_option("--truth-effort", options.truthEffort,
                      "Times the paths per pixel that each sequence's truth is traced with")
@@ -111,7 +114,8 @@ void addStability(CLI::App& app) {
     command->add_option(
         "--truth-cache", options.truthDirectory,
         "Folder of the truths; default: references/ in LIGHTWELL_CACHE_DIR or the user's cache");
-    command->add_flag("--no-report", arguments->skipsReport, "Without the report; stability.json is written");
+    command->add_flag("--no-report", arguments->skipsReport,
+                      "Without the report; stability.json is written");
     command->add_flag("--report-only", arguments->onlyReport,
                       "Table, comparison and report of the results in DIR; nothing is measured");
     command->add_option("--device", options.device, "As for render");

@@ -37,8 +37,8 @@ void compareFigure(const std::string& id, const char* name, const char* figures,
         return;
     }
     ++comparison.compared;
-    const double noise = std::abs(valueOf(before.at(floors), name, 0.0)) +
-                         std::abs(valueOf(now.at(floors), name, 0.0));
+    const double noise =
+        std::abs(valueOf(before.at(floors), name, 0.0)) + std::abs(valueOf(now.at(floors), name, 0.0));
     const double slack = noise + kRoundingShare * was + kRounding;
     const std::string text =
         fmt::format("{}: {} {:.4g} -> {:.4g} (noise of both {:.2g})", id, name, was, is, noise);

@@ -15,12 +15,9 @@ Json number(const std::optional<double>& value) {
 
 template <class Indices>
 Json indicesJson(const Indices& indices) {
-    return {{"error", indices.error},
-            {"flicker", number(indices.flicker)},
-            {"ghost", number(indices.ghost)},
-            {"leak", number(indices.leak)},
-            {"drift", number(indices.drift)},
-            {"spike", number(indices.spike)}};
+    return {{"error", indices.error},         {"flicker", number(indices.flicker)},
+            {"ghost", number(indices.ghost)}, {"leak", number(indices.leak)},
+            {"drift", number(indices.drift)}, {"spike", number(indices.spike)}};
 }
 
 }  // namespace

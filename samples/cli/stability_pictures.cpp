@@ -60,9 +60,9 @@ studio::Image sideBySide(const std::array<const studio::Image*, 3>& panels) {
         std::fill(plane.begin(), plane.end(), 1.0f);
         for (std::size_t i = 0; i < panels.size(); ++i)
             for (int y = 0; y < height; ++y)
-                std::copy_n(panels[i]->plane(channel).data() + std::ptrdiff_t(y) * width, width,
-                            plane.data() + std::ptrdiff_t(y) * row.width +
-                                std::ptrdiff_t(i) * (width + kGap));
+                std::copy_n(
+                    panels[i]->plane(channel).data() + std::ptrdiff_t(y) * width, width,
+                    plane.data() + std::ptrdiff_t(y) * row.width + std::ptrdiff_t(i) * (width + kGap));
     }
     return row;
 }

@@ -42,8 +42,8 @@ Json readStability(const std::string& path) {
                         json.contains("header") && json.contains("sequences") &&
                         json.contains("results");
     if (!isOurs)
-        throw UsageError(fmt::format(
-            "{}: expected the results of `lightwell stability` (format \"{}\")", path, kFormat));
+        throw UsageError(fmt::format("{}: expected the results of `lightwell stability` (format \"{}\")",
+                                     path, kFormat));
     return json;
 }
 
@@ -69,9 +69,9 @@ void StabilityResults::setHeader(const Json& header) {
     Json& known = impl_->json["header"];
     for (const char* field : {"size", "frames"})
         if (known.contains(field) && known[field] != header.at(field))
-            throw UsageError(
-                fmt::format("{}: its {} is {}, this run's {}; another --out, or remove it", impl_->path,
-                            field, known[field].dump(), header.at(field).dump()));
+            throw UsageError(fmt::format("{}: its {} is {}, this run's {}; another --out, or remove it",
+                                         impl_->path, field, known[field].dump(),
+                                         header.at(field).dump()));
     const Json device = known.value("device", Json());  // of earlier results, where this run needs none
     known = header;
     if (known["device"].is_null()) known["device"] = device;

@@ -1,5 +1,5 @@
-// stability.json of `lightwell stability` (stability_run.h): what is measured so far, the table of it, and
-// what has become worse since another one.
+// stability.json of `lightwell stability` (stability_run.h): what is measured so far, the table of it,
+// and what has become worse since another one.
 #pragma once
 
 #include <memory>
@@ -38,8 +38,8 @@ nlohmann::ordered_json describeSequence(const studio::FailureSequence& sequence,
 // Technique x failure: one line per sequence and technique, each index with its floor in brackets.
 std::string stabilityTable(const nlohmann::ordered_json& results);
 
-// What became worse from `before` to `now` by more than the noise of both, one line each; and notes on what
-// cannot be compared. UsageError where sizes or lengths of the two differ.
+// What became worse from `before` to `now` by more than the noise of both, one line each; and notes on
+// what cannot be compared. UsageError where sizes or lengths of the two differ.
 struct StabilityComparison {
     std::vector<std::string> regressions, improvements, notes;
     int compared = 0;  // figures

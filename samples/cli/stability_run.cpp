@@ -78,7 +78,8 @@ private:
     void runSequence(const FailureSequence& sequence);
     void runFrame(const FailureSequence& sequence, const FrameScene& now, const FrameScene* before);
     void renderFrame(const FailureSequence& sequence, const FrameScene& now, const FrameScene* before,
-                     const studio::StabilityFrame& judged, const std::map<int, std::shared_ptr<const FrameTruth>>& truths);
+                     const studio::StabilityFrame& judged,
+                     const std::map<int, std::shared_ptr<const FrameTruth>>& truths);
     std::map<int, std::shared_ptr<const FrameTruth>> truthsOf(const FailureSequence& sequence,
                                                               const FrameScene& now,
                                                               const studio::GBuffer& view);
@@ -169,8 +170,9 @@ void Stability::run() {
 }
 
 std::string Stability::keyOf(const FailureSequence& sequence, const Runner& runner) const {
-    std::string text = fmt::format("{} {} {} {} {} {} {} {}", kProtocol, build_, info_.name, info_.driver,
-                                   info_.width, sequence.name, samplesOf(sequence), runner.bounces);
+    std::string text =
+        fmt::format("{} {} {} {} {} {} {} {}", kProtocol, build_, info_.name, info_.driver, info_.width,
+                    sequence.name, samplesOf(sequence), runner.bounces);
     for (const auto& [name, value] : runner.parameters.resolved())
         text += fmt::format(" {}={}", name, valueText(value));
     for (const SequenceFrame& frame : sequence.frames)
@@ -202,8 +204,8 @@ void Stability::runSequence(const FailureSequence& sequence) {
 
     std::unique_ptr<FrameScene> before;
     for (const SequenceFrame& frame : sequence.frames) {
-        report(0.0, fmt::format("{}, frame {} of {}", sequence.name, int(&frame - sequence.frames.data()) + 1,
-                                sequence.frames.size()));
+        report(0.0, fmt::format("{}, frame {} of {}", sequence.name,
+                                int(&frame - sequence.frames.data()) + 1, sequence.frames.size()));
         auto now = std::make_unique<FrameScene>(frame);
         runFrame(sequence, *now, before.get());
         before = std::move(now);
@@ -236,8 +238,9 @@ std::map<int, std::shared_ptr<const FrameTruth>> Stability::truthsOf(const Failu
 
 void Stability::runFrame(const FailureSequence& sequence, const FrameScene& now,
                          const FrameScene* before) {
-    const studio::GBuffer view = studio::renderGBuffer(
-        *now.scene, now.frame.camera, now.frame.width, now.frame.height, now.frame.camera, now.frame.time);
+    const studio::GBuffer view =
+        studio::renderGBuffer(*now.scene, now.frame.camera, now.frame.width, now.frame.height,
+                              now.frame.camera, now.frame.time);
     const auto truths = truthsOf(sequence, now, view);
     if (options_.onlyTruths) return;
     pictures_.addFrame(view);
@@ -317,8 +320,8 @@ void Stability::judge(const FailureSequence& sequence, Runner& runner) {
     json["is_dark_truth"] = isDark;
     json["passes"] = json["not_finite"] == 0 && (!isDark || json["largest"] == 0.0f);
     const auto worst = std::size_t(verdict.indices.worstFrame);
-    json["images"] = pictures_.write(options_.folder, technique + "_" + sequence.name, worst,
-                                     runner.frames[worst]);
+    json["images"] =
+        pictures_.write(options_.folder, technique + "_" + sequence.name, worst, runner.frames[worst]);
     results_.putResult(json);
     runner.frames.clear();
     runner.renderer.reset();

@@ -1,4 +1,5 @@
-// `lightwell stability`: drives every technique through the catalogue of failures and keeps stability.json.
+// `lightwell stability`: drives every technique through the catalogue of failures and keeps
+// stability.json.
 //
 // stability.json (one JSON object; numbers are null where a sequence has nothing to judge by):
 //
@@ -10,12 +11,10 @@
 //   results     list of {
 //       id            "<technique>/<sequence>"
 //       key           of everything that the figures depend on; another key is measured again
-//       technique, sequence, settings (what differs from the defaults), parameters, bounces, device, build
-//       load_average  when the sequence began
-//       indices       {error, flicker, ghost, leak, drift, spike}
-//       floors        the same of one reference judged by another: what noise alone reads
-//       errors        {relMSE, nrmse, bias}: means over the frames
-//       error_floors  the same of the truth's own noise
+//       technique, sequence, settings (what differs from the defaults), parameters, bounces, device,
+//       build load_average  when the sequence began indices       {error, flicker, ghost, leak, drift,
+//       spike} floors        the same of one reference judged by another: what noise alone reads errors
+//       {relMSE, nrmse, bias}: means over the frames error_floors  the same of the truth's own noise
 //       not_finite    values that were NaN or infinite; largest: the greatest absolute irradiance
 //       is_dark_truth, passes   for a truth of exactly 0: whether the technique gave exactly 0
 //       worst_frame, worst_reason
@@ -35,8 +34,8 @@ struct StabilityOptions {
     std::vector<std::string> techniques, sequences;
     std::string folder, device, truthDirectory;
     studio::SequenceSize size;
-    int deviceWidth = 0;        // lanes per work-item; 0: by probe
-    double truthEffort = 1.0;   // times each sequence's own number of samples
+    int deviceWidth = 0;       // lanes per work-item; 0: by probe
+    double truthEffort = 1.0;  // times each sequence's own number of samples
     bool quick = false, onlyTruths = false;
 };
 

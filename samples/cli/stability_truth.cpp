@@ -23,8 +23,7 @@ constexpr std::size_t kRecentMost = 40;  // a little over a sequence of frames
 std::string fileName(const studio::RayScene& scene, const studio::GBuffer& view,
                      const SequenceTruths::Request& request) {
     return fmt::format("{}-{:016x}-{:016x}-{:016x}-b{}-n{}-s{}", scene.scene().name,
-                       studio::hashScene(scene), studio::hashView(view),
-                       request.guide->hash(),
+                       studio::hashScene(scene), studio::hashView(view), request.guide->hash(),
                        request.bounces == 0 ? "all" : std::to_string(request.bounces), request.samples,
                        kVersion);
 }

@@ -30,7 +30,7 @@ SequenceFrame& addFrame(FailureSequence& sequence, const SequenceSize& size,
 
 template <class CameraOf>  // Camera(int frame)
 FailureSequence makeFlight(const SequenceSize& size, const std::shared_ptr<Scene>& scene,
-                             CameraOf cameraOf) {
+                           CameraOf cameraOf) {
     FailureSequence sequence;
     for (int f = 0; f < size.frames; ++f) addFrame(sequence, size, scene, cameraOf(f));
     return sequence;
@@ -67,8 +67,7 @@ FailureSequence makePan(const SequenceSize& size) {
 FailureSequence makeDolly(const SequenceSize& size) {
     const auto scene = shippedScene("cornell");
     const Camera start = cameraOf(*scene, "front");
-    return makeFlight(size, scene,
-                      [&](int f) { return moved(start, {0.0f, 0.0f, 0.03f * float(f)}); });
+    return makeFlight(size, scene, [&](int f) { return moved(start, {0.0f, 0.0f, 0.03f * float(f)}); });
 }
 
 FailureSequence makeCut(const SequenceSize& size) {
@@ -151,10 +150,12 @@ FailureSequence makeGridCrossing(const SequenceSize& size) {
         return makeSpot(at, at + glm::vec3(2.2f, -1.2f, 0.4f), 25.0f, 32.0f);
     });
     const Camera start = makeCamera({0.8f, 1.2f, -0.5f}, {3.8f, 0.9f, 0.1f}, 60.0f);
-    return withSamples(64, makeFlight(size, scene, [&](int f) { return moved(start, step * float(f)); }));
+    return withSamples(64,
+                       makeFlight(size, scene, [&](int f) { return moved(start, step * float(f)); }));
 }
 
-// A patch of 2 cm, as bright as the whole floor under the usual lamp, wanders over the floor and the block.
+// A patch of 2 cm, as bright as the whole floor under the usual lamp, wanders over the floor and the
+// block.
 FailureSequence makeTinyEmitter(const SequenceSize& size) {
     const auto scene = shippedScene("cornell");
     const glm::vec3 lamp = scene->lights[0].position;
@@ -168,8 +169,8 @@ FailureSequence makeOffScreen(const SequenceSize& size) {
     const auto scene = roomsWithDoorAt(4.0f);
     Camera start = cameraOf(*scene, "lit_room");
     start.verticalFov = 45.0f * kPi / 180.0f;
-    return withSamples(
-        16, makeFlight(size, scene, [&](int f) { return yawed(start, 2.5f * float(f)); }));
+    return withSamples(16,
+                       makeFlight(size, scene, [&](int f) { return yawed(start, 2.5f * float(f)); }));
 }
 
 FailureSequence makeScaled(const SequenceSize& size, float scale) {
@@ -188,8 +189,7 @@ FailureSequence makeLargeScale(const SequenceSize& size) {
 
 FailureSequence makeResolutionChange(const SequenceSize& size) {
     const auto scene = shippedScene("cornell");
-    FailureSequence sequence =
-        makeFlight(size, scene, [&](int) { return cameraOf(*scene, "inside"); });
+    FailureSequence sequence = makeFlight(size, scene, [&](int) { return cameraOf(*scene, "inside"); });
     sequence.truthSamples = 128;  // three different frames in all
     constexpr double kFactors[] = {1.0, 0.8, 0.5, 0.8};
     sequence.sweeps = "picture width, pixels";
@@ -211,8 +211,8 @@ FailureSequence makeGrazing(const SequenceSize& size) {
                        }));
 }
 
-// Irradiance at one bounce is the same everywhere, rho Phi / (4 pi R^2): from any place of a sphere every
-// other one has the form factor of its share of the area.
+// Irradiance at one bounce is the same everywhere, rho Phi / (4 pi R^2): from any place of a sphere
+// every other one has the form factor of its share of the area.
 FailureSequence makeSphericalRoom(const SequenceSize& size) {
     const auto scene = shippedScene("sphere_room");
     sweepLight(*scene, size, [](int f) {
@@ -220,8 +220,7 @@ FailureSequence makeSphericalRoom(const SequenceSize& size) {
         const glm::vec3 at(0.2f, 0.1f, 0.0f);
         return makeSpot(at, at + glm::vec3(std::sin(angle), -0.3f, -std::cos(angle)), 10.0f, 35.0f);
     });
-    FailureSequence sequence =
-        makeFlight(size, scene, [&](int) { return cameraOf(*scene, "inside"); });
+    FailureSequence sequence = makeFlight(size, scene, [&](int) { return cameraOf(*scene, "inside"); });
     sequence.truthSamples = 8;
     return sequence;
 }
@@ -240,8 +239,8 @@ FailureSequence makeOpeningDoor(const SequenceSize& size) {
     return sequence;
 }
 
-// A sun, a lamp, and nothing that either could shine on in view; a speck far behind the camera keeps it a
-// scene.
+// A sun, a lamp, and nothing that either could shine on in view; a speck far behind the camera keeps it
+// a scene.
 FailureSequence makeEmpty(const SequenceSize& size) {
     const auto scene = std::make_shared<Scene>();
     scene->name = "empty";
@@ -253,8 +252,9 @@ FailureSequence makeEmpty(const SequenceSize& size) {
     scene->meshes = {speck};
     setLight(*scene, makeSpot({0.0f, 2.0f, 0.0f}, {0.0f, 0.0f, -2.0f}, 10.0f, 40.0f));
     const Camera start = makeCamera({0.0f, 1.0f, 3.0f}, {0.0f, 0.5f, 0.0f}, 50.0f);
-    FailureSequence sequence = makeFlight(
-        size, scene, [&](int f) { return moved(start, {0.05f * float(f), 0.0f, 0.0f}); });
+    FailureSequence sequence = makeFlight(size, scene, [&](int f) {
+        return moved(start, {0.05f * float(f), 0.0f, 0.0f});
+    });
     sequence.truth = SequenceTruth::Dark;
     return sequence;
 }
@@ -296,7 +296,8 @@ const std::vector<SequenceMaker>& sequenceMakers() {
         {{"light_sweep_quick", "lag behind a quick light, black stripes", false}, makeQuickSweep},
         {{"moving_object", "ghosts behind a moving box and its shadow", false}, makeMovingObject},
         {{"thin_walls", "light through walls of 30 cm to 1 mm", true}, makeThinWalls},
-        {{"grid_crossing", "camera and lamp drift through the cells of a grid", false}, makeGridCrossing},
+        {{"grid_crossing", "camera and lamp drift through the cells of a grid", false},
+         makeGridCrossing},
         {{"tiny_emitter", "a tiny bright patch that few samples find", false}, makeTinyEmitter},
         {{"emitter_off_screen", "what is lit leaves the screen", false}, makeOffScreen},
         {{"scale_small", "lengths times 1/1000", false}, makeSmallScale},
@@ -324,9 +325,9 @@ const std::vector<SequenceEntry>& sequenceCatalogue() {
 
 FailureSequence makeSequence(const std::string& name, const SequenceSize& size) {
     if (size.frames < 2 || size.width < 1 || size.height < 1)
-        throw std::invalid_argument(
-            fmt::format("sequence size: expected 2 frames or more of 1x1 pixels or more, got {} of {}x{}",
-                        size.frames, size.width, size.height));
+        throw std::invalid_argument(fmt::format(
+            "sequence size: expected 2 frames or more of 1x1 pixels or more, got {} of {}x{}",
+            size.frames, size.width, size.height));
     std::vector<std::string> names;
     for (const SequenceMaker& maker : sequenceMakers()) {
         if (maker.entry.name == name) {

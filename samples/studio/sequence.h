@@ -1,5 +1,5 @@
-// The catalogue of failures: deterministic sequences, each built to provoke one way in which indirect light
-// goes wrong over time or in an unusual scene. docs/stability.md describes each.
+// The catalogue of failures: deterministic sequences, each built to provoke one way in which indirect
+// light goes wrong over time or in an unusual scene. docs/stability.md describes each.
 //
 //     for (const SequenceEntry& entry : sequenceCatalogue()) {
 //         const FailureSequence sequence = makeSequence(entry.name, {32, 320, 180});
@@ -28,9 +28,9 @@ struct SequenceFrame {
     float time = 0.0f;                   // of the scene's keyframes
     Camera camera;
     int width = 0, height = 0;
-    bool reset = false;   // the host tells the technique to forget (the first frame, cuts)
-    bool isCut = false;   // nothing of the frame before is to be followed
-    double value = 0.0;   // what the sequence sweeps (FailureSequence::sweeps), else 0
+    bool reset = false;  // the host tells the technique to forget (the first frame, cuts)
+    bool isCut = false;  // nothing of the frame before is to be followed
+    double value = 0.0;  // what the sequence sweeps (FailureSequence::sweeps), else 0
 };
 
 enum class SequenceTruth {
@@ -67,7 +67,7 @@ FailureSequence makeSequence(const std::string& name, const SequenceSize& size);
 struct SeenFrame {
     int width = 0, height = 0;
     std::vector<std::uint8_t> surface;
-    std::vector<int> mesh;               // -1: none
+    std::vector<int> mesh;  // -1: none
     std::vector<glm::vec3> position, normal;
 };
 SeenFrame seeFrame(const RayScene& scene, const SequenceFrame& frame);

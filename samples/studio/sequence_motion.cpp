@@ -99,10 +99,11 @@ std::vector<glm::vec2> previousPositions(const RayScene& scene, const SequenceFr
             const float slope = std::max(0.02f, glm::dot(beforeSeen.normal[there], towards));
             if (offPlane > footprint || glm::length(way) > kPixelsApart * footprint / slope) continue;
             // Of a thin box the other side lies in nearly the same place.
-            const bool isAtRest = frame.scene->objects[std::size_t(
-                                      frame.scene->meshes[std::size_t(hit.mesh)].object)]
-                                      .keys.empty();
-            if (isAtRest && glm::dot(hit.geometricNormal, beforeSeen.normal[there]) < kSameSide) continue;
+            const bool isAtRest =
+                frame.scene->objects[std::size_t(frame.scene->meshes[std::size_t(hit.mesh)].object)]
+                    .keys.empty();
+            if (isAtRest && glm::dot(hit.geometricNormal, beforeSeen.normal[there]) < kSameSide)
+                continue;
             previous[std::size_t(y) * std::size_t(frame.width) + std::size_t(x)] = glm::vec2(at);
         }
     });

@@ -156,8 +156,8 @@ std::shared_ptr<Scene> makeCorridor() {
     addBox(*scene, "end", {kEnd, 0.0f, -kSide}, {kEnd + o, kTop, kSide}, wall);
     for (int i = 0; i < 12; ++i) {  // on alternating sides
         const float x = 2.5f + 1.1f * float(i), z = i % 2 == 0 ? -1.2f : 1.2f;
-        addBox(*scene, "block", {x, -0.01f, z - 0.25f}, {x + 0.5f, 0.7f + 0.1f * float(i % 4), z + 0.25f},
-               colours[i % 3]);
+        addBox(*scene, "block", {x, -0.01f, z - 0.25f},
+               {x + 0.5f, 0.7f + 0.1f * float(i % 4), z + 0.25f}, colours[i % 3]);
     }
     return scene;
 }

@@ -1,5 +1,5 @@
-// The catalogue of failures: frames that are the same every time, ways from frame to frame that are true, and
-// truths that keep their noise where nothing changes.
+// The catalogue of failures: frames that are the same every time, ways from frame to frame that are
+// true, and truths that keep their noise where nothing changes.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -79,9 +79,8 @@ std::vector<StabilityFrame> noiseFrames(const FailureSequence& sequence, int sam
         judged.truth = truth->second;
         judged.surface = seen.surface;
         judged.isCut = frame.isCut;
-        judged.previous =
-            f == 0 ? std::vector<glm::vec2>(seen.surface.size(), glm::vec2(NAN))
-                   : previousPositions(scene, frame, sequence.frames[f - 1], seenBefore);
+        judged.previous = f == 0 ? std::vector<glm::vec2>(seen.surface.size(), glm::vec2(NAN))
+                                 : previousPositions(scene, frame, sequence.frames[f - 1], seenBefore);
         frames.push_back(std::move(judged));
         seenBefore = seen;
     }
@@ -144,20 +143,20 @@ TEST_CASE("ways from frame to frame agree with the G-buffer's motion vectors") {
         const FailureSequence sequence = makeSequence(name, {4, 96, 54});
         const SequenceFrame &before = sequence.frames[1], &frame = sequence.frames[2];
         const RayScene beforeScene(before.scene, before.time), scene(frame.scene, frame.time);
-        const auto previous =
-            previousPositions(scene, frame, before, seeFrame(beforeScene, before));
-        const GBuffer view = renderGBuffer(scene, frame.camera, frame.width, frame.height,
-                                           before.camera, before.time);
+        const auto previous = previousPositions(scene, frame, before, seeFrame(beforeScene, before));
+        const GBuffer view =
+            renderGBuffer(scene, frame.camera, frame.width, frame.height, before.camera, before.time);
         std::size_t matched = 0;
         float apart = 0.0f;
         for (int y = 0; y < frame.height; ++y)
             for (int x = 0; x < frame.width; ++x) {
-                const glm::vec2 at = previous[std::size_t(y) * std::size_t(frame.width) + std::size_t(x)];
+                const glm::vec2 at =
+                    previous[std::size_t(y) * std::size_t(frame.width) + std::size_t(x)];
                 if (std::isnan(at.x)) continue;
                 ++matched;
                 const glm::vec2 motion(view.motion.row(0, y)[x], view.motion.row(1, y)[x]);
-                apart = std::max(apart, glm::length(at - (glm::vec2(float(x) + 0.5f, float(y) + 0.5f) +
-                                                          motion)));
+                apart = std::max(
+                    apart, glm::length(at - (glm::vec2(float(x) + 0.5f, float(y) + 0.5f) + motion)));
             }
         CHECK(apart < 1e-3f);  // pixels: rounding of two ways to the same number
         CHECK(matched > countSurfaces(seeFrame(scene, frame)) * 8 / 10);
@@ -201,8 +200,8 @@ TEST_CASE("a truth keeps its noise where nothing changes") {
     const auto frames = noiseFrames(dolly, 16, cache.path.string());
     const StabilityIndices noise = stabilityIndices(frames);
     INFO("error of one reference by the other " << noise.error << ", flicker " << *noise.flicker);
-    CHECK(noise.error > 0.05);                       // there is noise,
-    CHECK(*noise.flicker < 0.25 * noise.error);      // which stands still
+    CHECK(noise.error > 0.05);                   // there is noise,
+    CHECK(*noise.flicker < 0.25 * noise.error);  // which stands still
 
     // Traced once: the second run takes all from the cache, bit for bit.
     const auto again = noiseFrames(dolly, 16, cache.path.string());
@@ -226,9 +225,8 @@ TEST_CASE("one truth serves all scales") {
         const FailureSequence scaledSequence = makeSequence(name, {2, 48, 27});
         CHECK(hashFrame(scaledSequence.frames[1]) == hashFrame(frame));  // the truth is the dolly's own
         const cli::ScaledFrame scaled(scene, frame, scaledSequence.scale);
-        const GBuffer scaledView =
-            renderGBuffer(scaled.scene(), scaled.camera(frame.camera), 48, 27,
-                          scaled.camera(frame.camera), frame.time);
+        const GBuffer scaledView = renderGBuffer(scaled.scene(), scaled.camera(frame.camera), 48, 27,
+                                                 scaled.camera(frame.camera), frame.time);
         const auto other = truths.obtain(scaled.scene(), scaledView, request);
         std::vector<std::uint8_t> surface = seeFrame(scene, frame).surface;
         const std::size_t all = std::size_t(std::count(surface.begin(), surface.end(), 1));
