@@ -1,1 +1,153 @@
-"""placeholder"""
+"""`lightwell stability` in its short form: bounds that a regression crosses, floors, resumption, comparison.
+
+Usage: stability_test.py PROGRAM [unittest options]. Python's standard library only.
+"""
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+PROGRAM = os.path.abspath(sys.argv[1]) if len(sys.argv) > 1 else ""
+
+# What no run may exceed: measured when the catalogue was new, and a fifth more. Same input gives the same bits; other
+# devices round, and a truth's noise is in both figures. A floor must be under a quarter of its bound.
+BOUNDS = {
+    # technique/sequence: {index: bound}
+}
+LEAST_LEAK = 0.05  # rsm has no visibility: a thin wall that stops its light would be the catalogue's own fault
+INDICES = {"error", "flicker", "ghost", "leak", "drift", "spike"}
+RESULT_KEYS = {"id", "key", "technique", "sequence", "settings", "parameters", "bounces", "device", "build", "load_average",
+               "indices", "floors", "errors", "error_floors", "not_finite", "largest", "is_dark_truth", "passes", "worst_frame",
+               "worst_reason", "frames", "images"}
+
+
+class Stability(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.cache = os.path.join(cls.temporary.name, "truths")
+        cls.folder = os.path.join(cls.temporary.name, "quick")
+        process = cls.start("--quick", "--no-report")
+        cls.output, errors = process.communicate(timeout=300)
+        if process.returncode != 0:
+            raise RuntimeError(errors)
+        with open(os.path.join(cls.folder, "stability.json"), encoding="utf-8") as file:
+            cls.data = json.load(file)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.temporary.cleanup()
+
+    @classmethod
+    def start(cls, *arguments, folder=None):
+        command = [PROGRAM, "stability", "--out", folder or cls.folder, "--truth-cache", cls.cache, *arguments]
+        return subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+    def run_again(self, *arguments, code=0, folder=None):
+        process = self.start(*arguments, folder=folder)
+        output, errors = process.communicate(timeout=300)
+        self.assertEqual(process.returncode, code, errors)
+        return output, errors
+
+    def results(self):
+        return {r["id"]: r for r in self.data["results"]}
+
+    def test_bounds_and_floors(self):
+        results = self.results()
+        for name, bounds in BOUNDS.items():
+            for index, bound in bounds.items():
+                with self.subTest(result=name, index=index):
+                    self.assertLess(results[name]["indices"][index], bound)
+                    self.assertLess(results[name]["floors"][index], 0.25 * bound)
+
+    def test_walls_leak_where_there_is_no_visibility(self):
+        self.assertGreater(self.results()["rsm/thin_walls"]["indices"]["leak"], LEAST_LEAK)
+        self.assertEqual(self.results()["rsm/thin_walls"]["floors"]["leak"], 0.0)
+
+    def test_lightless_sequences_are_exactly_dark(self):
+        for technique in ("rsm", "rival"):
+            for sequence in ("empty_scene", "no_light"):
+                result = self.results()[f"{technique}/{sequence}"]
+                self.assertTrue(result["passes"])
+                self.assertEqual((result["largest"], result["not_finite"]), (0.0, 0))
+
+    def test_what_the_file_states(self):
+        self.assertEqual(self.data["format"], "lightwell-stability 1")
+        self.assertEqual(self.data["header"]["size"], [160, 90])
+        self.assertEqual(self.data["header"]["frames"], 8)
+        for result in self.data["results"]:
+            self.assertEqual(RESULT_KEYS, set(result))
+            self.assertEqual(INDICES, set(result["indices"]))
+            self.assertEqual(len(result["frames"]), 8)
+            for picture in result["images"].values():
+                with open(os.path.join(self.folder, picture), "rb") as file:
+                    self.assertEqual(file.read(8), b"\x89PNG\r\n\x1a\n")
+            self.assertIn(result["sequence"], self.output)
+        cut = next(s for s in self.data["sequences"] if s["id"] == "camera_cut")
+        self.assertEqual(cut["cuts"], [4])
+        walls = next(s for s in self.data["sequences"] if s["id"] == "thin_walls")
+        self.assertAlmostEqual(walls["values"][0], 0.3)
+        self.assertAlmostEqual(walls["values"][-1], 0.001)
+
+    def test_a_second_run_measures_nothing(self):
+        before = os.stat(os.path.join(self.folder, "images", "rsm_thin_walls_picture.png")).st_mtime_ns
+        _, errors = self.run_again("--quick", "--no-report")
+        self.assertIn("0 frames of truth traced", errors)
+        self.assertEqual(before, os.stat(os.path.join(self.folder, "images", "rsm_thin_walls_picture.png")).st_mtime_ns)
+
+    def test_comparison(self):
+        path = os.path.join(self.folder, "stability.json")
+        output, _ = self.run_again("--quick", "--no-report", "--report-only", "--compare", path)
+        self.assertIn("0 worse beyond noise", output)
+
+        old = json.loads(json.dumps(self.data))
+        result = next(r for r in old["results"] if r["id"] == "rsm/thin_walls")
+        result["indices"]["leak"] *= 0.5
+        better = os.path.join(self.temporary.name, "better.json")
+        with open(better, "w", encoding="utf-8") as file:
+            json.dump(old, file)
+        output, errors = self.run_again("--quick", "--no-report", "--report-only", "--compare", better, code=1)
+        self.assertIn("WORSE   rsm/thin_walls: leak", output)
+        self.assertIn("rsm/thin_walls: leak", errors)
+
+        old["header"]["frames"] = 32
+        with open(better, "w", encoding="utf-8") as file:
+            json.dump(old, file)
+        _, errors = self.run_again("--quick", "--no-report", "--report-only", "--compare", better, code=2)
+        self.assertIn("frames", errors)
+
+    def test_an_interrupted_run_goes_on(self):
+        folder = os.path.join(self.temporary.name, "interrupted")
+        arguments = ("--no-report", "--size", "96x54", "--frames", "6", "--sequences", "no_light", "camera_dolly", "--techniques", "rsm")
+        process = self.start(*arguments, folder=folder)
+        deadline = time.time() + 60
+        while time.time() < deadline and not any("cornell" in name and "-n" in name for name in os.listdir(self.cache)
+                                                 if name not in self.known_truths()):
+            time.sleep(0.02)
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=60)
+        self.assertIn(process.returncode, (0, 130), errors)  # 0: it was done before the signal came
+        _, errors = self.run_again(*arguments, folder=folder)
+        with open(os.path.join(folder, "stability.json"), encoding="utf-8") as file:
+            self.assertEqual({r["id"] for r in json.load(file)["results"]}, {"rsm/no_light", "rsm/camera_dolly"})
+
+    def known_truths(self):
+        if not hasattr(self, "_known"):
+            self._known = set(os.listdir(self.cache))
+        return self._known
+
+    def test_wrong_arguments_are_named(self):
+        _, errors = self.run_again("--sequences", "pan", code=2)
+        self.assertIn("camera_pan", errors)
+        _, errors = self.run_again("--quick", "--frames", "9", "--no-report", code=2)
+        self.assertIn("frames", errors)
+        _, errors = self.run_again("--techniques", "magic", code=2)
+        self.assertIn("rival", errors)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], "-v", *sys.argv[2:]])
