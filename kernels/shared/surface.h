@@ -15,8 +15,9 @@ typedef struct {
 
 LW_FN real squared_length(real x, real y, real z) { return fma_(x, x, fma_(y, y, z * z)); }
 
+// False for NaN. As the operator <=, Oclgrind 21.10 takes lanes beyond for near ones in joint_bilateral_downsample.
 LW_FN mask is_within_reach(real px, real py, real pz) {
-    return squared_length(px, py, pz) <= LW_LARGEST_DISTANCE * LW_LARGEST_DISTANCE;  // false for NaN
+    return islessequal(squared_length(px, py, pz), (real)(LW_LARGEST_DISTANCE * LW_LARGEST_DISTANCE));
 }
 
 // Normals of compact formats are off unit length by quantisation: they are normalised, not refused.
