@@ -6,11 +6,13 @@
 #include <string>
 
 #include "stability_indices.h"
+#include "support/noise_number.h"
 #include "support/stability_frames.h"
 
 using Catch::Matchers::Contains;
 using stability_test::Light;
 using stability_test::makeFrames;
+using stability_test::noiseNumber;
 using studio::StabilityFrame;
 using studio::stabilityIndices;
 using studio::StabilityIndices;
@@ -23,18 +25,6 @@ constexpr double kExact = 1e-6;                        // images are float
 
 Light even(double value) {
     return [value](int, int, int) { return value; };
-}
-
-// The same number in [-1,1] for the same arguments.
-double noise(int a, int b, int c) {
-    std::uint32_t h =
-        std::uint32_t(a) * 0x9E3779B1u ^ std::uint32_t(b) * 0x85EBCA77u ^ std::uint32_t(c) * 0xC2B2AE3Du;
-    for (int i = 0; i < 3; ++i) {
-        h ^= h >> 15;
-        h *= 0x2C1B3C6Du;
-        h ^= h >> 12;
-    }
-    return double(h) / 2147483647.5 - 1.0;
 }
 
 StabilityIndices indicesOf(const Light& image, const Light& truth, float step = 0.0f) {
@@ -63,7 +53,7 @@ void checkFinite(const StabilityIndices& indices) {
 TEST_CASE("an image that equals the truth has no index above 0, however it moves") {
     for (float step : {0.0f, 0.3f, 1.0f, 2.5f}) {
         INFO("step " << step);
-        const Light light = [](int t, int x, int y) { return 1.0 + 0.9 * noise(t, x, y); };
+        const Light light = [](int t, int x, int y) { return 1.0 + 0.9 * noiseNumber(t, x, y); };
         const StabilityIndices indices = indicesOf(light, light, step);
         CHECK(indices.flicker.value() == 0.0);
         CHECK(indices.ghost.value_or(0.0) == 0.0);
@@ -86,7 +76,7 @@ TEST_CASE("flicker: brightness that alternates") {
 
 TEST_CASE("flicker: the same noise at rest and in motion") {
     // Two independent numbers of [-a,a] differ by 2a/3 in the mean.
-    const auto image = [](int t, int x, int y) { return 1.0 + 0.3 * noise(t, x, y); };
+    const auto image = [](int t, int x, int y) { return 1.0 + 0.3 * noiseNumber(t, x, y); };
     for (float step : {0.0f, 0.5f, 1.0f, 3.25f}) {
         INFO("step " << step);
         CHECK(indicesOf(image, even(1.0), step).flicker.value() == Approx(0.2).epsilon(0.03));
@@ -120,7 +110,7 @@ TEST_CASE("an even factor is no drift and no spike while the light changes") {
 
 TEST_CASE("nothing depends on the unit of light") {
     const auto image = [](int t, int x, int y) {
-        return 1.0 + 0.01 * t + 0.3 * noise(t, x, y) + (t == 9 ? 1 : 0);
+        return 1.0 + 0.01 * t + 0.3 * noiseNumber(t, x, y) + (t == 9 ? 1 : 0);
     };
     const auto truth = [](int t, int x, int) { return (t < 12 ? 1.0 : 4.0) + 0.01 * x; };
     auto frames = makeFrames(kCount, kWidth, kHeight, image, truth, 2.0f);
@@ -168,7 +158,7 @@ TEST_CASE("ghost: what a moving picture reveals") {
     };
     CHECK(indicesOf(image, even(1.0), 2.0f).ghost.value() == Approx(4.0).epsilon(1e-4));
     // An error that belongs to surfaces, whatever their age.
-    const auto painted = [](int t, int x, int y) { return 1.0 + noise(7, x - 2 * t, y); };
+    const auto painted = [](int t, int x, int y) { return 1.0 + noiseNumber(7, x - 2 * t, y); };
     CHECK(indicesOf(painted, even(1.0), 2.0f).ghost.value() == Approx(0.0).margin(1e-4));
     // Nothing comes into sight: nothing to judge.
     CHECK_FALSE(indicesOf(painted, even(1.0)).ghost.has_value());
@@ -265,7 +255,7 @@ TEST_CASE("spike: not what stays, what comes all the time, or what the truth doe
 }
 
 TEST_CASE("black sequences have finite indices") {
-    const auto dim = [](int t, int x, int y) { return 1e-20 * (2.0 + noise(t, x, y)); };
+    const auto dim = [](int t, int x, int y) { return 1e-20 * (2.0 + noiseNumber(t, x, y)); };
     CHECK(indicesOf(even(0.0), even(0.0)).flicker.value() == 0.0);
     checkFinite(indicesOf(even(0.0), even(0.0)));
     // Light where there is none in truth is judged by its own mean.
