@@ -76,4 +76,5 @@ def axis_values(axis, sequence, key):
         return values
     axis.set_xlabel("frame")
     axis.xaxis.set_major_locator(MaxNLocator(integer=True))
+    axis.set_xlim(-0.5, sequence["frames"] - 0.5)  # the same for all, whatever frames a figure has
     return list(range(sequence["frames"]))

@@ -17,8 +17,10 @@ ERRORS = {
     "bias": ("bias", 0.1, "light too much (above 0) or missing, mean over the frames"),
 }
 COLUMNS = {**INDICES, **ERRORS}
-NOISE_SHARE = 0.25  # of a figure: with a larger floor it says too much about the truth's noise
-LEVELS = {"none": "nothing to judge by", "noisy": "floor above a quarter of it", "quiet": "hardly noticed", "seen": "noticed",
+# Of a figure: with a larger floor it says too much about the truth's noise. That of nRMSE adds in squares, of which a
+# tenth may be noise as everywhere (docs/accuracy.md).
+NOISE_SHARE, NOISE_SHARE_NRMSE = 0.25, math.sqrt(0.1)
+LEVELS = {"none": "nothing to judge by", "noisy": "too close to its floor", "quiet": "hardly noticed", "seen": "noticed",
           "bad": "four times what is noticed", "exact": "0"}
 
 
@@ -59,7 +61,8 @@ def level(key, value, floor):
         return "exact"
     noticed = COLUMNS[key][1]
     # A figure far below what is noticed is small, whatever the noise.
-    if floor is not None and abs(floor) > NOISE_SHARE * size and max(size, abs(floor)) > NOISE_SHARE * noticed:
+    share = NOISE_SHARE_NRMSE if key == "nrmse" else NOISE_SHARE
+    if floor is not None and abs(floor) > share * size and max(size, abs(floor)) > share * noticed:
         return "noisy"
     return "quiet" if size < noticed else "seen" if size < 4.0 * noticed else "bad"
 

@@ -8,7 +8,7 @@ FILE, ORDER = "stability.json", 30
 
 BODY = """<p>Each failure is a sequence of frames built to provoke it, with a path-traced truth for each frame. The figures are
 relative to the truth's light: 0 is best for all of them. In small grey: the <em>floor</em>, what a second truth reads, by its
-noise alone. <code>docs/stability.md</code> states each formula and what it is blind to.</p>
+noise alone; figures too close to it stand on grey. <code>docs/stability.md</code> states each formula and what it is blind to.</p>
 <dl class="stability-words">{words}</dl>
 <h2>Techniques and failures</h2>
 <form class="stability-choice"><label>figure <select id="stability-figure">{options}</select></label>{legend}</form>

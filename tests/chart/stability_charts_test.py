@@ -71,6 +71,8 @@ class Levels(unittest.TestCase):
         self.assertEqual(stability.level("flicker", 0.1, 0.02), "seen")
         self.assertEqual(stability.level("flicker", 0.004, 0.004), "quiet")
         self.assertEqual(stability.level("flicker", 0.004, 0.03), "noisy")
+        self.assertEqual(stability.level("nrmse", 0.4, 0.12), "seen")  # a tenth of its square
+        self.assertEqual(stability.level("nrmse", 0.4, 0.13), "noisy")
 
     def test_three_digits(self):
         for value, expected in ((None, ""), (0.0, "0"), (1.23456, "1.23"), (123.456, "123"), (0.0123456, "0.0123"), (0.00123, "0.0012"),
