@@ -13,6 +13,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+from unittest import mock
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
 sys.path.insert(0, os.path.join(ROOT, "samples", "chart"))
@@ -105,9 +106,15 @@ class Refused(InFolder):
 
 @unittest.skipUnless(HAS_MATPLOTLIB, "matplotlib is missing")
 class Page(InFolder):
-    def make(self, results, sequences):
+    def make(self, results, sequences, draws=False):
+        """The section; without drawing, an empty plot for each sequence."""
         self.write(made_data(results, sequences))
-        return section.make(self.folder)
+        if draws:
+            return section.make(self.folder)
+        names = {s["id"]: "plot.svg" for s in sequences}
+        (self.folder / "plot.svg").write_text("<svg/>", encoding="ascii")
+        with mock.patch("stability_plots.write_plots", lambda results: names):
+            return section.make(self.folder)
 
     def test_tables_hold_every_figure(self):
         made = self.make([made_result("t", "walls", leak=0.5), made_result("u", "walls"), made_result("t", "pan")],
@@ -124,7 +131,7 @@ class Page(InFolder):
         self.assertNotIn("Light that must not be", made.body)
 
     def test_plots_and_pictures_are_in_the_page(self):
-        made = self.make([made_result("t", "walls", leak=0.5)], [made_sequence("walls", sweeps="wall thickness, m")])
+        made = self.make([made_result("t", "walls", leak=0.5)], [made_sequence("walls", sweeps="wall thickness, m")], draws=True)
         self.assertEqual(made.written, ["stability_walls.svg"])
         self.assertEqual(len(re.findall('src="data:image/png;base64,', made.body)), 3)
         self.assertEqual(len(re.findall('src="data:image/svg[+]xml;base64,', made.body)), 1)
@@ -133,7 +140,7 @@ class Page(InFolder):
         svg = (self.folder / "stability_walls.svg").read_text(encoding="utf-8")
         self.assertIn("wall thickness, m", svg)
         first = svg
-        self.make([made_result("t", "walls", leak=0.5)], [made_sequence("walls", sweeps="wall thickness, m")])
+        self.make([made_result("t", "walls", leak=0.5)], [made_sequence("walls", sweeps="wall thickness, m")], draws=True)
         self.assertEqual(first, (self.folder / "stability_walls.svg").read_text(encoding="utf-8"))  # same figures, same file
 
     def test_the_page_is_one_file_that_loads_nothing(self):
@@ -154,12 +161,14 @@ class Page(InFolder):
 
     def test_a_missing_picture_is_named(self):
         self.write(made_data([made_result("t", "walls")], [made_sequence("walls")]), pictures=False)
-        with self.assertRaisesRegex(report.ReportError, "t/walls: picture.*t_walls_picture.png"):
+        (self.folder / "plot.svg").write_text("<svg/>", encoding="ascii")
+        with mock.patch("stability_plots.write_plots", lambda results: {"walls": "plot.svg"}), \
+                self.assertRaisesRegex(report.ReportError, "t/walls: picture.*t_walls_picture.png"):
             section.make(self.folder)
 
     def test_no_pictures_are_no_error(self):
-        self.write(made_data([made_result("t", "walls", images={})], [made_sequence("walls")]))
-        self.assertNotIn("stability-worst", section.make(self.folder).body)
+        made = self.make([made_result("t", "walls", images={})], [made_sequence("walls")])
+        self.assertNotIn("stability-worst", made.body)
 
 
 if __name__ == "__main__":
