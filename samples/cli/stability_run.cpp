@@ -176,7 +176,11 @@ std::string Stability::keyOf(const FailureSequence& sequence, const Runner& runn
     for (const auto& [name, value] : runner.parameters.resolved())
         text += fmt::format(" {}={}", name, valueText(value));
     for (const SequenceFrame& frame : sequence.frames)
-        text += fmt::format(" {}x{}", frame.width, frame.height);
+        text += fmt::format(" {}x{} {} {} {}", frame.width, frame.height, frame.camera.position.x,
+                            frame.camera.target.x, frame.value);
+    // The code is in the build's identity; files of shipped scenes are not.
+    const SequenceFrame& middle = sequence.frames[sequence.frames.size() / 2];
+    text += fmt::format(" {:016x}", studio::hashScene(studio::RayScene(middle.scene, middle.time)));
     return shortHash(text);
 }
 

@@ -142,6 +142,17 @@ class Stability(unittest.TestCase):
         with open(os.path.join(folder, "stability.json"), encoding="utf-8") as file:
             self.assertEqual({r["id"] for r in json.load(file)["results"]}, {"rsm/no_light", "rsm/camera_dolly"})
 
+    def test_sizes_change_from_frame_to_frame(self):
+        folder = os.path.join(self.temporary.name, "sizes")
+        self.run_again("--no-report", "--size", "80x45", "--frames", "8", "--truth-effort", "0.25", "--sequences", "resolution_change", folder=folder)
+        with open(os.path.join(folder, "stability.json"), encoding="utf-8") as file:
+            data = json.load(file)
+        self.assertEqual([w for w, _ in data["sequences"][0]["sizes"]], [80, 80, 64, 64, 40, 40, 64, 64])
+        for result in data["results"]:
+            errors = [frame["relMSE"] for frame in result["frames"]]
+            self.assertEqual(errors[2], errors[6])  # the same picture before and after a smaller one
+            self.assertNotEqual(errors[2], errors[4])
+
     def test_wrong_arguments_are_named(self):
         _, errors = self.run_again("--sequences", "pan", code=2)
         self.assertIn("camera_pan", errors)
