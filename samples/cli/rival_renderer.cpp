@@ -31,7 +31,8 @@ public:
         frame.deviceBytes = rival_->bytes();
         frame.counts = {{"rays", times.rays},
                         {"shadow_rays", times.shadowRays},
-                        {"left_over_pixels", times.leftOver}};
+                        {"left_over_pixels", times.leftOver},
+                        {"processor_us", std::uint64_t(1e3 * times.processor)}};
         return frame;
     }
     const studio::PlanarBuffer& irradiance() const override { return irradiance_; }
@@ -76,7 +77,7 @@ const LWParameter kParameters[] = {
      LW_PARAMETER_ENUM, FIELD(resolution), 0, 2, 0, kResolutions, nullptr, 0, kResolutionSweep, 3},
     {"filter", "edge-aware filter, from two paths on guided by their noise; off: the traced image", LW_PARAMETER_BOOL, FIELD(filter), 0, 1, 1,
      nullptr, nullptr, 0, nullptr, 0},
-    {"levels", "of the filter, each doubles its reach; 0: three, or two at a quarter of the resolution", LW_PARAMETER_UINT,
+    {"levels", "of the filter, each doubles its reach; 0: two or three, by resolution", LW_PARAMETER_UINT,
      FIELD(levels), 0, 5, 0, nullptr, nullptr, 0, nullptr, 0},
     {"pattern", "pixels this many apart share sample points, so that rays are coherent; 0: none do",
      LW_PARAMETER_UINT, FIELD(pattern), 0, 8, 0, nullptr, kPatterns, 5, nullptr, 0},

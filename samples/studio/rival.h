@@ -23,7 +23,7 @@ struct RivalOptions {
     std::uint32_t spp = 1;      // paths per traced pixel
     RivalResolution resolution = RivalResolution::Full;
     std::uint32_t filter = 1;   // 1: edge-aware filter, from two paths on guided by their noise; 0: none
-    std::uint32_t levels = 0;   // of the filter: each doubles its reach; 0: three, two at a quarter
+    std::uint32_t levels = 0;   // of the filter: each doubles its reach; 0: two or three
     std::uint32_t pattern = 0;  // n: pixels n apart share sample points; 0: no two pixels do
     RivalRays rays = RivalRays::Packets;
     // 1: paths are also joined to places that lamps shine on, found from the lamps (twice the rays).
@@ -35,6 +35,7 @@ struct RivalOptions {
 struct RivalTimes {
     std::vector<std::pair<std::string, double>> passes;  // ms
     double total = 0.0;
+    double processor = 0.0;  // ms of all threads together: other load lengthens it less
     std::uint64_t rays = 0, shadowRays = 0, leftOver = 0;  // leftOver: pixels traced for themselves
 };
 
