@@ -5,7 +5,8 @@
                           [--size 1280x720] [--scenes cornell sponza_crytek sibenik] [--spp 64]
 
 Writes docs/techniques/rival_figures.md. --spp: paths of the truth. Images stay in --work and are made again only when
-missing. About ten minutes on two cores at rest. Scenes other than the shipped ones are looked for in LIGHTWELL_SCENES.
+missing. About a quarter of an hour on two cores at rest,
+by the times at 320x180. Scenes other than the shipped ones are looked for in LIGHTWELL_SCENES.
 """
 import argparse
 import json
