@@ -186,7 +186,7 @@ void addReference(CLI::App& app) {
     options->view.declare(*command);
     command->add_option(
         "--bounces", options->bounces,
-        "What stands in R,G,B: 1 = one indirect bounce; 2 = first and second together; all");
+        "Required; what stands in R,G,B: 1 = one indirect bounce; 2 = first and second together; all");
     command->add_flag("--unshadowed", options->unshadowed,
                       "Every lit surface along a pixel's ray sends light, none blocks it (one bounce)");
     command->add_option(

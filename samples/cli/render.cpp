@@ -282,7 +282,7 @@ void addRender(CLI::App& app) {
     auto options = std::make_shared<RenderOptions>();
     options->view.declare(*command)->required(false);
     command->add_option("--technique", options->technique,
-                        "A technique (below), or none: direct light only");
+                        "Required: a technique (below), or none: direct light only");
     command->add_option("--set", options->assignments,
                         "key=value, one or several: parameters of the technique (below)");
     command->add_option("--frames", options->frames, "Frames measured; times are medians")

@@ -1,6 +1,6 @@
 # Installs this build into a temporary prefix and builds the consumer against it with find_package, then
 # builds the consumer with FetchContent from the source tree; runs both. Nothing is downloaded.
-#   cmake -DSOURCE=... -DBUILD=... -DWORK=... -DVERSION=... -P package_test.cmake
+#   cmake -DSOURCE=... -DBUILD=... -DWORK=... -P package_test.cmake
 cmake_minimum_required(VERSION 3.25)
 
 function(run title)
