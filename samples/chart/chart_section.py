@@ -78,7 +78,7 @@ def pictured(results, points):
     """Named settings first, then the technique's own front, evenly."""
     chosen = []
     for technique in results.techniques:
-        of_technique = [p for p in points if p["technique"] == technique]
+        of_technique = [p for p in points if p["technique"] == technique and "error" in p["images"]]
         named = [p for p in of_technique if p["label"]][:PICTURES_PER_TECHNIQUE]
         others = [p for p in front(of_technique) if p not in named]
         room = PICTURES_PER_TECHNIQUE - len(named)

@@ -31,6 +31,18 @@ std::vector<std::string> allScenes() {
     return names;
 }
 
+// Refuses unknown names at once, not after hours with those before them.
+void requireScenes(const std::vector<std::string>& scenes) {
+    const std::vector<std::string> known = allScenes();
+    for (const std::string& scene : scenes)
+        if (std::find(known.begin(), known.end(), scene) == known.end() &&
+            !std::filesystem::exists(scene))
+            asUsage([&] { studio::loadScene(scene); });  // says what it expected
+}
+
+// Bytes for each pixel: the path tracer's sums, a view's buffers and truths, pictures that are judged.
+constexpr double kPixelBytes = 1500.0;
+
 void complete(Arguments& arguments) {
     ChartOptions& chart = arguments.chart;
     if (chart.scenes.empty())
@@ -48,6 +60,8 @@ void complete(Arguments& arguments) {
     const Size size = parseSize(!arguments.size.empty() ? arguments.size
                                 : chart.quick           ? kQuickSize
                                                         : "1280x720");
+    requireMemory("--size", arguments.size, kPixelBytes * size.width * size.height);
+    requireScenes(chart.scenes);
     chart.width = size.width;
     chart.height = size.height;
     chart.truth.noise = chart.quick ? kQuickNoise : kNoise;
@@ -59,8 +73,12 @@ void complete(Arguments& arguments) {
 void chart(Arguments& arguments) {
     complete(arguments);
     const std::string& folder = arguments.chart.folder;
-    asUsage([&] { std::filesystem::create_directories(std::filesystem::path(folder) / "images"); });
     if (!arguments.onlyReport) {
+        std::error_code error;
+        std::filesystem::create_directories(std::filesystem::path(folder) / "images", error);
+        if (error)
+            throw UsageError(fmt::format("--out '{}': expected a folder that can be written: {}", folder,
+                                         error.message()));
         const InterruptGuard guard;
         runChart(arguments.chart);
         fmt::print("{}\n", (std::filesystem::path(folder) / "results.json").string());

@@ -79,25 +79,26 @@ Json irradianceErrors(const studio::Metrics& metrics, const JudgedTruth& judged)
 
 Json judge(const JudgedPicture& picture, const ChartView& view, const std::string& folder) {
     const JudgedTruth& own = view.truths().at(picture.bounces);
-    studio::MetricMaps maps;
-    const studio::Metrics metrics = studio::compareImages(picture.irradiance, own.truth.image, &maps);
-    Json errors = irradianceErrors(metrics, own);
-    errors["rmse"] = number(metrics.rmse);
-    errors["ssim"] = number(metrics.ssim);
-    errors["score"] = number(metrics.score);
-    errors["score255"] = number(metrics.score255);
-    errors["flip"] = number(metrics.flip);
-
-    Json json;
-    json["own"] = errors;
-    json["all"] = nullptr;
-    if (const auto all = view.truths().find(0); all != view.truths().end())
-        json["all"] = irradianceErrors(
-            studio::compareIrradiance(picture.irradiance, all->second.truth.image), all->second);
+    Json json{{"own", nullptr}, {"all", nullptr}, {"images", Json::object()}};
     const studio::Image display =
         studio::toneMap(lit(picture.irradiance, own.truth.image), own.exposure);
-    json["images"] = {{"picture", writePreview(folder, picture.imageName, display)},
-                      {"error", writePreview(folder, picture.imageName + "_error", maps.relativeError)}};
+    json["images"]["picture"] = writePreview(folder, picture.imageName, display);
+    if (!own.isBlack) {
+        studio::MetricMaps maps;
+        const studio::Metrics metrics =
+            studio::compareImages(picture.irradiance, own.truth.image, &maps);
+        Json errors = irradianceErrors(metrics, own);
+        errors["rmse"] = number(metrics.rmse);
+        errors["ssim"] = number(metrics.ssim);
+        errors["score"] = number(metrics.score);
+        errors["score255"] = number(metrics.score255);
+        errors["flip"] = number(metrics.flip);
+        json["own"] = errors;
+        json["images"]["error"] = writePreview(folder, picture.imageName + "_error", maps.relativeError);
+    }
+    if (const auto all = view.truths().find(0); all != view.truths().end() && !all->second.isBlack)
+        json["all"] = irradianceErrors(
+            studio::compareIrradiance(picture.irradiance, all->second.truth.image), all->second);
     return json;
 }
 

@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "cli.h"
+#include "file_lock.h"
 
 namespace cli {
 namespace {
@@ -28,7 +29,10 @@ Json readResults(const std::string& path, const std::string& format) {
 }  // namespace
 
 struct ChartResults::Impl {
+    explicit Impl(const std::string& file) : path(file), lock(file + ".lock", [] { return false; }) {}
+
     std::string path;
+    FileLock lock;  // two runs would each lose what the other measures
     Json json;
     std::unordered_map<std::string, std::size_t> views, points;  // index by id
 
@@ -43,8 +47,10 @@ struct ChartResults::Impl {
 };
 
 ChartResults::ChartResults(const std::string& path, const std::string& format)
-    : impl_(std::make_unique<Impl>()) {
-    impl_->path = path;
+    : impl_(std::make_unique<Impl>(path)) {
+    if (!impl_->lock.isHeld())
+        throw UsageError(
+            fmt::format("{}: another run is writing it; expected another --out, or to wait", path));
     if (!std::filesystem::exists(path)) {
         impl_->json = {{"format", format},
                        {"header", Json::object()},

@@ -162,7 +162,10 @@ void Charter::chartScene(const std::string& name) {
             const Stopwatch watch(seconds_.truths);
             traceTruths(*view);
         }
-        if (!options_.onlyTruths) chartView(*view);
+        if (view->isBlack())
+            fmt::print(stderr, "note: {} has no indirect light and is left out\n", view->id());
+        else if (!options_.onlyTruths)
+            chartView(*view);
         viewsBefore_ += viewShare_;
     }
 }

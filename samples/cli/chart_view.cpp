@@ -96,7 +96,16 @@ void ChartView::obtainTruths(const std::set<int>& bounces, const TruthOptions& o
     }
 }
 
+bool ChartView::isBlack() const {
+    return std::all_of(truths_.begin(), truths_.end(),
+                       [](const auto& truth) { return truth.second.isBlack; });
+}
+
 void ChartView::addTruth(JudgedTruth judged) {
+    judged.isBlack = true;
+    for (const char* channel : {"R", "G", "B"})
+        for (const float value : judged.truth.image.plane(channel))
+            judged.isBlack = judged.isBlack && value == 0.0f;
     addLayers(judged.truth.image);
     judged.exposure = studio::autoExposure(studio::composite(judged.truth.image));
     truths_[judged.truth.bounces] = std::move(judged);

@@ -24,6 +24,7 @@ struct TruthOptions {
 struct JudgedTruth {
     Truth truth;
     bool isShipped = false;
+    bool isBlack = false;   // no light: errors relative to it have no meaning
     float exposure = 1.0f;  // of its composite
 };
 
@@ -41,6 +42,7 @@ public:
     // Traces or loads the truths of these counts of bounces, with the layers that a comparison needs.
     void obtainTruths(const std::set<int>& bounces, const TruthOptions& options);
     const std::map<int, JudgedTruth>& truths() const { return truths_; }
+    bool isBlack() const;  // in all its truths
     // Irradiance with the layers of this view, for comparisons and composites.
     studio::Image withLayers(const studio::PlanarBuffer& irradiance) const;
 

@@ -1,19 +1,16 @@
 #include "reference_cache.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
+#include <map>
 #include <stdexcept>
-#include <thread>
+#include <tuple>
 
+#include "file_lock.h"
 #include "film.h"
 #include "path_tracer.h"
 
@@ -28,7 +25,6 @@ constexpr int kTracerVersion = 2;
 constexpr int kAllBounces = 64;     // Russian roulette ends paths long before
 constexpr int kFewestSamples = 16;  // per pixel, before the halves are asked
 constexpr int kMostSamples = 1 << 20;
-constexpr std::chrono::milliseconds kLockInterval{200};
 constexpr const char* kChannels[] = {"R", "G", "B"};
 
 struct TimeIsUp {};
@@ -54,69 +50,80 @@ std::vector<int> countsWithin(int depth) {
     return depth == 1 ? std::vector<int>{1} : std::vector<int>{1, 2};
 }
 
-// One process at a time works on a view's files; the lock ends with the process.
-class FileLock {
+// One run's truths in the cache: layers bounce1, bounce2, all as far as its paths go, and the noise of
+// each count of bounces.
+class RunFile {
 public:
-    FileLock(const fs::path& path, const TruthRequest& request)
-        : file_(::open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666)) {
-        if (file_ < 0)
-            throw std::runtime_error(fmt::format("{}: {}", path.string(), std::strerror(errno)));
-        while (::flock(file_, LOCK_EX | LOCK_NB) != 0) {
-            if (errno != EWOULDBLOCK && errno != EINTR) {
-                const std::string reason = std::strerror(errno);
-                ::close(file_);
-                throw std::runtime_error(fmt::format("{}: {}", path.string(), reason));
-            }
-            try {
-                if (request.progress) request.progress(0.0, -1.0);
-            } catch (...) {
-                ::close(file_);
-                throw;
-            }
-            std::this_thread::sleep_for(kLockInterval);
-        }
-    }
-    ~FileLock() { ::close(file_); }
-    FileLock(const FileLock&) = delete;
-    FileLock& operator=(const FileLock&) = delete;
-
-private:
-    int file_;
-};
-
-// A view's truths in the cache: layers bounce1, bounce2, all, and the noise of each count.
-class ViewTruths {
-public:
-    ViewTruths(const studio::RayScene& scene, const studio::GBuffer& view, const TruthRequest& request)
+    RunFile(const studio::RayScene& scene, const studio::GBuffer& view, const TruthRequest& request,
+            const std::string& stem, int depth)
         : scene_(scene),
           view_(view),
           request_(request),
-          depth_(depthOf(request.bounces)),
-          directory_(request.directory.empty() ? truthCacheDirectory() : request.directory),
-          name_(fmt::format("{}-{:016x}-{:016x}-{}-v{}", scene.scene().name, studio::hashScene(scene),
-                            studio::hashView(view), depth_ == 0 ? "all" : std::to_string(depth_),
+          depth_(depth),
+          directory_(directoryOf(request)),
+          name_(fmt::format("{}-{}-v{}", stem, depth == 0 ? "all" : std::to_string(depth),
                             kTracerVersion)),
           path_(directory_ / (name_ + ".exr")),
-          checkpoint_(directory_ / (name_ + ".film")) {
-        fs::create_directories(directory_);
+          checkpoint_(directory_ / (name_ + ".film")) {}
+
+    static fs::path directoryOf(const TruthRequest& request) {
+        return request.directory.empty() ? fs::path(truthCacheDirectory()) : fs::path(request.directory);
+    }
+    bool isKept() const { return kept_.width != 0; }
+    double noiseOf(int bounces) const { return noiseIn(kept_, bounces); }
+
+    // What is kept, if anything is; a checkpoint without a picture counts where any noise will do.
+    void load() {
+        if (fs::exists(path_)) kept_ = readKept();
+        if (!isKept() && request_.takesKept && fs::exists(checkpoint_))
+            keep(compact(traceOn(0, 0.0)), {});
     }
 
-    std::vector<Truth> obtain() {
-        const FileLock lock(directory_ / (name_ + ".lock"), request_);
-        if (fs::exists(path_)) kept_ = readKept();
-        if (kept_.width == 0 || !(request_.takesKept || isGoodEnough(kept_))) improve();
-        std::vector<Truth> truths;
-        for (const int bounces : request_.bounces) truths.push_back(truthOf(bounces));
-        return truths;
+    // Traces on until each count is good enough or time is up, and keeps the result if it is better.
+    void improve(const std::vector<int>& counts) {
+        const Clock::time_point start = Clock::now();
+        studio::Image traced;
+        try {
+            for (const int bounces : counts)
+                if (traced.width == 0 || noiseIn(traced, bounces) > request_.noise)
+                    traced = compact(traceOn(bounces, request_.noise, start));
+        } catch (const TimeIsUp&) {
+            traced = compact(traceOn(0, 0.0));
+        }
+        // Time may be up before the new picture is as good as the one that is kept.
+        if (!isKept() || samplesOf(traced) > samplesOf(kept_)) keep(std::move(traced), counts);
+    }
+
+    Truth truthOf(int bounces) const {
+        Truth truth;
+        truth.bounces = bounces;
+        truth.name = name_;
+        truth.samples = samplesOf(kept_);
+        truth.noise = noiseOf(bounces);
+        truth.image = studio::Image(kept_.width, kept_.height);
+        for (const std::string channel : kChannels) {
+            std::vector<float>& sum = truth.image.plane(channel);
+            for (const std::string& layer : layersOf(bounces)) {
+                const std::vector<float>& values = kept_.plane(layer + "." + channel);
+                for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += values[i];
+            }
+        }
+        const std::string noise = "noise." + layerText(bounces);
+        truth.image.metadata = {{"layer", layerText(bounces)},
+                                {"spp", kept_.metadata.at("spp")},
+                                {noise, kept_.metadata.at(noise)}};
+        return truth;
     }
 
 private:
     studio::Image readKept() const {
         try {
             studio::Image image = studio::readImage(path_.string());
-            noiseOf(image, depth_);
-            image.plane(layersOf(depth_).back() + ".R");
-            std::stoi(image.metadata.at("spp"));
+            for (const int bounces : countsWithin(depth_)) {
+                noiseIn(image, bounces);
+                for (const std::string& layer : layersOf(bounces)) image.plane(layer + ".R");
+            }
+            samplesOf(image);
             return image;
         } catch (const std::exception& error) {
             throw std::runtime_error(
@@ -125,41 +132,24 @@ private:
         }
     }
 
-    static double noiseOf(const studio::Image& image, int bounces) {
+    static double noiseIn(const studio::Image& image, int bounces) {
         return std::stod(image.metadata.at("noise." + layerText(bounces)));
     }
+    static int samplesOf(const studio::Image& image) { return std::stoi(image.metadata.at("spp")); }
 
-    bool isGoodEnough(const studio::Image& image) const {
-        return std::all_of(request_.bounces.begin(), request_.bounces.end(),
-                           [&](int bounces) { return noiseOf(image, bounces) <= request_.noise; });
-    }
-
-    // Traces on until each count is good enough or time is up, and keeps the result if it is better.
-    void improve() {
-        studio::Image traced;
-        const bool hasFilm = fs::exists(checkpoint_);
-        if (request_.takesKept && hasFilm) {
-            traced = compact(traceOn(0, 0.0));
-        } else {
-            const Clock::time_point start = Clock::now();
-            try {
-                for (const int bounces : request_.bounces)
-                    if (traced.width == 0 || noiseOf(traced, bounces) > request_.noise)
-                        traced = compact(traceOn(bounces, request_.noise, start));
-            } catch (const TimeIsUp&) {
-                traced = compact(traceOn(0, 0.0));
-            }
-        }
-        // Time may be up before the new picture is as good as the one that is kept.
-        if (kept_.width != 0 && samplesOf(kept_) >= samplesOf(traced)) return;
-        kept_ = std::move(traced);
+    // `counts`: once all of these are good enough nobody goes on from the checkpoint.
+    void keep(studio::Image image, const std::vector<int>& counts) {
+        kept_ = std::move(image);
         const fs::path unfinished = directory_ / (name_ + ".part.exr");
         studio::writeExr(unfinished.string(), kept_);
         fs::rename(unfinished, path_);
-        if (isGoodEnough(kept_)) fs::remove(checkpoint_);
+        const bool isDone = !counts.empty() &&
+                            std::all_of(counts.begin(), counts.end(),
+                                        [&](int bounces) { return noiseOf(bounces) <= request_.noise; });
+        if (isDone) fs::remove(checkpoint_);
     }
 
-    // Until this count's noise is reached; 0: what the checkpoint holds.
+    // Until this count's noise is reached; noise 0: what the checkpoint holds.
     studio::Image traceOn(int bounces, double noise, Clock::time_point start = {}) const {
         studio::PathTracerOptions options;
         options.maxBounces = depth_ == 0 ? kAllBounces : depth_;
@@ -198,29 +188,6 @@ private:
         return image;
     }
 
-    static int samplesOf(const studio::Image& image) { return std::stoi(image.metadata.at("spp")); }
-
-    Truth truthOf(int bounces) const {
-        Truth truth;
-        truth.bounces = bounces;
-        truth.name = name_;
-        truth.samples = samplesOf(kept_);
-        truth.noise = noiseOf(kept_, bounces);
-        truth.image = studio::Image(kept_.width, kept_.height);
-        for (const std::string channel : kChannels) {
-            std::vector<float>& sum = truth.image.plane(channel);
-            for (const std::string& layer : layersOf(bounces)) {
-                const std::vector<float>& values = kept_.plane(layer + "." + channel);
-                for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += values[i];
-            }
-        }
-        for (const std::string key : {"layer", "spp"})
-            truth.image.metadata[key] = key == "layer" ? layerText(bounces) : kept_.metadata.at(key);
-        truth.image.metadata["noise." + layerText(bounces)] =
-            kept_.metadata.at("noise." + layerText(bounces));
-        return truth;
-    }
-
     const studio::RayScene& scene_;
     const studio::GBuffer& view_;
     const TruthRequest& request_;
@@ -230,6 +197,18 @@ private:
     fs::path path_, checkpoint_;
     studio::Image kept_;  // of width 0: none
 };
+
+// The kept run with the least noise in this count; null: none has it.
+const RunFile* leastNoisy(const std::map<int, RunFile>& runs, int bounces) {
+    const RunFile* best = nullptr;
+    for (const auto& [depth, run] : runs) {
+        const std::vector<int> counts = countsWithin(depth);
+        const bool has = std::find(counts.begin(), counts.end(), bounces) != counts.end();
+        if (has && run.isKept() && (best == nullptr || run.noiseOf(bounces) < best->noiseOf(bounces)))
+            best = &run;
+    }
+    return best;
+}
 
 }  // namespace
 
@@ -251,7 +230,31 @@ std::vector<Truth> obtainTruths(const studio::RayScene& scene, const studio::GBu
     if (request.bounces.empty() || !isKnown)
         throw std::invalid_argument(fmt::format("truths of {} bounces: expected 1, 2 or 0 (all)",
                                                 fmt::join(request.bounces, ", ")));
-    return ViewTruths(scene, view, request).obtain();
+    fs::create_directories(RunFile::directoryOf(request));
+    const std::string stem = fmt::format("{}-{:016x}-{:016x}", scene.scene().name,
+                                         studio::hashScene(scene), studio::hashView(view));
+    const FileLock lock(RunFile::directoryOf(request) / (stem + ".lock"), [&] {
+        if (request.progress) request.progress(0.0, -1.0);
+        return true;
+    });
+    std::map<int, RunFile> runs;  // by depth
+    for (const int depth : {1, 2, 0}) {
+        const auto made = runs.emplace(std::piecewise_construct, std::forward_as_tuple(depth),
+                                       std::forward_as_tuple(scene, view, request, stem, depth));
+        made.first->second.load();
+    }
+    std::vector<int> missing;
+    for (const int bounces : request.bounces) {
+        const RunFile* best = leastNoisy(runs, bounces);
+        const bool willDo =
+            best != nullptr && (request.takesKept || best->noiseOf(bounces) <= request.noise);
+        if (!willDo) missing.push_back(bounces);
+    }
+    if (!missing.empty()) runs.at(depthOf(missing)).improve(missing);
+    std::vector<Truth> truths;
+    for (const int bounces : request.bounces)
+        truths.push_back(leastNoisy(runs, bounces)->truthOf(bounces));
+    return truths;
 }
 
 }  // namespace cli
