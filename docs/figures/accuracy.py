@@ -14,7 +14,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "samples" / "chart"))
-from results import Results, errors, front, is_drawn, means_over_views, value  # noqa: E402
+from results import Results, counted, errors, front, is_drawn, means_over_views, value  # noqa: E402
 
 BEGIN, END = "<!-- begin: written by docs/figures/accuracy.py -->", "<!-- end -->"
 SCENES = ["cornell", "basic", "rooms", "sibenik", "sponza_dabrovic", "sponza_crytek", "living_room", "wooden_staircase"]
@@ -42,7 +42,7 @@ def main():
 def measured(results):
     lines = conditions(results)
     lines += ["", "![Error against time, geometric means over the views](images/chart_summary.svg)", ""]
-    lines += means_text(results) + [""] + front_table(results) + [""]
+    lines += means_text(results) + [""] + rivalry(results) + front_table(results) + [""]
     for technique in results.techniques:
         lines += technique_text(results, technique)
     return lines + not_drawn_text(results)
@@ -50,15 +50,27 @@ def measured(results):
 
 def conditions(results):
     header = results.header
-    loads = [p["load_average"] for p in results.points]
-    return [f"Measured {header['written'][:10]} at {header['size'][0]}x{header['size'][1]} on {results.device_text()}, "
-            f"{header['versions']['threads']} threads; load average {min(loads):.1f} to {max(loads):.1f} (the machine was "
-            f"{'shared, so that times are too long' if max(loads) > 2.5 else 'ours alone'}). {len(results.points)} points in "
-            f"{len(results.views)} view{'s' * (len(results.views) > 1)}. Time: host's images to host's output. Truth: as many bounces as the technique models."]
+    low, high = results.loads()
+    text = (f"Measured {header['written'][:10]} at {header['size'][0]}x{header['size'][1]} on {results.device_text()}, "
+            f"{header['versions']['threads']} threads ({header['versions']['cpu']}); build {header['versions']['compiler']}, Embree "
+            f"{header['versions']['embree']}; {len(results.points)} points in {counted(len(results.views), 'view')}. Time: host's images to host's "
+            f"output. Load average {low:.1f} to {high:.1f}")
+    if results.time() == "processor":
+        text += (": other work kept the machine busy, so **ms is processor time of all threads divided by their number**, what a frame "
+                 "takes at least on this machine at rest; the host's clock, which that work lengthened, stands beside it.")
+    elif results.is_busy():
+        text += ": the machine was shared, so that times are too long."
+    else:
+        text += ": the machine was ours alone."
+    return [text]
 
 
 def percent(error):
     return f"{100.0 * error:.0f} %"
+
+
+def ms(results, point):
+    return point["ms"][results.time()]
 
 
 def settings_text(point):
@@ -67,28 +79,87 @@ def settings_text(point):
 
 def means_text(results):
     means, left = means_over_views(results)
-    best = front(means)
+    best = front(means, time=results.time())
     if not best:
-        return ["No setting has a trusted error in every view, so there are no means."]
+        return ["No setting has a trusted error in enough views, so there are no means."]
     quick, accurate = best[0], best[-1]
-    text = [f"Over all views (geometric means), the quickest point of the front is {quick['technique']} {settings_text(quick)}: "
-            f"{quick['ms']['median']:.1f} ms at a relMSE of {value(quick):.3g}. The most accurate is {accurate['technique']} "
-            f"{settings_text(accurate)}: {accurate['ms']['median']:.1f} ms at {value(accurate):.3g}, "
-            f"{accurate['ms']['median'] / quick['ms']['median']:.0f} times the time for {value(quick) / value(accurate):.1f} times less error. "
+    text = [f"Over {counted(len(results.shared), 'view')} (geometric means), the quickest point of the front is {quick['technique']} "
+            f"{settings_text(quick)}: {ms(results, quick):.1f} ms at a relMSE of {value(quick):.3g}. The most accurate is "
+            f"{accurate['technique']} {settings_text(accurate)}: {ms(results, accurate):.1f} ms at {value(accurate):.3g}, "
+            f"{ms(results, accurate) / ms(results, quick):.0f} times the time for {value(quick) / value(accurate):.1f} times less error. "
             f"{len(best)} of {len(means)} settings are on the front."]
+    some = [m for m in means if is_drawn(m) and m["errors"]["own"]["views"] < len(results.shared)]
+    if some:
+        text.append(f"{len(some)} settings are too accurate for some views' truths; there they are taken to stand to the defaults as in the "
+                    "other views.")
     if left:
-        text.append(f"{len(left)} settings are left out of the means: not in every view, or too accurate for a truth's noise.")
+        text.append(f"{len(left)} settings are left out of the means: not in every view, or too accurate for the truths of more than half "
+                    "of them.")
+    return text
+
+
+def default_of(points):
+    return next((p for p in points if "default" in p["label"].split(", ") and is_drawn(p)), None)
+
+
+def rivalry(results):
+    """Each library technique's defaults beside what the rival does in the same time, and in what time it does the same."""
+    if "rival" not in results.techniques:
+        return []
+    lines = []
+    for technique in [t for t in results.techniques if t != "rival"]:
+        rows = [row for row in (rivalry_row(results, view, technique) for view in results.shared) if row]
+        if not rows:
+            continue
+        lines += [f"**{technique} and the rival.** Against the light of one bounce, {technique} by its defaults and the rival's sweep of one bounce:", "",
+                  f"| view | {technique}: ms | relMSE | rival in no more time: ms | relMSE | rival with no more error: ms | relMSE |",
+                  "| --- | ---: | ---: | ---: | ---: | ---: | ---: |"]
+        for view, ours, quick, accurate in rows:
+            cells = [f"{ms(results, p):.1f} | {value(p):.3g}" if p else "none | " for p in (ours, quick, accurate)]
+            lines.append(f"| {view['scene']}, {view['camera']} | " + " | ".join(cells) + " |")
+        lines += ["", rivalry_sentence(results, technique, rows), ""]
+    return lines
+
+
+def rivalry_row(results, view, technique):
+    points = results.of_view(view)
+    ours = default_of([p for p in points if p["technique"] == technique])
+    if ours is None:
+        return None
+    rivals = [p for p in points if p["technique"] == "rival" and p["bounces"] == ours["bounces"] and p["ms"] is not None]
+    within = [p for p in rivals if ms(results, p) <= ms(results, ours) and is_drawn(p)]
+    # A point too accurate for the truth is no more wrong than ours, though nobody knows by how much.
+    as_good = [p for p in rivals if errors(p) and (errors(p)["relMSE"] <= value(ours))]
+    return (view, ours, min(within, key=value, default=None), min((p for p in as_good if is_drawn(p)), key=lambda p: ms(results, p), default=None))
+
+
+def rivalry_sentence(results, technique, rows):
+    ahead = [view for view, ours, quick, _ in rows if quick is None or value(quick) > value(ours)]
+    ratios = [(ms(results, accurate) / ms(results, ours), view["scene"]) for view, ours, _, accurate in rows if accurate]
+    text = f"In the time of its defaults {technique} is ahead in {len(ahead)} of {len(rows)} views"
+    text += f" ({', '.join(view['scene'] for view in ahead)})." if ahead else "."
+    if ratios:
+        least, most = min(ratios), max(ratios)
+        text += (f" For the same error the rival takes {least[0]:.2g} ({least[1]}) to {most[0]:.2g} times ({most[1]}) its time." if len(ratios) > 1
+                 else f" For the same error the rival takes {least[0]:.2g} times its time ({least[1]}).")
+    behind = [(view, ours, quick) for view, ours, quick, _ in rows if quick is not None and value(quick) <= value(ours)]
+    if behind:
+        bright = sum(errors(ours)["bias"] > 0.1 for _, ours, _ in behind)
+        text += (f" Where it is behind, its mean is more than a tenth too bright in {bright} of {len(behind)} views: light that "
+                 "comes through walls, which no number of VPLs mends.")
     return text
 
 
 def front_table(results):
-    lines = ["| view | technique | settings on the front | ms | relMSE | nRMSE | bias | score | FLIP |",
-             "| --- | --- | --- | ---: | ---: | ---: | ---: | ---: | ---: |"]
+    clock = results.time() == "processor"
+    lines = ["| view | technique | settings on the front | ms | " + ("clock ms | " if clock else "") + "relMSE | nRMSE | bias | score | FLIP |",
+             "| --- | --- | --- | ---: | " + ("---: | " if clock else "") + "---: | ---: | ---: | ---: | ---: |"]
     for view in results.views:
-        for point in thinned(front(results.of_view(view))):
+        for point in thinned(front(results.of_view(view), time=results.time())):
             own = errors(point)
             lines.append(f"| {view['scene']}, {view['camera']} | {point['technique']} | {settings_text(point)} | "
-                         f"{point['ms']['median']:.1f} | {own['relMSE']:.3g} | {own['nrmse']:.3g} | {100 * own['bias']:+.1f} % | "
+                         f"{ms(results, point):.1f} | " + (f"{point['ms']['median']:.0f} | " if clock else "") +
+                         f"{own['relMSE']:.3g} | {own['nrmse']:.3g} | {100 * own['bias']:+.1f} % | "
                          f"{own['score']:.2f} | {own['flip']:.3f} |")
     return lines
 
@@ -101,15 +172,15 @@ def thinned(points, most=4):
 
 def technique_text(results, technique):
     """What the figures say about one technique: where it is worst and best, what parameters buy."""
-    defaults = [p for p in results.points if p["technique"] == technique and "default" in p["label"].split(", ")]
+    defaults = [p for p in results.points if p["technique"] == technique and "default" in p["label"].split(", ") and errors(p)]
     lines = [f"**{technique}**, defaults:", ""]
-    lines += ["| view | ms | p99 ms | relMSE | nRMSE | bias | score | FLIP | relMSE to all bounces | bias to all bounces | noise |",
-              "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |"]
+    lines += ["| view | ms | clock: median | p99 ms | relMSE | nRMSE | bias | score | FLIP | relMSE to all bounces | bias to all bounces | noise |",
+              "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |"]
     for p in defaults:
         own, every = errors(p), errors(p, "all")
         mark = "" if is_drawn(p) else " (not trusted)"
         others = f"{every['relMSE']:.3g} | {100 * every['bias']:+.1f} %" if every and is_drawn(p, "all") else " | "
-        lines.append(f"| {p['scene']}, {p['camera']} | {p['ms']['median']:.1f} | {p['ms']['p99']:.1f} | {own['relMSE']:.3g}{mark} | "
+        lines.append(f"| {p['scene']}, {p['camera']} | {ms(results, p):.1f} | {p['ms']['median']:.1f} | {p['ms']['p99']:.1f} | {own['relMSE']:.3g}{mark} | "
                      f"{own['nrmse']:.3g} | {100 * own['bias']:+.1f} % | {own['score']:.2f} | {own['flip']:.3f} | {others} | "
                      f"{own['noise']:.1e} |")
     trusted = [p for p in defaults if is_drawn(p)]
@@ -143,7 +214,7 @@ def more_sentence(results, technique):
         if default is None:
             continue
         best = min(points, key=value)
-        gains.append((value(default) / value(best), best["ms"]["median"] / default["ms"]["median"], view["scene"], best))
+        gains.append((value(default) / value(best), ms(results, best) / ms(results, default), view["scene"], best))
     if not gains:
         return ""
     least, most = min(gains, key=lambda g: g[0]), max(gains, key=lambda g: g[0])

@@ -20,7 +20,7 @@ function describe(point) {
     `${short(point.ms.median)} ms, p99 ${short(point.ms.p99)} ms` +
     (point.ms.processor ? `, processor ${short(point.ms.processor)} ms` : "") + `\nrelMSE ${short(own.relMSE)}, nRMSE ${short(own.nrmse)}, ` +
     `score ${short(own.score)}, FLIP ${short(own.flip)}` +
-    (own.views < data.views.length ? `\nmean of ${own.views} views of ${data.views.length}` : "");
+    (own.views < data.sharedViews ? `\nmean of ${own.views} views of ${data.sharedViews}` : "");
 }
 
 // Axes that hold all points, a little wider; never empty, and never under half a decade, where small differences

@@ -37,11 +37,11 @@ def make(folder):
     results = Results(folder)
     means, left = means_over_views(results)
     data = {"views": [describe_view(results, view) for view in results.views],
-            "mean": {"id": "mean", "title": "Geometric means over " + counted(len(results.views), "view"),
+            "mean": {"id": "mean", "title": "Geometric means over " + counted(len(results.shared), "view"),
                      "points": [describe_point(p) for p in means], "fronts": fronts(results, means)},
             "colours": {t: colour_of(results, t) for t in results.techniques},
             "metrics": {key: {"title": title, "onAll": on_all} for key, (title, on_all, _) in METRICS.items()},
-            "truths": TRUTHS, "times": results.times, "time": results.time()}
+            "truths": TRUTHS, "sharedViews": len(results.shared), "times": results.times, "time": results.time()}
     body = BODY.format(left=left_out(left), truths=truth_table(results), head=head(results))
     script = (HERE / "chart_section.js").read_text(encoding="utf-8")
     return Section("Speed against accuracy", body, data, script, written=write_plots(results))

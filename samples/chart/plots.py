@@ -27,7 +27,7 @@ def write_plots(results):
         charts = [(f"{scene}, {v['camera']}", results.of_view(v)) for v in views]
         names += save(results, scene, [[(*chart, truth) for chart in charts] for truth in present_truths(results.points)])
     means, _ = means_over_views(results)
-    title = "geometric means over " + counted(len(results.views), "view")
+    title = "geometric means over " + counted(len(results.shared), "view")
     return names + save(results, "summary", [[(title, means, truth) for truth in present_truths(means)]])
 
 

@@ -30,6 +30,8 @@ class Results:
         self.techniques = list(dict.fromkeys(p["technique"] for p in self.points))
         self.scenes = list(dict.fromkeys(v["scene"] for v in self.views))
         self.times = self.add_processor_times()
+        # Views in which every technique was measured: what means are made over.
+        self.shared = [v for v in self.views if {p["technique"] for p in self.of_view(v)} == set(self.techniques)]
 
     def add_processor_times(self):
         """Processor time as one more time, where it is that of the device (a CPU) and every point has it: what the frame
@@ -100,29 +102,29 @@ def front(points, metric="relMSE", truth="own", time="median"):
 
 
 def baseline(results, truth):
-    """A setting whose error is drawn in every view, by which others are compared where theirs is not; None: there is none."""
-    groups = by_setting(results.points)
-    complete = [group for group in groups.values()
-                if len(group) == len(results.views) and all(is_drawn(p, truth) for p in group)]
+    """A setting whose error is drawn in every shared view, by which others are compared where theirs is not; None: none is."""
+    complete = [group for group in by_setting(results).values()
+                if len(group) == len(results.shared) and all(is_drawn(p, truth) for p in group)]
     named = [group for group in complete if "default" in group[0]["label"].split(", ")]
     return (named or complete or [None])[0]
 
 
-def by_setting(points):
+def by_setting(results):
     groups = {}
-    for point in points:
-        groups.setdefault((point["technique"], point["settings"]), []).append(point)
+    for view in results.shared:
+        for point in results.of_view(view):
+            groups.setdefault((point["technique"], point["settings"]), []).append(point)
     return groups
 
 
 def means_over_views(results):
-    """A point for each technique and setting that was measured in every view: geometric means of its times over all views,
+    """A point for each technique and setting that was measured in every shared view: geometric means of its times over these,
     and of its errors over the views where they are drawn. In the others it is taken to stand to the baseline as
     it does on the whole in those; with fewer than half of the views it is not drawn. Returns (points, left out)."""
     baselines = {truth: baseline(results, truth) for truth in TRUTHS}
     made, left = [], []
-    for (technique, settings), group in by_setting(results.points).items():
-        if len(group) < len(results.views):
+    for (technique, settings), group in by_setting(results).items():
+        if len(group) < len(results.shared):
             left.append((technique, settings, "not measured in every view"))
             continue
         mean = {"id": f"mean/{technique}/{settings}", "technique": technique, "settings": settings,

@@ -93,7 +93,7 @@ Charter::Charter(const ChartOptions& options)
     const bool needsDevice = std::any_of(points_.begin(), points_.end(), [](const ChartedPoint& point) {
         return point.sweep.parameters.needsDevice();
     });
-    if (needsDevice) {
+    if (needsDevice && !options.onlyTruths) {
         device_ = openDevice(options.device, std::uint32_t(options.deviceWidth));
         info_ = device_->info();
     }

@@ -3,6 +3,7 @@
 Usage: chart_test.py PROGRAM [unittest options]. Python's standard library only; the report's own case is left
 out where matplotlib or D3 is missing.
 """
+import fcntl
 import json
 import os
 import re
@@ -164,6 +165,27 @@ class Chart(unittest.TestCase):
         with open(self.file, "w", encoding="ascii") as file:
             file.write("{}")
         self.assertIn("results.json", self.chart(*QUICK, "--scenes", "cornell", code=2))
+
+    def test_one_writer_of_a_folder(self):
+        """Of two charts into one folder the second would lose what the first measures."""
+        os.makedirs(self.folder, exist_ok=True)
+        with open(self.file + ".lock", "w", encoding="ascii") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            self.assertIn("another run", self.chart(*QUICK, "--scenes", "cornell", "--size", "16x9", code=2))
+        self.assertFalse(os.path.exists(self.file))
+
+    def test_a_dark_scene_is_left_out_and_unknown_ones_are_refused_at_once(self):
+        with open(os.path.join(ROOT, "samples", "scenes", "cornell.json"), encoding="utf-8") as file:
+            scene = json.load(file)
+        scene["lights"] = []
+        dark = os.path.join(self.folder, "dark.json")
+        with open(dark, "w", encoding="utf-8") as file:
+            json.dump(scene, file)
+        small = ["--quick", "--techniques", "rival", "--only", "spp=1", "--size", "16x9", "--noise", "10", "--no-report"]
+        self.assertIn("nothing", self.chart(*small, "--scenes", "cornell", "nothing", code=2))
+        self.assertFalse(os.path.exists(self.file))
+        self.assertIn("dark/front has no indirect light", self.chart(*small, "--scenes", dark, "cornell"))
+        self.assertEqual({p["scene"] for p in self.results()["points"]}, {"cornell"})
 
     def test_report(self):
         self.chart(*QUICK, "--scenes", "cornell", "basic")

@@ -93,6 +93,12 @@ class Means(unittest.TestCase):
         self.assertIsNone(charts.value(means[0]))  # one of its views is too noisy, and nothing is drawn in both
         self.assertEqual(sorted(settings for _, settings, _ in left), ["x", "y"])
 
+    def test_views_that_one_technique_lacks_are_in_no_mean(self):
+        points = [made_point("a", "x", 1.0, 0.1, 0.0), made_point("b", "x", 4.0, 0.4, 0.0), dict(made_point("a", "z", 2.0, 0.2, 0.0), technique="u")]
+        means, left = charts.means_over_views(made_results(points))
+        self.assertEqual([(m["technique"], m["ms"]["median"]) for m in means], [("t", 1.0), ("u", 2.0)])
+        self.assertEqual(left, [])
+
     def test_where_the_truth_is_too_noisy_the_ratio_to_another_setting_serves(self):
         """"fine" is half of the default in a and b, and hidden in c, where the default is four times as bad."""
         points = [made_point(view, "defaults", 1.0, error, 0.0, "default") for view, error in (("a", 0.1), ("b", 0.1), ("c", 0.4))]

@@ -156,6 +156,23 @@ TEST_CASE("one run makes the truths of all counts of bounces", "[chart]") {
     CHECK(sameBits(truthOf(scene, view.view, all), truths[2]));
 }
 
+TEST_CASE("of several runs each count takes the least noisy", "[chart]") {
+    const studio_test::TempFolder folder;
+    const studio::RayScene scene = corner(0.7f);
+    const test::Receivers view = floorView(12);
+    TruthRequest wanted = request(folder.path(), 0.1);
+    wanted.bounces = {1, 2, 0};
+    const std::vector<Truth> coarse = cli::obtainTruths(scene, view.view, wanted);
+    const Truth fine = truthOf(scene, view.view, request(folder.path(), 0.2 * coarse[0].noise));
+    CHECK(filesIn(folder.path(), ".exr") == 2);  // short paths for the one bounce alone
+    wanted.takesKept = true;
+    wanted.progress = [](double, double) { throw Stop(); };
+    const std::vector<Truth> best = cli::obtainTruths(scene, view.view, wanted);
+    CHECK(sameBits(best[0], fine));
+    CHECK(sameBits(best[1], coarse[1]));
+    CHECK(sameBits(best[2], coarse[2]));
+}
+
 TEST_CASE("two runs at once do not disturb each other", "[chart]") {
     const studio_test::TempFolder folder, alone;
     const studio::RayScene scene = corner(0.7f);
