@@ -102,7 +102,7 @@ class Chart(unittest.TestCase):
         while not os.path.exists(self.file) and time.time() < deadline:
             time.sleep(0.02)
         process.send_signal(signal.SIGINT)
-        _, errors = process.communicate(timeout=100)
+        _, errors = process.communicate(timeout=300)
         self.assertEqual(process.returncode, 130, errors)
         before = {p["id"]: p for p in self.results()["points"]}
         self.chart(*QUICK, *scenes)
@@ -190,7 +190,7 @@ class Chart(unittest.TestCase):
     def test_report(self):
         self.chart(*QUICK, "--scenes", "cornell", "basic")
         process = start("--report-only", "--out", self.folder)
-        _, errors = process.communicate(timeout=100)
+        _, errors = process.communicate(timeout=300)
         if process.returncode == 1 and "apt-get install" in errors:
             self.assertTrue(os.path.exists(self.file))
             self.skipTest("no matplotlib or no D3 here")
