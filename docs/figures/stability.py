@@ -60,7 +60,7 @@ def conditions(data):
     device = header["device"]
     where = f"{device['name']} ({device['platform']}, {device['driver']}, width {device['width']})" if device else "the host's cores"
     return [f"Measured {header['written'][:10]} at {header['size'][0]}x{header['size'][1]}, {header['frames']} frames each, on {where}, "
-            f"{header['versions']['threads']} threads; load average {min(loads):.1f} to {max(loads):.1f}, which no figure here depends on. "
+            f"{header['versions']['threads']} threads; load average {min(loads):.1f} to {max(loads):.1f}, which none of these figures depends on. "
             "Each technique with its defaults: " + ", ".join(f"`{t}`" for t in techniques(data)) + "."]
 
 

@@ -20,9 +20,25 @@ Json indicesJson(const Indices& indices) {
             {"drift", number(indices.drift)}, {"spike", number(indices.spike)}};
 }
 
+// Over the frames that have errors.
+struct ErrorMeans {
+    FrameErrors sum;
+    double sizeOfBias = 0.0;
+    int count = 0;
+    void add(const std::optional<FrameErrors>& errors, double factor) {
+        if (!errors) return;
+        sum.relMse += factor * errors->relMse;
+        sum.nrmse += factor * errors->nrmse;
+        sum.bias += factor * errors->bias;
+        sizeOfBias += factor * std::abs(errors->bias);
+        ++count;
+    }
+    Json of(double figure) const { return count > 0 ? Json(figure / count) : Json(); }
+};
+
 }  // namespace
 
-FrameErrors frameErrors(const studio::StabilityFrame& frame) {
+std::optional<FrameErrors> frameErrors(const studio::StabilityFrame& frame) {
     constexpr double kDark = 0.01;  // of the squared mean: keeps dark pixels from deciding alone
     const std::size_t count = std::size_t(frame.width) * std::size_t(frame.height);
     const auto eachValue = [&](const auto& body) {
@@ -34,7 +50,7 @@ FrameErrors frameErrors(const studio::StabilityFrame& frame) {
         values += 1.0;
         sum += truth;
     });
-    if (values == 0.0 || sum == 0.0) return {};
+    if (values == 0.0 || sum == 0.0) return std::nullopt;
     const double mean = sum / values;
     FrameErrors errors;
     eachValue([&](double image, double truth) {
@@ -66,28 +82,23 @@ Verdict judgeSequence(const std::vector<JudgedFrame>& frames) {
 }
 
 Json Verdict::toJson(const std::vector<JudgedFrame>& frames) const {
-    FrameErrors mean;
-    double meanNoise = 0.0, noiseNrmse = 0.0, noiseBias = 0.0;
+    ErrorMeans means, noiseMeans;
+    double meanNoise = 0.0;
     std::size_t notFinite = 0;
     float largest = 0.0f;
     Json perFrame = Json::array();
-    const double share = 1.0 / double(frames.size());
     for (std::size_t f = 0; f < frames.size(); ++f) {
         const JudgedFrame& judged = frames[f];
-        mean.relMse += errors[f].relMse * share;
-        mean.nrmse += errors[f].nrmse * share;
-        mean.bias += errors[f].bias * share;
-        meanNoise += judged.truth->noise * share;
-        // The references differ by twice the error of their mean.
-        noiseNrmse += 0.5 * noise[f].nrmse * share;
-        noiseBias += 0.5 * std::abs(noise[f].bias) * share;
+        means.add(errors[f], 1.0);
+        noiseMeans.add(noise[f], 0.5);  // the references differ by twice the error of their mean
+        meanNoise += judged.truth->noise / double(frames.size());
         notFinite += judged.notFinite;
         largest = std::max(largest, judged.largest);
         Json json = indicesJson(indices.frames[f]);
         json["floors"] = indicesJson(floors.frames[f]);
-        json["relMSE"] = errors[f].relMse;
-        json["nrmse"] = errors[f].nrmse;
-        json["bias"] = errors[f].bias;
+        json["relMSE"] = errors[f] ? Json(errors[f]->relMse) : Json();
+        json["nrmse"] = errors[f] ? Json(errors[f]->nrmse) : Json();
+        json["bias"] = errors[f] ? Json(errors[f]->bias) : Json();
         json["noise"] = judged.truth->noise;
         json["ms"] = judged.milliseconds;
         perFrame.push_back(json);
@@ -95,8 +106,12 @@ Json Verdict::toJson(const std::vector<JudgedFrame>& frames) const {
     Json json;
     json["indices"] = indicesJson(indices);
     json["floors"] = indicesJson(floors);
-    json["errors"] = {{"relMSE", mean.relMse}, {"nrmse", mean.nrmse}, {"bias", mean.bias}};
-    json["error_floors"] = {{"relMSE", meanNoise}, {"nrmse", noiseNrmse}, {"bias", noiseBias}};
+    json["errors"] = {{"relMSE", means.of(means.sum.relMse)},
+                      {"nrmse", means.of(means.sum.nrmse)},
+                      {"bias", means.of(means.sum.bias)}};
+    json["error_floors"] = {{"relMSE", means.count > 0 ? Json(meanNoise) : Json()},
+                            {"nrmse", noiseMeans.of(noiseMeans.sum.nrmse)},
+                            {"bias", noiseMeans.of(noiseMeans.sizeOfBias)}};
     json["not_finite"] = notFinite;
     json["largest"] = largest;
     json["worst_frame"] = indices.worstFrame;

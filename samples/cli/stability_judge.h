@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <vector>
 
 #include "stability_indices.h"
@@ -18,16 +19,17 @@ struct JudgedFrame {
     double milliseconds = -1.0;
 };
 
-// Errors of one image against a truth on the pixels with surfaces; docs/accuracy.md states each. All 0
-// for a truth without any light, which they are relative to.
+// Errors of one image against a truth on the pixels with surfaces; docs/accuracy.md states each.
 struct FrameErrors {
     double relMse = 0.0, nrmse = 0.0, bias = 0.0;
 };
-FrameErrors frameErrors(const studio::StabilityFrame& frame);
+// Empty for a truth without any light, which they are relative to.
+std::optional<FrameErrors> frameErrors(const studio::StabilityFrame& frame);
 
 struct Verdict {
     studio::StabilityIndices indices, floors;
-    std::vector<FrameErrors> errors, noise;  // of each frame; of one reference by the other
+    // Of each frame; of one reference by the other.
+    std::vector<std::optional<FrameErrors>> errors, noise;
     nlohmann::ordered_json toJson(const std::vector<JudgedFrame>& frames) const;
 };
 Verdict judgeSequence(const std::vector<JudgedFrame>& frames);

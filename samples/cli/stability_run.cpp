@@ -1,3 +1,5 @@
+// `lightwell stability`: sequence by sequence and frame by frame, truth first, then every technique.
+// A little over 300 lines: one class whose members share the run's state.
 #include "stability_run.h"
 
 #include <fmt/format.h>
