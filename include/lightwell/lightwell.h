@@ -33,8 +33,8 @@
  *
  * THREADS: calls on one device are serialised by a lock of that device and may come from any thread;
  * devices are independent of each other. lwFinish, lwGetStats and lwReadDebugView wait with the lock open
- * for what was enqueued before them, so that other threads' frames go on meanwhile; lwPrewarm and
- * lwProbeDevice keep it to their end. A log callback must not call Lightwell (it gets LW_ERROR_REENTRANT), nor
+ * for what was enqueued before them, so that other threads' frames go on meanwhile; lwPrewarm, lwProbeDevice
+ * and lwCheckInputs keep it to their end. A log callback must not call Lightwell (it gets LW_ERROR_REENTRANT), nor
  * throw.
  *
  * OWNERSHIP: handles are reference-counted; lwCreate* gives one reference. A child (view, technique)
@@ -482,6 +482,93 @@ LW_API LWStatus lwUpdate(LWTechnique technique, const LWFrame* frame);
  *  view's current size. Errors: INVALID_*, NOT_UPDATED, OUT_OF_MEMORY. */
 LW_API LWStatus lwRender(LWTechnique technique, LWView view, const LWGBuffer* gbuffer,
                          const LWOutput* output);
+
+/* ------------------------------------------------------------------------------ checking inputs */
+
+/** What can be wrong with what a host hands over. docs/checking-inputs.md says how each is found, from
+ *  which size on, and what cures it. */
+typedef enum LWInputFault {
+    LW_FAULT_NOT_FINITE = 0,       /**< NaN or infinity on a surface */
+    LW_FAULT_NEGATIVE = 1,         /**< negative albedo, radiance or flux */
+    LW_FAULT_NO_SURFACES = 2,      /**< every normal is zero: validity will be zero everywhere */
+    LW_FAULT_NORMAL_MISSING = 3,   /**< zero normals where position or depth shows a surface */
+    LW_FAULT_NORMAL_LENGTH = 4,    /**< normals that are not unit */
+    LW_FAULT_NORMAL_ENCODED = 5,   /**< normals still stored as n/2 + 1/2 */
+    LW_FAULT_NORMAL_SPACE = 6,     /**< normals in view space, or with other axes than the positions */
+    LW_FAULT_NORMAL_FLIPPED = 7,   /**< normals that face away from camera or light */
+    LW_FAULT_NORMAL_DISAGREES = 8, /**< normals that do not fit the positions, for no known reason */
+    LW_FAULT_CAMERA_INVALID = 9,   /**< matrices that no camera can have */
+    LW_FAULT_CAMERA_TRANSPOSED = 10, /**< column-major matrices */
+    LW_FAULT_CAMERA_PREVIOUS = 11, /**< the G-buffer was drawn with `previousCamera` */
+    LW_FAULT_IMAGE_FLIPPED = 12,   /**< rows bottom-up, or columns mirrored */
+    LW_FAULT_POSITION_SPACE = 13,  /**< positions in view or light space, relative to the eye, or with
+                                        other axes than the camera */
+    LW_FAULT_POSITION_UNITS = 14,  /**< positions in another unit of length than their camera */
+    LW_FAULT_POSITION_CAMERA = 15, /**< positions that do not project to their pixels, for no known reason */
+    LW_FAULT_DEPTH_REVERSED = 16,  /**< 1 - depth is what the projection makes */
+    LW_FAULT_DEPTH_KIND = 17,      /**< another LWDepthKind fits */
+    LW_FAULT_MOTION_SIGN = 18,     /**< this frame less the previous one */
+    LW_FAULT_MOTION_FLIPPED_Y = 19, /**< +y up */
+    LW_FAULT_MOTION_UNITS = 20,    /**< in [0,1] or [-1,1] over the image, not in pixels */
+    LW_FAULT_MOTION_ZERO = 21,     /**< all zero while the camera moves */
+    LW_FAULT_MOTION_STATIC = 22,   /**< the cameras are equal while nearly all pixels move */
+    LW_FAULT_MOTION_DISAGREES = 23, /**< motion that does not fit the cameras, for no known reason */
+    LW_FAULT_ALBEDO_RANGE = 24,    /**< albedo above 1 */
+    LW_FAULT_ALBEDO_SRGB = 25,     /**< albedo still sRGB-encoded, or decoded twice, in one of two buffers */
+    LW_FAULT_DIRECT_SCALE = 26,    /**< directRadiance is off by a factor: mostly pi */
+    LW_FAULT_FLUX_PI = 27,         /**< flux is off by a factor of pi, 2 pi or 4 pi */
+    LW_FAULT_FLUX_TEXELS = 28,     /**< flux is off by the number of texels */
+    LW_FAULT_FLUX_SCALE = 29,      /**< flux is off by another factor, or more than the light sends */
+    LW_FAULT_RSM_EMPTY = 30,       /**< a lamp that shines, and no texel with flux */
+    LW_FAULT_RSM_ELSEWHERE = 31,   /**< RSMs far from everything the camera sees */
+    LW_FAULT_SPACES_DIFFER = 32,   /**< RSM and G-buffer do not lie in one space */
+    LW_FAULT_UNITS_DIFFER = 33,    /**< RSM and G-buffer are in different units of length */
+    LW_FAULT_LIGHT_CAMERA = 34     /**< an RSM's camera is not where its point or spot light is */
+} LWInputFault;
+
+typedef enum LWSeverity {
+    LW_SEVERITY_NOTE = 0,    /**< worth knowing; may be meant */
+    LW_SEVERITY_WARNING = 1, /**< probably wrong, or wrong in a part of the picture */
+    LW_SEVERITY_ERROR = 2    /**< the light will be wrong */
+} LWSeverity;
+
+typedef struct LWInputFaultInfo {
+    uint32_t structSize;
+    LWInputFault fault;
+    const char* name;     /**< "normal-space", ... */
+    const char* summary;  /**< one line */
+    float colour[3];      /**< in overlays, linear RGB in [0,1] */
+} LWInputFaultInfo;
+
+typedef struct LWInputFinding {
+    LWInputFault fault;
+    LWSeverity severity;
+    uint64_t affected, examined;  /**< pixels or texels; of large images every second, third, ... is examined */
+    double measured, expected;    /**< the figure that the message speaks of, and what it should have been */
+    double confidence;            /**< 0 .. 1 that this is the cause and not another */
+    float colour[3];              /**< of the affected pixels in the overlay */
+    char argument[68];            /**< "gbuffer.normal", "frame.lights[0].rsms[1].flux", ... */
+    char message[512];            /**< what was found, its likely cause and the cure */
+} LWInputFinding;
+
+LW_API uint32_t lwCountInputFaults(void);
+/** Strings in `info` live as long as the library. */
+LW_API LWStatus lwDescribeInputFault(uint32_t index, LWInputFaultInfo* info);
+
+/** Names what is wrong with a frame's inputs: each G-buffer and RSM against its own camera, motion
+ *  against both cameras, RSMs against the G-buffer, flux against the light. A debugging aid: it reads all
+ *  images back, blocks, and takes a good part of a second for each million pixels; nothing else changes.
+ *  `frame` or `gbuffer` may be null: what needs both is then left out, as is what needs a camera
+ *  whose matrices are all zero, or a light without intensity. `sourceViews` of the frame are checked like
+ *  `gbuffer`, against their own cameras.
+ *  `findings`: room for `capacity` of them, the most severe first; null where that is 0. `*count` gets the
+ *  number found, which may be more.
+ *  `overlay`: null, or 3 channels of the view's size: the G-buffer shaded grey, affected pixels in their
+ *  finding's colour, linear RGB in [0,1]; needs `gbuffer`.
+ *  What lwUpdate or lwRender would refuse is refused with the same error. `frame->sync` is honoured. */
+LW_API LWStatus lwCheckInputs(LWView view, const LWFrame* frame, const LWGBuffer* gbuffer,
+                              LWInputFinding* findings, uint32_t capacity, uint32_t* count,
+                              const LWImage* overlay);
 
 /* ------------------------------------------------------------------------- statistics, debugging */
 

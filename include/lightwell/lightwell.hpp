@@ -128,6 +128,7 @@ public:
         handle_ = decltype(handle_)(raw);
     }
     LWView get() const noexcept { return handle_.get(); }
+    LWDevice device() const noexcept { return device_.get(); }
 
     void setSize(std::uint32_t width, std::uint32_t height) {
         check(lwSetViewSize(get(), width, height), device_.get());
@@ -142,6 +143,20 @@ private:
     Device device_;
     Handle<LWView, lwRetainView, lwReleaseView> handle_;
 };
+
+// What is wrong with a frame's inputs, the most severe first; `frame`, `gbuffer` and `overlay` may be null
+// as lwCheckInputs says.
+inline std::vector<LWInputFinding> checkInputs(const View& view, const LWFrame* frame, const LWGBuffer* gbuffer,
+                                               const LWImage* overlay = nullptr) {
+    std::vector<LWInputFinding> findings(64);
+    for (;;) {
+        const auto room = static_cast<std::uint32_t>(findings.size());
+        std::uint32_t count = 0;
+        check(lwCheckInputs(view.get(), frame, gbuffer, findings.data(), room, &count, overlay), view.device());
+        findings.resize(count);
+        if (count <= room) return findings;
+    }
+}
 
 class Technique {
 public:

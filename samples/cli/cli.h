@@ -91,5 +91,6 @@ void addTriptych(CLI::App& app);
 void addChart(CLI::App& app);
 void addSplit(CLI::App& app);
 void addStability(CLI::App& app);
+void addCheck(CLI::App& app);
 
 }  // namespace cli

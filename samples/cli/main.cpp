@@ -79,6 +79,7 @@ int main(int argc, char** argv) {
         cli::addChart(app);
         cli::addSplit(app);
         cli::addStability(app);
+        cli::addCheck(app);
         return parse(app, argc, argv);
     } catch (const cli::UsageError& error) {
         printError(error.what());

@@ -112,6 +112,17 @@ double Camera::pixelArea() const {
     return std::abs(glm::dot(glm::cross(rays_.perI, rays_.perJ), axis_));
 }
 
+bool Camera::project(const glm::dvec3& position, glm::dvec2& pixel) const {
+    const glm::dvec4 clip = worldToClip_ * glm::dvec4(position, 1.0);
+    if (!(clip.w > 0.0)) return false;
+    pixel = {(clip.x / clip.w + 1.0) * 0.5 * width_, (1.0 - clip.y / clip.w) * 0.5 * height_};
+    return std::isfinite(pixel.x) && std::isfinite(pixel.y);
+}
+
+double Camera::footprint(double axialDistance) const {
+    return std::sqrt(pixelArea()) * (perspective_ ? std::abs(axialDistance) : 1.0);
+}
+
 void Camera::clipOf(const Camera& other, ImageLinear<double>& clipX, ImageLinear<double>& clipY) const {
     const double w = worldToClip_[3][3];
     const glm::dvec4 start = worldToClip_ * glm::dvec4(other.eye_, 1.0) / w;

@@ -47,6 +47,15 @@ public:
     // Perspective: area of a pixel at distance 1 along the axis. Orthographic: its cross-section.
     double pixelArea() const;
 
+    // Image coordinates of a world position (pixel centres at + 1/2); false behind the eye.
+    bool project(const glm::dvec3& position, glm::dvec2& pixel) const;
+    // Distance along the axis from the eye, and a pixel's width there.
+    double axial(const glm::dvec3& position) const { return glm::dot(position - eye_, axis_); }
+    double footprint(double axialDistance) const;
+    // From view space.
+    glm::dvec3 positionFromView(const glm::dvec3& p) const { return origin_ + viewToWorld_ * p; }
+    glm::dvec3 directionFromView(const glm::dvec3& d) const { return viewToWorld_ * d; }
+
     // Clip x and y of the points that pixels of the orthographic camera `other` stand for, along the
     // common axis. Both must be orthographic.
     void clipOf(const Camera& other, ImageLinear<double>& clipX, ImageLinear<double>& clipY) const;

@@ -126,6 +126,11 @@ GBufferInput::~GBufferInput() = default;
 GBufferInput::GBufferInput(GBufferInput&&) noexcept = default;
 GBufferInput& GBufferInput::operator=(GBufferInput&&) noexcept = default;
 
+void GBufferInput::check(Device& device, const View& view, const LWGBuffer& gbuffer, std::uint32_t needs,
+                         const char* name) {
+    checkGBuffer(device, view, gbuffer, needs, name);
+}
+
 void GBufferInput::import(Executor& executor, const View& view, const LWGBuffer& gbuffer,
                           std::uint32_t needs, const char* name) {
     Device& device = executor.device();

@@ -30,6 +30,9 @@ public:
     GBufferInput(GBufferInput&&) noexcept;
     GBufferInput& operator=(GBufferInput&&) noexcept;
 
+    // Throws what import() would say of these images.
+    static void check(Device& device, const View& view, const LWGBuffer& gbuffer, std::uint32_t needs,
+                      const char* name);
     // Records the unpacking (passes "gbuffer_input.*") and sets the planes below for this frame.
     // `name` begins every error, e.g. "gbuffer". Throws INVALID_ARGUMENT naming field, expected, got.
     void import(Executor& executor, const View& view, const LWGBuffer& gbuffer, std::uint32_t needs,

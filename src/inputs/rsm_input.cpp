@@ -206,6 +206,11 @@ struct RsmInput::Impl {
 RsmInput::RsmInput() : impl_(std::make_unique<Impl>()) {}
 RsmInput::~RsmInput() = default;
 
+void RsmInput::check(Device& device, const LWFrame& frame) {
+    std::vector<RsmSpan> unused;
+    checkLights(device, frame, unused);
+}
+
 void RsmInput::import(Executor& executor, const LWFrame& frame) {
     Device& device = executor.device();
     std::vector<RsmSpan> newSpans;

@@ -46,6 +46,8 @@ public:
     RsmInput();
     ~RsmInput();
 
+    // Throws what import() would say of this frame.
+    static void check(Device& device, const LWFrame& frame);
     // Records the unpacking of every RSM (passes "rsm_input.*"): flux 0 and normal 0 where the host gave
     // none, gave something not finite, negative or beyond LW_LARGEST_FLUX (counted as rejected), or where
     // a finer cascade of the same directional light covers the texel; area A_p as lightwell.h's lights define it.

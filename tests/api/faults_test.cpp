@@ -154,6 +154,44 @@ TEST_CASE("whichever OpenCL call of a creation or a prewarming fails, it is told
     }
 }
 
+TEST_CASE("whichever OpenCL call of lwCheckInputs fails, it is told, and the next call finds the same", "[faults]") {
+    ApiScene scene;
+    for (std::uint32_t y = 0; y < scene.normal.height(); ++y)
+        for (std::uint32_t x = 0; x < scene.normal.width(); ++x) scene.normal.set(x, y, 0, -0.5, 0);
+    ApiRig rig(deviceWith("1"), scene);
+    HostImage overlay(LW_FORMAT_FLOAT4, scene.normal.width(), scene.normal.height());
+    const LWImage image = overlay.image();
+    LWInputFinding finding;
+    std::uint32_t count = 0;
+    const auto check = [&] { return lwCheckInputs(rig.view, &scene.frame, &scene.gbuffer, &finding, 1, &count, &image); };
+    REQUIRE(check() == LW_SUCCESS);
+    REQUIRE(count == 1);
+    REQUIRE(finding.fault == LW_FAULT_NORMAL_LENGTH);
+    const std::uint64_t held = rig.info().allocatedBytes;
+    for (int call = 0;; ++call) {
+        REQUIRE(call < kMostCalls);
+        LWStatus status = LW_SUCCESS;
+        bool happened = false;
+        {
+            const ClFault fault(call, CL_OUT_OF_HOST_MEMORY);
+            status = check();
+            happened = fault.happened();
+        }
+        CAPTURE(call, status);
+        if (status != LW_SUCCESS) CHECK(count == 0);
+        REQUIRE(check() == LW_SUCCESS);
+        REQUIRE(count == 1);
+        REQUIRE(finding.fault == LW_FAULT_NORMAL_LENGTH);
+        REQUIRE(rig.info().allocatedBytes == held);
+        lastError(rig.device);
+        if (!happened) {
+            CHECK(call > 20);
+            break;
+        }
+        CHECK(status != LW_SUCCESS);
+    }
+}
+
 TEST_CASE("after a command failed on the device, techniques ask for another update", "[faults]") {
     ApiScene scene;
     ApiRig rig(makeDevice(16), scene);

@@ -315,6 +315,46 @@ class Render(CommandLine):
         self.refused([*arguments, "--camera", "d"], '"d"', "one of: c")
 
 
+class Check(CommandLine):
+    FINDING = {"fault", "severity", "argument", "affected", "examined", "measured", "expected", "confidence", "colour",
+               "message"}
+
+    def wrong(self, *arguments):
+        """Exit code 1 and one line on stderr; the JSON on stdout."""
+        result = run("check", *arguments, "--json")
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
+        return json.loads(result.stdout)
+
+    def test_good_inputs(self):
+        self.assertIn("nothing wrong", self.done("check", "cornell", *SIZE, "--rsm-size", "64").stdout)
+        document = self.json("check", "cornell", *SIZE, "--rsm-size", "64", "--json")
+        self.assertEqual(document["findings"], [])
+        self.assertEqual(document["size"], [96, 54])
+
+    def test_planted_fault(self):
+        overlay = self.path("overlay.png")
+        document = self.wrong("cornell", *SIZE, "--rsm-size", "64", "--plant", "rows-flipped", "--overlay", overlay)
+        self.assertEqual(document["planted"], "rows-flipped")
+        self.assertEqual(set(document["findings"][0]), self.FINDING)
+        self.assertEqual(document["findings"][0]["fault"], "image-flipped")
+        self.assertEqual(document["findings"][0]["argument"], "gbuffer.position")
+        self.assertEqual(png_size(overlay), (96, 54))
+        text = run("check", "cornell", *SIZE, "--rsm-size", "64", "--plant", "flux-pi")
+        self.assertEqual(text.returncode, 1)
+        self.assertIn("flux-pi", text.stdout)
+        # A warning is printed and does not fail.
+        text = self.done("check", "cornell", *SIZE, "--rsm-size", "64", "--plant", "motion-static").stdout
+        self.assertIn("warning motion-static", text)
+
+    def test_wrong_arguments(self):
+        self.refused(["check"], "SCENE")
+        self.refused(["check", "cornell", *SIZE, "--plant", "flux-pie"], "flux-pie", "flux-pi", "motion-sign")
+        self.refused(["check", "basic", *SIZE, "--plant", "light-position"], "light-position", "spot or point light")
+        self.refused(["check", "cornell", *SIZE, "--overlay", "a.jpg"], "a.jpg", ".png")
+        self.assertIn("depth-reversed", self.done("check", "--help").stdout)
+
+
 class Reference(CommandLine):
     def test_layers(self):
         picture = self.path("two.exr")

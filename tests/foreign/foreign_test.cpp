@@ -131,6 +131,27 @@ LWLight spotLight(const Frame& frame, const LWRsm& rsm) {
     return light;
 }
 
+LWRsm rsmOf(const Frame& frame) {
+    LWRsm rsm;
+    LW_INIT(rsm);
+    rsm.depthKind = LW_DEPTH_ZERO_TO_ONE;
+    rsm.depth = bottomUp(frame.rsmDepth.data(), LW_FORMAT_FLOAT1, frame.rsmSize, 4);
+    rsm.normal = bottomUp(frame.rsmNormal.data(), LW_FORMAT_FLOAT4, frame.rsmSize, 16);
+    rsm.flux = bottomUp(frame.rsmFlux.data(), LW_FORMAT_FLOAT3, frame.rsmSize, 12);
+    rsm.camera = frame.rsm;
+    return rsm;
+}
+
+LWGBuffer gbufferOf(const Frame& frame) {
+    LWGBuffer gbuffer;
+    LW_INIT(gbuffer);
+    gbuffer.depthKind = LW_DEPTH_ZERO_TO_ONE;
+    gbuffer.depth = bottomUp(frame.viewDepth.data(), LW_FORMAT_FLOAT1, frame.viewSize, 4);
+    gbuffer.normal = bottomUp(frame.viewNormal.data(), LW_FORMAT_OCT16X2, frame.viewSize, 4);
+    gbuffer.camera = gbuffer.previousCamera = frame.view;
+    return gbuffer;
+}
+
 // Irradiance, float4, bottom row first.
 std::vector<float> render(const Frame& frame, std::uint32_t width) {
     Handles lw;
@@ -150,13 +171,7 @@ std::vector<float> render(const Frame& frame, std::uint32_t width) {
     desc.resolution = LW_RESOLUTION_FULL;
     lw.check(lwCreateRsm(lw.device, &desc, &lw.technique));
 
-    LWRsm rsm;
-    LW_INIT(rsm);
-    rsm.depthKind = LW_DEPTH_ZERO_TO_ONE;
-    rsm.depth = bottomUp(frame.rsmDepth.data(), LW_FORMAT_FLOAT1, frame.rsmSize, 4);
-    rsm.normal = bottomUp(frame.rsmNormal.data(), LW_FORMAT_FLOAT4, frame.rsmSize, 16);
-    rsm.flux = bottomUp(frame.rsmFlux.data(), LW_FORMAT_FLOAT3, frame.rsmSize, 12);
-    rsm.camera = frame.rsm;
+    const LWRsm rsm = rsmOf(frame);
     const LWLight light = spotLight(frame, rsm);
     LWFrame world;
     LW_INIT(world);
@@ -164,12 +179,7 @@ std::vector<float> render(const Frame& frame, std::uint32_t width) {
     world.lights = &light;
     lw.check(lwUpdate(lw.technique, &world));
 
-    LWGBuffer gbuffer;
-    LW_INIT(gbuffer);
-    gbuffer.depthKind = LW_DEPTH_ZERO_TO_ONE;
-    gbuffer.depth = bottomUp(frame.viewDepth.data(), LW_FORMAT_FLOAT1, frame.viewSize, 4);
-    gbuffer.normal = bottomUp(frame.viewNormal.data(), LW_FORMAT_OCT16X2, frame.viewSize, 4);
-    gbuffer.camera = gbuffer.previousCamera = frame.view;
+    const LWGBuffer gbuffer = gbufferOf(frame);
     std::vector<float> irradiance(std::size_t(4 * frame.viewSize[0] * frame.viewSize[1]), kCanary);
     LWOutput output;
     LW_INIT(output);
@@ -208,4 +218,48 @@ TEST_CASE("a frame in foreign conventions reaches the independent sum over all t
     const std::uint32_t width = GENERATE(1u, 16u);
     CAPTURE(width);
     compare(frame, render(frame, width));
+}
+
+// Left-handed, centimetres, reversed depth, bottom-up rows, octahedral normals: all of it is allowed. What is not
+// said rightly is found.
+TEST_CASE("the input checker finds nothing wrong with foreign conventions, and what is said wrongly", "[foreign]") {
+    const Frame frame = readFrame();
+    Handles lw;
+    lw.check(lwCreateDevice(nullptr, &lw.device));
+    LWViewDesc viewDesc;
+    LW_INIT(viewDesc);
+    viewDesc.maxWidth = std::uint32_t(frame.viewSize[0]);
+    viewDesc.maxHeight = std::uint32_t(frame.viewSize[1]);
+    lw.check(lwCreateView(lw.device, &viewDesc, &lw.view));
+    LWRsm rsm = rsmOf(frame);
+    LWGBuffer gbuffer = gbufferOf(frame);
+    const auto first = [&] {
+        const LWLight light = spotLight(frame, rsm);
+        LWFrame world;
+        LW_INIT(world);
+        world.lightCount = 1;
+        world.lights = &light;
+        LWInputFinding finding = {};
+        std::uint32_t count = 0;
+        lw.check(lwCheckInputs(lw.view, &world, &gbuffer, &finding, 1, &count, nullptr));
+        INFO(finding.message);
+        return count ? int(finding.fault) : -1;
+    };
+    CHECK(first() == -1);
+
+    std::vector<float> depth(frame.viewDepth.size() / sizeof(float));
+    std::copy(frame.viewDepth.begin(), frame.viewDepth.end(), reinterpret_cast<char*>(depth.data()));
+    for (float& d : depth) d = 1.0f - d;
+    gbuffer.depth = bottomUp(depth.data(), LW_FORMAT_FLOAT1, frame.viewSize, 4);
+    CHECK(first() == LW_FAULT_DEPTH_REVERSED);
+
+    gbuffer = gbufferOf(frame);
+    gbuffer.depthKind = LW_DEPTH_AXIAL;
+    CHECK(first() == LW_FAULT_DEPTH_KIND);
+
+    // Normals top row first beside depth bottom row first.
+    gbuffer = gbufferOf(frame);
+    gbuffer.normal.byteOffset = 0;
+    gbuffer.normal.byteRowStride = -gbuffer.normal.byteRowStride;
+    CHECK(first() == LW_FAULT_IMAGE_FLIPPED);
 }

@@ -1,0 +1,320 @@
+// Normals and depth against each other: the normal that neighbouring positions span must be the one that
+// the host gives. Depth read wrongly bends planes, and normals of another space turn away; the guess
+// that makes both agree is the cause. Interpolated and mapped normals differ from the geometry's, but at
+// random, so that no guess is better nearly everywhere. (A little over 300 lines: a dozen guesses with
+// their texts.)
+#include <cmath>
+#include <functional>
+
+#include "inputs/input_check_parts.h"
+
+namespace lightwell {
+namespace {
+
+// Differences to both sides of a pixel agree within this share of their sum where the surface is smooth;
+// farther apart there is an edge between. Perspective alone makes them differ on floors seen at a small
+// angle.
+constexpr double kSmooth = 0.25;
+constexpr std::uint64_t kFewest = 64;
+// A guess is better (worse) at a pixel when its cosine with the geometry is higher (lower) by this:
+// 0.003 is the turn from 0 to 4.4 degrees.
+constexpr double kBetterBy = 0.003;
+// Of the pixels where it makes a difference, the guess must be better at this share; and it must make a
+// difference at a tenth of all. True causes reach 0.99. Surfaces finer than a pixel (roof tiles in a
+// coarse RSM) alias into others, whose normals a mirrored axis fitted at 0.83.
+constexpr double kWinningShare = 0.93, kMovedShare = 0.1;
+// And it must explain most of the picture: cosines above 0.9 at this share.
+constexpr double kAgreeing = 0.9, kAgreeingShare = 0.6;
+// Share of the surfaces that must be smooth when a depth is guessed: a wrong one may leave a few by
+// chance.
+constexpr double kSmoothShare = 0.1;
+// Normals facing away on smooth ground: silhouettes and interpolation stay below a fifth of a per cent
+// in every scene tried.
+constexpr double kFlippedShare = 0.02;
+
+using Place = std::function<bool(std::uint32_t x, std::uint32_t y, glm::dvec3& p)>;
+
+struct Guess {
+    LWInputFault fault;
+    std::string text;
+    Place place;                                          // empty: as given
+    std::function<glm::dvec3(const glm::dvec3&)> normal;  // of the unit normal as given
+    bool flipX = false, flipY = false;                    // the normal of the mirrored pixel
+};
+
+glm::dvec3 normalBy(const Surfaces& s, const Guess& guess, std::uint32_t x, std::uint32_t y,
+                    const glm::dvec3& given) {
+    if (guess.normal) return guess.normal(given);
+    if (!guess.flipX && !guess.flipY) return given;
+    const glm::dvec3 other =
+        s.normal.triple(guess.flipX ? s.width - 1 - x : x, guess.flipY ? s.height - 1 - y : y);
+    return finite(other) && other != glm::dvec3(0.0) ? glm::normalize(other) : glm::dvec3(0.0);
+}
+
+// The geometry's normal at a pixel, on the side of the eye; false at edges.
+bool geometricNormal(const Surfaces& s, const Place& place, std::uint32_t x, std::uint32_t y,
+                     glm::dvec3& normal) {
+    if (x == 0 || y == 0 || x + 1 >= s.width || y + 1 >= s.height) return false;
+    glm::dvec3 p, around[8];  // pairs of opposite pixels: across, down, and the diagonals
+    const std::uint32_t xs[8] = {x - 1, x + 1, x, x, x - 1, x + 1, x + 1, x - 1},
+                        ys[8] = {y, y, y - 1, y + 1, y - 1, y + 1, y - 1, y + 1};
+    if (!s.surface(x, y) || !place(x, y, p)) return false;
+    for (int k = 0; k < 8; ++k)
+        if (!s.surface(xs[k], ys[k]) || !place(xs[k], ys[k], around[k])) return false;
+    for (int k = 0; k < 8; k += 2)
+        if (glm::length(around[k] + around[k + 1] - 2.0 * p) >
+            kSmooth * glm::length(around[k + 1] - around[k]))
+            return false;
+    const glm::dvec3 across = glm::cross(around[1] - around[0], around[3] - around[2]);
+    const double length = glm::length(across);
+    if (!(length > 0.0)) return false;
+    normal = across / length;
+    const glm::dvec3 towards = s.towardsEye(p);
+    if (glm::dot(normal, towards) < 0.0) normal = -normal;
+    return true;
+}
+
+// A pixel as given: made once, since every guess is held against it.
+struct Sample {
+    std::uint32_t x, y;
+    bool smooth;  // the positions as given span `geometry`
+    glm::dvec3 geometry, normal, towards;
+};
+
+std::vector<Sample> samplesOf(const Surfaces& s, const Place& given) {
+    std::vector<Sample> samples;
+    s.sample([&](std::uint32_t x, std::uint32_t y) {
+        if (!s.surface(x, y)) return;
+        Sample sample{x, y, false, {}, s.unitNormal(x, y), s.towardsEye(s.position.triple(x, y))};
+        sample.smooth = geometricNormal(s, given, x, y, sample.geometry);
+        if (sample.smooth || s.depth) samples.push_back(sample);
+    });
+    return samples;
+}
+
+struct Contest {
+    std::uint64_t smooth = 0, better = 0, worse = 0, agreeing = 0, perfect = 0, away = 0;
+    std::vector<std::uint32_t> pixels, awayPixels;
+    bool won() const {
+        return shareOf(better, better + worse) >= kWinningShare &&
+               shareOf(better, smooth) >= kMovedShare && shareOf(agreeing, smooth) >= kAgreeingShare;
+    }
+};
+
+// `guess` against what was given. An orthographic camera without a known direction cannot tell sides:
+// cosines then count by their size.
+Contest contest(const Surfaces& s, const std::vector<Sample>& samples, const Guess& guess) {
+    Contest result;
+    for (const Sample& sample : samples) {
+        glm::dvec3 geometry = sample.geometry;
+        const bool other =
+            guess.place ? geometricNormal(s, guess.place, sample.x, sample.y, geometry) : sample.smooth;
+        // Depth read wrongly flattens edges away: only the guess knows where ground is smooth.
+        if (guess.place ? !other : !sample.smooth) continue;
+        const bool sided = sample.towards != glm::dvec3(0.0);
+        const auto cosine = [&](const glm::dvec3& a, const glm::dvec3& b) {
+            return sided ? glm::dot(a, b) : std::abs(glm::dot(a, b));
+        };
+        const double before = sample.smooth ? cosine(sample.normal, sample.geometry) : -2.0;
+        const double after =
+            other ? cosine(normalBy(s, guess, sample.x, sample.y, sample.normal), geometry) : -2.0;
+        const std::uint32_t pixel = sample.y * s.width + sample.x;
+        ++result.smooth;
+        result.better += after > before + kBetterBy;
+        result.worse += before > after + kBetterBy;
+        result.agreeing += after > kAgreeing;
+        result.perfect += after > 1.0 - kBetterBy;
+        if (after > before + kBetterBy) result.pixels.push_back(pixel);
+        if (sample.smooth && sided && before < -0.5 && glm::dot(sample.normal, sample.towards) < -0.1) {
+            ++result.away;
+            result.awayPixels.push_back(pixel);
+        }
+    }
+    return result;
+}
+
+glm::dvec3 unit(const glm::dvec3& v) {
+    const double length = glm::length(v);
+    return length > 0.0 ? v / length : v;
+}
+
+std::vector<Guess> normalGuesses(const Surfaces& s, const std::vector<NamedCamera>& others) {
+    std::vector<Guess> guesses;
+    const Camera* own = &*s.camera;
+    guesses.push_back({LW_FAULT_NORMAL_FLIPPED,
+                       std::string("they face away from the ") + (s.isRsm ? "light" : "camera") +
+                           ": turn their sign, or the winding that they come from",
+                       {},
+                       [](const glm::dvec3& n) { return -n; }});
+    guesses.push_back(
+        {LW_FAULT_NORMAL_SPACE,
+         "they are in view space of the buffer's own camera: multiply by the transposed view rotation",
+         {},
+         [own](const glm::dvec3& n) { return unit(own->directionFromView(n)); }});
+    guesses.push_back(
+        {LW_FAULT_NORMAL_SPACE,
+         "they are in view space with z turned (a left-handed view): bring them to the world",
+         {},
+         [own](const glm::dvec3& n) {
+             return unit(own->directionFromView({n.x, n.y, -n.z}));
+         }});
+    guesses.push_back({LW_FAULT_NORMAL_ENCODED,
+                       "they are still stored as n/2 + 1/2 and were then normalised: decode first",
+                       {},
+                       [](const glm::dvec3& n) {
+                           // |2 s n - 1| = 1 for the length s that was lost; the larger root, which lies
+                           // on the side of all normals but those near (-1, -1, -1).
+                           const double sum = n.x + n.y + n.z, root = sum * sum - 2.0;
+                           return root < 0.0 ? n : unit((sum + std::sqrt(root)) * n - 1.0);
+                       }});
+    guesses.push_back({LW_FAULT_IMAGE_FLIPPED,
+                       "their rows were read the other way round: bottom-up beside positions that are "
+                       "top-down, or the reverse",
+                       {},
+                       {},
+                       false,
+                       true});
+    guesses.push_back({LW_FAULT_IMAGE_FLIPPED, "their columns were mirrored", {}, {}, true, false});
+    for (const NamedCamera& other : others) {
+        const Camera* camera = other.camera;
+        guesses.push_back(
+            {LW_FAULT_NORMAL_SPACE,
+             "they are in the view space of " + other.name + ": bring them to the world",
+             {},
+             [camera](const glm::dvec3& n) { return unit(camera->directionFromView(n)); }});
+    }
+    for (const AxesChange& change : axesChanges()) {
+        const glm::dmat3 matrix = change.matrix;
+        guesses.push_back({LW_FAULT_NORMAL_SPACE,
+                           std::string("normals and positions have different axes: ") + change.what,
+                           {},
+                           [matrix](const glm::dvec3& n) { return matrix * n; }});
+    }
+    return guesses;
+}
+
+std::vector<Guess> depthGuesses(const Surfaces& s) {
+    static constexpr struct {
+        LWDepthKind kind;
+        const char* name;
+    } kKinds[] = {{LW_DEPTH_ZERO_TO_ONE, "LW_DEPTH_ZERO_TO_ONE"},
+                  {LW_DEPTH_GL, "LW_DEPTH_GL"},
+                  {LW_DEPTH_AXIAL, "LW_DEPTH_AXIAL"},
+                  {LW_DEPTH_RADIAL, "LW_DEPTH_RADIAL"}};
+    std::vector<Guess> guesses;
+    const auto placeBy = [&s](const LwUnprojection& u, bool reversed) -> Place {
+        return [&s, u, reversed](std::uint32_t x, std::uint32_t y, glm::dvec3& p) {
+            const double depth = double(s.depth.at(x, y));
+            return unprojectDepth(u, x + 0.5, y + 0.5, reversed ? 1.0 - depth : depth, p);
+        };
+    };
+    for (const auto& kind : kKinds) {
+        LwUnprojection u{};
+        try {
+            u = s.camera->unprojection(kind.kind);
+        } catch (const std::exception&) {
+            continue;  // a distance with an orthographic camera that has no front
+        }
+        if (kind.kind == s.depthKind) {
+            if (kind.kind == LW_DEPTH_ZERO_TO_ONE || kind.kind == LW_DEPTH_GL)
+                guesses.push_back({LW_FAULT_DEPTH_REVERSED,
+                                   "1 - depth fits: the depth is reversed and the projection matrix is "
+                                   "not, or the other way "
+                                   "round. Give the matrix that the depth was drawn with",
+                                   placeBy(u, true),
+                                   {}});
+        } else {
+            guesses.push_back({LW_FAULT_DEPTH_KIND,
+                               std::string("depthKind ") + kind.name + " fits",
+                               placeBy(u, false),
+                               {}});
+        }
+    }
+    return guesses;
+}
+
+// Of several guesses that win, the one that makes most of the picture agree.
+const Guess* bestOf(const Surfaces& s, const std::vector<Sample>& samples,
+                    const std::vector<Guess>& guesses, Contest& best) {
+    const Guess* winner = nullptr;
+    for (const Guess& guess : guesses) {
+        Contest result = contest(s, samples, guess);
+        if (result.smooth < kFewest || double(result.smooth) < kSmoothShare * double(samples.size()) ||
+            !result.won())
+            continue;
+        if (winner &&
+            shareOf(result.agreeing, result.smooth) < shareOf(best.agreeing, best.smooth) + 0.02)
+            continue;
+        winner = &guess;
+        best = std::move(result);
+    }
+    return winner;
+}
+
+void reportFlips(const Surfaces& s, Contest& asGiven, Findings& findings) {
+    if (shareOf(asGiven.away, asGiven.smooth) < kFlippedShare) return;
+    Found& f = findings.add(
+        LW_FAULT_NORMAL_FLIPPED, LW_SEVERITY_WARNING, s.argument("normal"),
+        {asGiven.away, asGiven.smooth, shareOf(asGiven.away, asGiven.smooth), 0.0, 0.9},
+        percent(asGiven.away, asGiven.smooth), " of the normals on smooth ground face away from the ",
+        s.isRsm ? "light" : "camera",
+        ": some meshes have the wrong winding, or two-sided materials are not turned to the viewer");
+    if (!s.isRsm) f.pixels = std::move(asGiven.awayPixels);
+    f.step = s.step;
+}
+
+}  // namespace
+
+void checkNormals(Surfaces& s, const std::vector<NamedCamera>& others, Findings& findings) {
+    if (!s.camera || !s.trusted) return;
+    const Place given = [&s](std::uint32_t x, std::uint32_t y, glm::dvec3& p) {
+        p = s.position.triple(x, y);
+        return finite(p);
+    };
+    const Guess asIs{LW_FAULT_NORMAL_DISAGREES, "", {}, {}};
+    const std::vector<Sample> samples = samplesOf(s, given);
+    Contest now = contest(s, samples, asIs);
+    if (now.smooth < kFewest && !s.depth) return;
+    // Nothing can be better at a tenth of the picture when nine tenths are perfect.
+    if (now.smooth >= kFewest && shareOf(now.perfect, now.smooth) > 1.0 - kMovedShare)
+        return reportFlips(s, now, findings);
+
+    Contest best, bestDepth;
+    const Guess* winner = nullptr;
+    const std::vector<Guess> normals = normalGuesses(s, others);
+    const std::vector<Guess> depths = s.depth ? depthGuesses(s) : std::vector<Guess>();
+    winner = bestOf(s, samples, normals, best);
+    const Guess* depthWinner = bestOf(s, samples, depths, bestDepth);
+    if (depthWinner && (!winner || bestDepth.agreeing > best.agreeing)) {
+        winner = depthWinner;
+        best = std::move(bestDepth);
+    }
+    const bool disagrees = now.smooth >= kFewest && shareOf(now.agreeing, now.smooth) < 0.15;
+    if (!winner && !disagrees) {
+        reportFlips(s, now, findings);
+        return;
+    }
+    // Places from a wrong depth are wrong; places of wrong normals stand.
+    s.trusted = false;
+    const bool depthFault =
+        winner && (winner->fault == LW_FAULT_DEPTH_REVERSED || winner->fault == LW_FAULT_DEPTH_KIND);
+    const double before = shareOf(now.agreeing, now.smooth);
+    const double after = winner ? shareOf(best.agreeing, best.smooth) : before;
+    const std::uint64_t affected = winner ? best.better : now.smooth - now.agreeing;
+    const std::uint64_t examined = winner ? best.smooth : now.smooth;
+    Found& f = findings.add(
+        winner ? winner->fault : LW_FAULT_NORMAL_DISAGREES,
+        winner ? LW_SEVERITY_ERROR : LW_SEVERITY_WARNING, s.argument(depthFault ? "depth" : "normal"),
+        {affected, examined, before, 1.0, winner ? after : 0.5}, "on smooth ground ",
+        percent(now.agreeing, now.smooth), " of the normals agree with the ",
+        s.depth ? "depth" : "positions", " (within 26 degrees)",
+        winner
+            ? ""
+            : ", and no usual mistake explains it: are both of one frame, and the normals the world's?",
+        winner ? ", and " + percent(best.agreeing, best.smooth) + " would if " : std::string(),
+        winner ? winner->text : std::string());
+    if (!s.isRsm && winner) f.pixels = std::move(best.pixels);
+    f.step = s.step;
+}
+
+}  // namespace lightwell
