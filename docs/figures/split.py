@@ -34,7 +34,8 @@ def main():
     options, split_options = parser.parse_known_args()
     folder = pathlib.Path(options.results)
     if not (folder / "split.json").exists():
-        command = [options.lightwell, "split", "--out", str(folder), "--scenes", *SCENES, *split_options]
+        scenes = [] if "--scenes" in split_options else ["--scenes", *SCENES]
+        command = [options.lightwell, "split", "--out", str(folder), *scenes, *split_options]
         if subprocess.run(command, check=False).returncode != 0:
             sys.exit("lightwell split failed")
     data = json.loads((folder / "split.json").read_text(encoding="utf-8"))
@@ -102,7 +103,9 @@ def measured(data):
     header, points = data["header"], data["points"]
     names = list(split_section.SHARES)
     lines = [f"Measured {header['written'][:10]} at {header['size'][0]}x{header['size'][1]}, {header['patterns']} patterns, on "
-             f"{header['device']['name']}, {header['device']['width']} lanes, with `docs/figures/split.py`.", "",
+             f"{header['device']['name']}, {header['device']['width']} lanes, with `docs/figures/split.py`"
+             + (". Truth: all bounces." if any(p["truth_of_all_bounces"] for p in points) else
+                " `--quick`: truth of one bounce, so without the model's share."), "",
              "![Shares of the error](images/split.svg)", "",
              "| view | technique | relMSE | " + " | ".join(names) + " | with exact visibility |",
              "| --- | --- | ---: | " + " | ".join(["---:"] * (len(names) + 1)) + " |"]
@@ -131,8 +134,9 @@ def reading(points):
     first = [max(p["shares"], key=lambda key, p=p: p["shares"][key] or 0.0) for p in defaults]
     ruled = sum(key == "visibility" for key in first)
     best, least = max(defaults, key=gain), min(defaults, key=gain)
+    modelled = any(p["truth_of_all_bounces"] for p in defaults)
     hidden = [p for p in defaults if p["shares"]["model"] < 0.0]
-    text = (f"With the defaults visibility is the largest share in {ruled} of {len(defaults)} views. Shadow rays and the bounces left out "
+    text = (f"With the defaults visibility is the largest share in {ruled} of {len(defaults)} views. Shadow rays{' and the bounces left out' if modelled else ''} "
             f"would lower the relMSE {gain(best):.0f} times in {best['scene']} and {gain(least):.1f} times in {least['scene']}: more VPLs, full "
             "resolution or another bound would not.")
     if hidden:
