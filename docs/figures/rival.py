@@ -8,15 +8,12 @@ Writes docs/techniques/rival_figures.md. --spp: paths of the truth. Images stay 
 missing. About a quarter of an hour on two cores at rest,
 by the times at 320x180. Scenes other than the shipped ones are looked for in LIGHTWELL_SCENES.
 """
-import argparse
 import json
 import math
 import os
-import pathlib
-import subprocess
-import sys
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+from program import ROOT, caller, read_options
+
 PATHS = [1, 2, 4, 16, 64]
 VARIANTS = [("full, raw", ["filter=off"]), ("full", []), ("half, raw", ["resolution=half", "filter=off"]),
             ("half", ["resolution=half"]), ("quarter, raw", ["resolution=quarter", "filter=off"]),
@@ -24,21 +21,8 @@ VARIANTS = [("full, raw", ["filter=off"]), ("full", []), ("half, raw", ["resolut
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--lightwell", default=str(ROOT / "build/release/bin/lightwell"))
-    parser.add_argument("--work", default=str(ROOT / "build/figures"))
-    parser.add_argument("--size", default="1280x720")
-    parser.add_argument("--scenes", nargs="+", default=["cornell", "sponza_crytek", "sibenik"])
-    parser.add_argument("--spp", type=int, default=64)
-    options = parser.parse_args()
-    work = pathlib.Path(options.work)
-    work.mkdir(parents=True, exist_ok=True)
-
-    def call(*arguments):
-        result = subprocess.run([options.lightwell, *map(str, arguments)], capture_output=True, text=True)
-        if result.returncode:
-            sys.exit(result.stderr.strip() or f"lightwell {arguments[0]} failed")
-        return result.stdout
+    options = read_options(__doc__, ["cornell", "sponza_crytek", "sibenik"], 64)
+    work, call = options.work, caller(options.lightwell)
 
     cores = os.cpu_count()
     lines = ["<!-- Made by docs/figures/rival.py; do not edit. -->", ""]

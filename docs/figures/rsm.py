@@ -7,36 +7,19 @@
 Writes docs/techniques/rsm_figures.md. Images stay in --work and are made again only when missing.
 Scenes other than the shipped ones are looked for in LIGHTWELL_SCENES.
 """
-import argparse
 import json
 import math
 import os
-import pathlib
-import subprocess
-import sys
 
 import near_field
+from program import ROOT, caller, read_options
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
 COUNTS = [64, 256, 1024, 4096, 16384]
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--lightwell", default=str(ROOT / "build/release/bin/lightwell"))
-    parser.add_argument("--work", default=str(ROOT / "build/figures"))
-    parser.add_argument("--size", default="1280x720")
-    parser.add_argument("--scenes", nargs="+", default=["cornell", "sibenik", "sponza_crytek"])
-    parser.add_argument("--spp", default="16")
-    options = parser.parse_args()
-    work = pathlib.Path(options.work)
-    work.mkdir(parents=True, exist_ok=True)
-
-    def call(*arguments):
-        result = subprocess.run([options.lightwell, *map(str, arguments)], capture_output=True, text=True)
-        if result.returncode:
-            sys.exit(result.stderr.strip() or f"lightwell {arguments[0]} failed")
-        return result.stdout
+    options = read_options(__doc__, ["cornell", "sibenik", "sponza_crytek"], 16)
+    work, call = options.work, caller(options.lightwell)
 
     def render(scene, name, *settings, frames=1, warmup=0, extra=()):
         """Renders once per name; returns (EXR, the report)."""

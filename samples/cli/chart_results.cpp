@@ -8,7 +8,7 @@
 #include <unordered_map>
 
 #include "cli.h"
-#include "file_lock.h"
+#include "results_file.h"
 
 namespace cli {
 namespace {
@@ -29,10 +29,9 @@ Json readResults(const std::string& path, const std::string& format) {
 }  // namespace
 
 struct ChartResults::Impl {
-    explicit Impl(const std::string& file) : path(file), lock(file + ".lock", [] { return false; }) {}
+    explicit Impl(const std::string& path) : file(path) {}
 
-    std::string path;
-    FileLock lock;  // two runs would each lose what the other measures
+    ResultsFile file;
     Json json;
     std::unordered_map<std::string, std::size_t> views, points;  // index by id
 
@@ -48,9 +47,6 @@ struct ChartResults::Impl {
 
 ChartResults::ChartResults(const std::string& path, const std::string& format)
     : impl_(std::make_unique<Impl>(path)) {
-    if (!impl_->lock.isHeld())
-        throw UsageError(
-            fmt::format("{}: another run is writing it; expected another --out, or to wait", path));
     if (!std::filesystem::exists(path)) {
         impl_->json = {{"format", format},
                        {"header", Json::object()},
@@ -68,10 +64,7 @@ ChartResults::ChartResults(const std::string& path, const std::string& format)
 ChartResults::~ChartResults() = default;
 
 void ChartResults::setHeader(const Json& header) {
-    Json& known = impl_->json["header"];
-    const Json device = known.value("device", Json());  // of earlier points, where this run needs none
-    known = header;
-    if (known["device"].is_null()) known["device"] = device;
+    replaceHeader(impl_->json["header"], header);
 }
 
 const Json* ChartResults::find(const std::string& id, const std::string& key) const {
@@ -90,12 +83,7 @@ void ChartResults::putPoint(Json point) {
 }
 
 void ChartResults::save() const {
-    const std::string unfinished = impl_->path + ".part";
-    std::ofstream file(unfinished, std::ios::trunc);
-    file << impl_->json.dump(1) << '\n';
-    file.close();
-    if (!file) throw std::runtime_error(unfinished + ": cannot be written");
-    std::filesystem::rename(unfinished, impl_->path);
+    impl_->file.replace(impl_->json);
 }
 
 std::size_t ChartResults::pointCount() const {

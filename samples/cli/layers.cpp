@@ -14,6 +14,14 @@ void addLayer(studio::Image& image, const std::string& prefix, const studio::Pla
     }
 }
 
+std::vector<float> packedPlanes(const studio::PlanarBuffer& buffer) {
+    std::vector<float> values;
+    for (int plane = 0; plane < buffer.planes(); ++plane)
+        for (int y = 0; y < buffer.height(); ++y)
+            values.insert(values.end(), buffer.row(plane, y), buffer.row(plane, y) + buffer.width());
+    return values;
+}
+
 void addViewLayers(studio::Image& image, const studio::GBuffer& gbuffer) {
     addLayer(image, "direct.", gbuffer.direct);
     addLayer(image, "albedo.", gbuffer.albedo);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "gbuffer.h"
 #include "image.h"
@@ -10,6 +11,8 @@ namespace cli {
 
 // Planes of `buffer` become channels prefix + "R", "G", "B"; a single plane becomes `prefix` itself.
 void addLayer(studio::Image& image, const std::string& prefix, const studio::PlanarBuffer& buffer);
+// The planes one after the other, without the padding of their rows.
+std::vector<float> packedPlanes(const studio::PlanarBuffer& buffer);
 // direct.* (L_d), albedo.*, normal.*: what a composite and a comparison need beside the irradiance.
 void addViewLayers(studio::Image& image, const studio::GBuffer& gbuffer);
 

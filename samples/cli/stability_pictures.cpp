@@ -7,20 +7,13 @@
 #include <nlohmann/json.hpp>
 
 #include "false_colour.h"
+#include "layers.h"
 
 namespace cli {
 namespace {
 
 constexpr int kGap = 4;  // white pixels between the panels
 constexpr const char* kChannels[] = {"R", "G", "B"};
-
-std::vector<float> packed(const studio::PlanarBuffer& buffer) {
-    std::vector<float> values;
-    for (int plane = 0; plane < buffer.planes(); ++plane)
-        for (int y = 0; y < buffer.height(); ++y)
-            values.insert(values.end(), buffer.row(plane, y), buffer.row(plane, y) + buffer.width());
-    return values;
-}
 
 void setPlanes(studio::Image& image, const std::string& prefix, const std::vector<float>& planes) {
     const std::size_t count = image.pixelCount();
@@ -70,7 +63,7 @@ studio::Image sideBySide(const std::array<const studio::Image*, 3>& panels) {
 }  // namespace
 
 void SequencePictures::addFrame(const studio::GBuffer& view) {
-    frames_.push_back({view.width, view.height, packed(view.albedo), packed(view.direct)});
+    frames_.push_back({view.width, view.height, packedPlanes(view.albedo), packedPlanes(view.direct)});
 }
 
 nlohmann::ordered_json SequencePictures::write(const std::string& folder, const std::string& name,

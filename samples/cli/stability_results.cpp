@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli.h"
+#include "results_file.h"
 
 namespace cli {
 namespace {
@@ -48,12 +49,13 @@ Json readStability(const std::string& path) {
 }
 
 struct StabilityResults::Impl {
-    std::string path;
+    explicit Impl(const std::string& path) : file(path) {}
+
+    ResultsFile file;
     Json json;
 };
 
-StabilityResults::StabilityResults(const std::string& path) : impl_(std::make_unique<Impl>()) {
-    impl_->path = path;
+StabilityResults::StabilityResults(const std::string& path) : impl_(std::make_unique<Impl>(path)) {
     if (std::filesystem::exists(path))
         impl_->json = readStability(path);
     else
@@ -70,11 +72,9 @@ void StabilityResults::setHeader(const Json& header) {
     for (const char* field : {"size", "frames"})
         if (known.contains(field) && known[field] != header.at(field))
             throw UsageError(fmt::format("{}: its {} is {}, this run's {}; another --out, or remove it",
-                                         impl_->path, field, known[field].dump(),
+                                         impl_->file.path(), field, known[field].dump(),
                                          header.at(field).dump()));
-    const Json device = known.value("device", Json());  // of earlier results, where this run needs none
-    known = header;
-    if (known["device"].is_null()) known["device"] = device;
+    replaceHeader(known, header);
 }
 
 bool StabilityResults::isFresh(const std::string& id, const std::string& key) const {
@@ -92,12 +92,7 @@ void StabilityResults::putResult(Json result) {
 }
 
 void StabilityResults::save() const {
-    const std::string unfinished = impl_->path + ".part";
-    std::ofstream file(unfinished, std::ios::trunc);
-    file << impl_->json.dump(1) << '\n';
-    file.close();
-    if (!file) throw std::runtime_error(unfinished + ": cannot be written");
-    std::filesystem::rename(unfinished, impl_->path);
+    impl_->file.replace(impl_->json);
 }
 
 const Json& StabilityResults::json() const {

@@ -17,6 +17,7 @@
 #include "film.h"
 #include "indirect_renderer.h"
 #include "interrupt.h"
+#include "layers.h"
 #include "lit_points.h"
 #include "open_device.h"
 #include "path_tracer.h"
@@ -59,14 +60,6 @@ struct FrameScene {
           scene(std::make_unique<studio::RayScene>(frame.scene, frame.time)),
           seen(studio::seeFrame(*scene, frame)) {}
 };
-
-std::vector<float> packed(const studio::PlanarBuffer& buffer) {
-    std::vector<float> values;
-    for (int plane = 0; plane < buffer.planes(); ++plane)
-        for (int y = 0; y < buffer.height(); ++y)
-            values.insert(values.end(), buffer.row(plane, y), buffer.row(plane, y) + buffer.width());
-    return values;
-}
 
 class Stability {
 public:
@@ -292,7 +285,7 @@ void Stability::renderFrame(const FailureSequence& sequence, const FrameScene& n
         judged.milliseconds = runner.renderer->renderFrame(inputs, now.frame.reset).wallMilliseconds;
         judged.frame = frame;
         judged.truth = truths.at(runner.bounces);
-        judged.frame.image = packed(runner.renderer->irradiance());
+        judged.frame.image = packedPlanes(runner.renderer->irradiance());
         for (float& value : judged.frame.image) {
             if (!std::isfinite(value)) {
                 value = 0.0f;

@@ -9,6 +9,7 @@
 #include "compute/device.h"
 #include "compute/error.h"
 #include "inputs/image_access.h"
+#include "shared/input_limits.h"
 
 namespace lightwell {
 namespace {
@@ -113,7 +114,8 @@ bool unprojectDepth(const LwUnprojection& u, double i, double j, double depth, g
         p *= u.mode == LW_UNPROJECT_RADIAL ? depth / glm::length(p) : depth;
     }
     position = p + glm::dvec3(u.origin.s[0], u.origin.s[1], u.origin.s[2]);
-    return finite(position) && glm::dot(position, position) < 1e38;
+    constexpr double kFarthest = LW_LARGEST_DISTANCE;  // as the kernels refuse them
+    return finite(position) && glm::dot(position, position) <= kFarthest * kFarthest;
 }
 
 Surfaces readGBuffer(Executor& executor, const LWGBuffer& gbuffer, std::uint32_t width,

@@ -1,0 +1,30 @@
+"""What the scripts of docs/figures share: their options, and a call of the program `lightwell`."""
+import argparse
+import pathlib
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+
+def read_options(description, scenes, spp):
+    """The options of a script, with `work` as a folder that exists."""
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--lightwell", default=str(ROOT / "build/release/bin/lightwell"))
+    parser.add_argument("--work", type=pathlib.Path, default=ROOT / "build/figures")
+    parser.add_argument("--size", default="1280x720")
+    parser.add_argument("--scenes", nargs="+", default=scenes)
+    parser.add_argument("--spp", type=int, default=spp)
+    options = parser.parse_args()
+    options.work.mkdir(parents=True, exist_ok=True)
+    return options
+
+
+def caller(program):
+    """call(*arguments): what the program prints; its own message ends the script when it fails."""
+    def call(*arguments):
+        result = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True)
+        if result.returncode:
+            sys.exit(result.stderr.strip() or f"lightwell {arguments[0]} failed")
+        return result.stdout
+    return call
