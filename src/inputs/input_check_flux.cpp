@@ -1,12 +1,12 @@
 // Flux against the light. Through a texel comes E_perp * A_texel from a sun and I(w) * Omega_texel from
 // a lamp; flux over that is the albedo of the surface, which the G-buffer knows where it sees the same
 // surface. A common factor between the two, or the sRGB curve, names the mistake. Without such places
-// only bounds are left: no surface reflects more than it gets. (A little over 300 lines: figures, names
-// of factors and reports are of one piece.)
+// only bounds are left: no surface reflects more than it gets.
 #include <algorithm>
 #include <cmath>
 
 #include "inputs/input_check_parts.h"
+#include "inputs/input_light.h"
 
 namespace lightwell {
 namespace {
@@ -24,42 +24,12 @@ constexpr double kDarkest = 0.02;
 constexpr double kCurveResidual = 0.1, kCurveGain = 0.4, kPlainResidual = 0.15;
 // More than all light: albedo of 1 and rounding.
 constexpr double kWholePower = 1.02;
-// Share of pixels with one and the same factor that makes it the factor of the picture, and the share
-// that may at most have none: the fully lit ones, in no scene tried below a tenth of the lit.
-constexpr double kPeakShare = 0.2, kNoPeakShare = 0.03, kPeakWidth = 0.04;
 
 double srgbDecode(double v) {
     return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
 }
 double srgbEncode(double v) {
     return v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
-}
-
-double coneFalloff(const LWLight& light, const glm::dvec3& way) {
-    if (light.kind != LW_LIGHT_SPOT) return 1.0;
-    const glm::dvec3 axis(light.direction[0], light.direction[1], light.direction[2]);
-    const double length = glm::length(axis);
-    if (!(length > 0.0)) return 1.0;
-    // KHR_lights_punctual.
-    const double cosine = glm::dot(way, axis / length), inner = std::cos(double(light.innerConeAngle)),
-                 outer = std::cos(double(light.outerConeAngle));
-    const double ramp = std::min(1.0, std::max(0.0, (cosine - outer) / std::max(1e-3, inner - outer)));
-    return ramp * ramp;
-}
-
-glm::dvec3 emitted(const LWLight& light) {
-    const float* v = light.kind == LW_LIGHT_DIRECTIONAL ? light.irradiance : light.radiantIntensity;
-    return {double(v[0]), double(v[1]), double(v[2])};
-}
-
-// Flux through a texel.
-glm::dvec3 incidentFlux(const LWLight& light, const Surfaces& map, std::uint32_t x, std::uint32_t y) {
-    const Camera& camera = *map.camera;
-    if (!camera.perspective()) return emitted(light) * camera.pixelArea();
-    const glm::dvec3 ray = camera.rays().at(x, y);  // 1 long along the axis
-    const double length = glm::length(ray);
-    return emitted(light) *
-           (coneFalloff(light, ray / length) * camera.pixelArea() / (length * length * length));
 }
 
 // Flux over incident flux, and the albedo of the same place in the G-buffer.
@@ -285,64 +255,6 @@ void checkFlux(const Surfaces* g, const LightMaps& light, Findings& findings) {
         std::min(residual(figures.pairs, srgbDecode), residual(figures.pairs, srgbEncode));
     if (curve <= std::max(asFactor, 0.02) && reportCurve(*g, light, figures, findings)) return;
     if (factor > kHighest || factor < kLowest) reportFactor(light, figures, factor, true, findings);
-}
-
-void checkDirect(const Surfaces& g, const std::vector<LightMaps>& lights, Findings& findings) {
-    if (!g.direct || !g.albedo || !g.albedoTrusted || !g.trusted || lights.empty()) return;
-    static constexpr struct {
-        double factor;
-        const char* text;
-    } kFactors[] = {
-        {1.0, ""},
-        {kPi, "it is pi times what albedo / pi * E makes: the 1/pi of a diffuse surface is missing"},
-        {1 / kPi, "it is 1/pi of what albedo / pi * E makes: divided by pi twice"},
-        {2.0, "it is twice what albedo / pi * E makes"},
-        {0.5, "it is half of what albedo / pi * E makes"}};
-    std::uint64_t peaks[std::size(kFactors)] = {}, examined = 0;
-    std::vector<std::uint32_t> pixels;
-    for (const LightMaps& light : lights) {
-        const glm::dvec3 sent = emitted(*light.light);
-        if (!(sent.x + sent.y + sent.z > 0.0)) return;
-    }
-    g.sample([&](std::uint32_t x, std::uint32_t y) {
-        if (!g.surface(x, y)) return;
-        const glm::dvec3 p = g.position.triple(x, y), n = g.unitNormal(x, y),
-                         albedo = g.albedo.triple(x, y), direct = g.direct.triple(x, y);
-        glm::dvec3 irradiance(0.0);
-        for (const LightMaps& light : lights) {
-            const LWLight& l = *light.light;
-            glm::dvec3 way(l.direction[0], l.direction[1], l.direction[2]);
-            if (l.kind == LW_LIGHT_DIRECTIONAL) {
-                const double length = glm::length(way);
-                if (length > 0.0) irradiance += emitted(l) * std::max(0.0, glm::dot(n, -way / length));
-                continue;
-            }
-            way = p - glm::dvec3(l.position[0], l.position[1], l.position[2]);
-            const double distance = glm::length(way);
-            irradiance +=
-                emitted(l) * (coneFalloff(l, way / distance) *
-                              std::max(0.0, glm::dot(n, -way / distance)) / (distance * distance));
-        }
-        const double wanted =
-            (albedo.x * irradiance.x + albedo.y * irradiance.y + albedo.z * irradiance.z) / kPi;
-        const double given = direct.x + direct.y + direct.z;
-        if (!(wanted > 0.0) || !std::isfinite(wanted) || !(given > 0.0) || !std::isfinite(given)) return;
-        ++examined;
-        pixels.push_back(y * g.width + x);
-        for (std::size_t k = 0; k < std::size(kFactors); ++k)
-            peaks[k] += std::abs(std::log(given / wanted / kFactors[k].factor)) < kPeakWidth;
-    });
-    if (examined < kFewest || shareOf(peaks[0], examined) > kNoPeakShare) return;
-    for (std::size_t k = 1; k < std::size(kFactors); ++k) {
-        if (shareOf(peaks[k], examined) < kPeakShare) continue;
-        Found& f = findings.add(LW_FAULT_DIRECT_SCALE, LW_SEVERITY_ERROR, g.argument("directRadiance"),
-                                {peaks[k], examined, kFactors[k].factor, 1.0, 0.9}, "for ",
-                                percent(peaks[k], examined), " of the lit pixels ", kFactors[k].text,
-                                "; nearly none have the right value");
-        f.pixels = std::move(pixels);
-        f.step = g.step;
-        return;
-    }
 }
 
 }  // namespace lightwell

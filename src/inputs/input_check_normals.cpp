@@ -1,12 +1,10 @@
 // Normals and depth against each other: the normal that neighbouring positions span must be the one that
 // the host gives. Depth read wrongly bends planes, and normals of another space turn away; the guess
 // that makes both agree is the cause. Interpolated and mapped normals differ from the geometry's, but at
-// random, so that no guess is better nearly everywhere. (A little over 300 lines: a dozen guesses with
-// their texts.)
+// random, so that no guess is better nearly everywhere.
 #include <cmath>
-#include <functional>
 
-#include "inputs/input_check_parts.h"
+#include "inputs/input_normal_guesses.h"
 
 namespace lightwell {
 namespace {
@@ -32,17 +30,7 @@ constexpr double kSmoothShare = 0.1;
 // in every scene tried.
 constexpr double kFlippedShare = 0.02;
 
-using Place = std::function<bool(std::uint32_t x, std::uint32_t y, glm::dvec3& p)>;
-
-struct Guess {
-    LWInputFault fault;
-    std::string text;
-    Place place;                                          // empty: as given
-    std::function<glm::dvec3(const glm::dvec3&)> normal;  // of the unit normal as given
-    bool flipX = false, flipY = false;                    // the normal of the mirrored pixel
-};
-
-glm::dvec3 normalBy(const Surfaces& s, const Guess& guess, std::uint32_t x, std::uint32_t y,
+glm::dvec3 normalBy(const Surfaces& s, const NormalGuess& guess, std::uint32_t x, std::uint32_t y,
                     const glm::dvec3& given) {
     if (guess.normal) return guess.normal(given);
     if (!guess.flipX && !guess.flipY) return given;
@@ -103,7 +91,7 @@ struct Contest {
 
 // `guess` against what was given. An orthographic camera without a known direction cannot tell sides:
 // cosines then count by their size.
-Contest contest(const Surfaces& s, const std::vector<Sample>& samples, const Guess& guess) {
+Contest contest(const Surfaces& s, const std::vector<Sample>& samples, const NormalGuess& guess) {
     Contest result;
     for (const Sample& sample : samples) {
         glm::dvec3 geometry = sample.geometry;
@@ -133,111 +121,11 @@ Contest contest(const Surfaces& s, const std::vector<Sample>& samples, const Gue
     return result;
 }
 
-glm::dvec3 unit(const glm::dvec3& v) {
-    const double length = glm::length(v);
-    return length > 0.0 ? v / length : v;
-}
-
-std::vector<Guess> normalGuesses(const Surfaces& s, const std::vector<NamedCamera>& others) {
-    std::vector<Guess> guesses;
-    const Camera* own = &*s.camera;
-    guesses.push_back({LW_FAULT_NORMAL_FLIPPED,
-                       std::string("they face away from the ") + (s.isRsm ? "light" : "camera") +
-                           ": turn their sign, or the winding that they come from",
-                       {},
-                       [](const glm::dvec3& n) { return -n; }});
-    guesses.push_back(
-        {LW_FAULT_NORMAL_SPACE,
-         "they are in view space of the buffer's own camera: multiply by the transposed view rotation",
-         {},
-         [own](const glm::dvec3& n) { return unit(own->directionFromView(n)); }});
-    guesses.push_back(
-        {LW_FAULT_NORMAL_SPACE,
-         "they are in view space with z turned (a left-handed view): bring them to the world",
-         {},
-         [own](const glm::dvec3& n) {
-             return unit(own->directionFromView({n.x, n.y, -n.z}));
-         }});
-    guesses.push_back({LW_FAULT_NORMAL_ENCODED,
-                       "they are still stored as n/2 + 1/2 and were then normalised: decode first",
-                       {},
-                       [](const glm::dvec3& n) {
-                           // |2 s n - 1| = 1 for the length s that was lost; the larger root, which lies
-                           // on the side of all normals but those near (-1, -1, -1).
-                           const double sum = n.x + n.y + n.z, root = sum * sum - 2.0;
-                           return root < 0.0 ? n : unit((sum + std::sqrt(root)) * n - 1.0);
-                       }});
-    guesses.push_back({LW_FAULT_IMAGE_FLIPPED,
-                       "their rows were read the other way round: bottom-up beside positions that are "
-                       "top-down, or the reverse",
-                       {},
-                       {},
-                       false,
-                       true});
-    guesses.push_back({LW_FAULT_IMAGE_FLIPPED, "their columns were mirrored", {}, {}, true, false});
-    for (const NamedCamera& other : others) {
-        const Camera* camera = other.camera;
-        guesses.push_back(
-            {LW_FAULT_NORMAL_SPACE,
-             "they are in the view space of " + other.name + ": bring them to the world",
-             {},
-             [camera](const glm::dvec3& n) { return unit(camera->directionFromView(n)); }});
-    }
-    for (const AxesChange& change : axesChanges()) {
-        const glm::dmat3 matrix = change.matrix;
-        guesses.push_back({LW_FAULT_NORMAL_SPACE,
-                           std::string("normals and positions have different axes: ") + change.what,
-                           {},
-                           [matrix](const glm::dvec3& n) { return matrix * n; }});
-    }
-    return guesses;
-}
-
-std::vector<Guess> depthGuesses(const Surfaces& s) {
-    static constexpr struct {
-        LWDepthKind kind;
-        const char* name;
-    } kKinds[] = {{LW_DEPTH_ZERO_TO_ONE, "LW_DEPTH_ZERO_TO_ONE"},
-                  {LW_DEPTH_GL, "LW_DEPTH_GL"},
-                  {LW_DEPTH_AXIAL, "LW_DEPTH_AXIAL"},
-                  {LW_DEPTH_RADIAL, "LW_DEPTH_RADIAL"}};
-    std::vector<Guess> guesses;
-    const auto placeBy = [&s](const LwUnprojection& u, bool reversed) -> Place {
-        return [&s, u, reversed](std::uint32_t x, std::uint32_t y, glm::dvec3& p) {
-            const double depth = double(s.depth.at(x, y));
-            return unprojectDepth(u, x + 0.5, y + 0.5, reversed ? 1.0 - depth : depth, p);
-        };
-    };
-    for (const auto& kind : kKinds) {
-        LwUnprojection u{};
-        try {
-            u = s.camera->unprojection(kind.kind);
-        } catch (const std::exception&) {
-            continue;  // a distance with an orthographic camera that has no front
-        }
-        if (kind.kind == s.depthKind) {
-            if (kind.kind == LW_DEPTH_ZERO_TO_ONE || kind.kind == LW_DEPTH_GL)
-                guesses.push_back({LW_FAULT_DEPTH_REVERSED,
-                                   "1 - depth fits: the depth is reversed and the projection matrix is "
-                                   "not, or the other way "
-                                   "round. Give the matrix that the depth was drawn with",
-                                   placeBy(u, true),
-                                   {}});
-        } else {
-            guesses.push_back({LW_FAULT_DEPTH_KIND,
-                               std::string("depthKind ") + kind.name + " fits",
-                               placeBy(u, false),
-                               {}});
-        }
-    }
-    return guesses;
-}
-
 // Of several guesses that win, the one that makes most of the picture agree.
-const Guess* bestOf(const Surfaces& s, const std::vector<Sample>& samples,
-                    const std::vector<Guess>& guesses, Contest& best) {
-    const Guess* winner = nullptr;
-    for (const Guess& guess : guesses) {
+const NormalGuess* bestOf(const Surfaces& s, const std::vector<Sample>& samples,
+                          const std::vector<NormalGuess>& guesses, Contest& best) {
+    const NormalGuess* winner = nullptr;
+    for (const NormalGuess& guess : guesses) {
         Contest result = contest(s, samples, guess);
         if (result.smooth < kFewest || double(result.smooth) < kSmoothShare * double(samples.size()) ||
             !result.won())
@@ -271,7 +159,7 @@ void checkNormals(Surfaces& s, const std::vector<NamedCamera>& others, Findings&
         p = s.position.triple(x, y);
         return finite(p);
     };
-    const Guess asIs{LW_FAULT_NORMAL_DISAGREES, "", {}, {}};
+    const NormalGuess asIs{LW_FAULT_NORMAL_DISAGREES, "", {}, {}};
     const std::vector<Sample> samples = samplesOf(s, given);
     Contest now = contest(s, samples, asIs);
     if (now.smooth < kFewest && !s.depth) return;
@@ -280,11 +168,11 @@ void checkNormals(Surfaces& s, const std::vector<NamedCamera>& others, Findings&
         return reportFlips(s, now, findings);
 
     Contest best, bestDepth;
-    const Guess* winner = nullptr;
-    const std::vector<Guess> normals = normalGuesses(s, others);
-    const std::vector<Guess> depths = s.depth ? depthGuesses(s) : std::vector<Guess>();
+    const NormalGuess* winner = nullptr;
+    const std::vector<NormalGuess> normals = normalGuesses(s, others);
+    const std::vector<NormalGuess> depths = s.depth ? depthGuesses(s) : std::vector<NormalGuess>();
     winner = bestOf(s, samples, normals, best);
-    const Guess* depthWinner = bestOf(s, samples, depths, bestDepth);
+    const NormalGuess* depthWinner = bestOf(s, samples, depths, bestDepth);
     if (depthWinner && (!winner || bestDepth.agreeing > best.agreeing)) {
         winner = depthWinner;
         best = std::move(bestDepth);

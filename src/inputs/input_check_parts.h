@@ -33,12 +33,15 @@ struct LightMaps {
 };
 // input_check_spaces.cpp: the maps of a light against the G-buffer: one space, one unit, one scene.
 void checkSpaces(const Surfaces& gbuffer, LightMaps& light, Findings& findings);
+// input_check_light.cpp: a lamp's position against the cameras of its maps.
+void checkLightCamera(const LightMaps& light, Findings& findings);
 // input_check_flux.cpp: flux against the light, and with a trusted G-buffer (else null) against its
 // albedo.
 void checkFlux(const Surfaces* gbuffer, const LightMaps& light, Findings& findings);
+// input_check_direct.cpp
 void checkDirect(const Surfaces& gbuffer, const std::vector<LightMaps>& lights, Findings& findings);
 
-// Signed exchanges of axes that hosts get wrong.
+// input_conventions.cpp. Signed exchanges of axes that hosts get wrong.
 struct AxesChange {
     const char* what;
     glm::dmat3 matrix;  // from what the host gave to what is meant
