@@ -165,7 +165,7 @@ const std::vector<Plant>& plants() {
                  for (std::size_t r = 0; r < in.maps[l].size(); ++r)
                      encodeFlux(in.maps[l][r].flux, in.lights[l], in.rsms[l][r].camera);
          }},
-        {"direct-pi", "direct-scale", "direct radiance without 1/pi", false, false, false,
+        {"direct-pi", "direct-scale", "direct radiance without 1/pi", true, false, false,
          [](In& in) {
              for (float& v : in.direct.values) v *= kPi;
          }},

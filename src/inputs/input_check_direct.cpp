@@ -16,8 +16,8 @@ constexpr double kPeakShare = 0.2, kNoPeakShare = 0.03, kPeakWidth = 0.04;
 
 }  // namespace
 
-void checkDirect(const Surfaces& g, const std::vector<LightMaps>& lights, Findings& findings) {
-    if (!g.direct || !g.albedo || !g.albedoTrusted || !g.trusted || lights.empty()) return;
+void checkDirect(const Surfaces& g, const LWLight* lights, std::uint32_t count, Findings& findings) {
+    if (!g.direct || !g.albedo || !g.albedoTrusted || !g.trusted || count == 0) return;
     static constexpr struct {
         double factor;
         const char* text;
@@ -29,8 +29,8 @@ void checkDirect(const Surfaces& g, const std::vector<LightMaps>& lights, Findin
         {0.5, "it is half of what albedo / pi * E makes"}};
     std::uint64_t peaks[std::size(kFactors)] = {}, examined = 0;
     std::vector<std::uint32_t> pixels;
-    for (const LightMaps& light : lights) {
-        const glm::dvec3 sent = emitted(*light.light);
+    for (std::uint32_t k = 0; k < count; ++k) {
+        const glm::dvec3 sent = emitted(lights[k]);
         if (!(sent.x + sent.y + sent.z > 0.0)) return;
     }
     g.sample([&](std::uint32_t x, std::uint32_t y) {
@@ -38,8 +38,8 @@ void checkDirect(const Surfaces& g, const std::vector<LightMaps>& lights, Findin
         const glm::dvec3 p = g.position.triple(x, y), n = g.unitNormal(x, y),
                          albedo = g.albedo.triple(x, y), direct = g.direct.triple(x, y);
         glm::dvec3 irradiance(0.0);
-        for (const LightMaps& light : lights) {
-            const LWLight& l = *light.light;
+        for (std::uint32_t k = 0; k < count; ++k) {
+            const LWLight& l = lights[k];
             glm::dvec3 way(l.direction[0], l.direction[1], l.direction[2]);
             if (l.kind == LW_LIGHT_DIRECTIONAL) {
                 const double length = glm::length(way);
@@ -68,7 +68,7 @@ void checkDirect(const Surfaces& g, const std::vector<LightMaps>& lights, Findin
                                 {peaks[k], examined, kFactors[k].factor, 1.0, 0.9}, "for ",
                                 percent(peaks[k], examined), " of the lit pixels ", kFactors[k].text,
                                 "; nearly none have the right value");
-        f.pixels = std::move(pixels);
+        if (g.shown) f.pixels = std::move(pixels);
         f.step = g.step;
         return;
     }

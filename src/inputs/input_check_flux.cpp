@@ -20,6 +20,8 @@ constexpr double kLowest = 0.7, kHighest = 1.4;
 constexpr double kNamed = 0.12;
 // Darker albedo is mostly rounding.
 constexpr double kDarkest = 0.02;
+// And no material but black velvet reflects less than this.
+constexpr double kBlackest = 0.01;
 // sRGB is named when it explains the ratios this much better than nothing does, and well.
 constexpr double kCurveResidual = 0.1, kCurveGain = 0.4, kPlainResidual = 0.15;
 // More than all light: albedo of 1 and rounding.
@@ -58,6 +60,8 @@ struct FluxFigures {
     std::vector<double> ratios;
     double flux = 0.0, incident = 0.0;  // W, of the examined texels with flux, channels added
     std::uint64_t lit = 0, surfaces = 0, impossible = 0, fluxTexels = 0;
+    // Texels that the light reaches; those of the same place as a pixel; of these, not black ones.
+    std::uint64_t reached = 0, matched = 0, bright = 0;
     double texels = 0.0;  // of one map
 };
 
@@ -71,10 +75,18 @@ void addMap(const Surfaces* g, const LWLight& light, const Surfaces& map, FluxFi
         const glm::dvec3 incident = incidentFlux(light, map, x, y);
         const double in = incident.x + incident.y + incident.z, out = flux.x + flux.y + flux.z;
         // Rims of cones: rounding of the edge itself.
-        if (!(in > 1e-3 * (emitted(light).x + emitted(light).y + emitted(light).z) *
-                       map.camera->pixelArea()) ||
-            !(out > 0.0))
+        if (!(in >
+              1e-3 * (emitted(light).x + emitted(light).y + emitted(light).z) * map.camera->pixelArea()))
             return;
+        ++figures.reached;
+        const glm::dvec3 p = map.position.triple(x, y);
+        glm::dvec3 albedo(0.0);
+        const bool known =
+            g && map.trusted &&
+            albedoOf(*g, p, map.unitNormal(x, y), map.camera->footprint(map.camera->axial(p)), albedo);
+        figures.matched += known;
+        figures.bright += known && std::max({albedo.x, albedo.y, albedo.z}) >= kDarkest;
+        if (!(out > 0.0)) return;
         ++figures.lit;
         figures.flux += out;
         figures.incident += in;
@@ -82,11 +94,7 @@ void addMap(const Surfaces* g, const LWLight& light, const Surfaces& map, FluxFi
         bool impossible = false;
         for (int c = 0; c < 3; ++c) impossible = impossible || flux[c] > kWholePower * incident[c];
         figures.impossible += impossible;
-        glm::dvec3 albedo;
-        const glm::dvec3 p = map.position.triple(x, y);
-        if (!g || !map.trusted ||
-            !albedoOf(*g, p, map.unitNormal(x, y), map.camera->footprint(map.camera->axial(p)), albedo))
-            return;
+        if (!known) return;
         for (int c = 0; c < 3; ++c)
             if (albedo[c] >= kDarkest && flux[c] > 0.0 && incident[c] > 0.0)
                 figures.pairs.push_back({flux[c] / incident[c], albedo[c]});
@@ -183,7 +191,7 @@ bool reportCurve(const Surfaces& g, const LightMaps& light, const FluxFigures& f
                             "albedo and RSM flux over incident flux differ by ",
                             100.0 * (std::exp(plain) - 1.0), " % (mean over quantiles), and by ",
                             100.0 * (std::exp(best) - 1.0), " % after the sRGB curve: ", text);
-    if (gbuffer)
+    if (gbuffer && g.shown)
         g.sample([&](std::uint32_t x, std::uint32_t y) {
             if (g.surface(x, y)) f.pixels.push_back(y * g.width + x);
         });
@@ -221,9 +229,29 @@ void reportBounds(const LightMaps& light, const FluxFigures& figures, Findings& 
                      percent(figures.impossible, figures.lit),
                      " of the lit texels reflect more than the light brings them: albedo above 1, or "
                      "flux that is not this light's alone");
-    } else if (medianOf(figures.ratios) < 0.5 / figures.texels * 8.0) {
+    } else if (medianOf(figures.ratios) < std::min(kBlackest, 0.5 / figures.texels * 8.0)) {
         reportFactor(light, figures, whole / 0.5, false, findings);
     }
+}
+
+// No flux at all. Right where the light reaches nothing, or black things alone (metals have no diffuse
+// albedo).
+void reportEmpty(const LightMaps& light, const FluxFigures& figures, Findings& findings) {
+    const std::string rsms = light.name + ".rsms";
+    if (figures.reached == 0) {
+        findings.add(
+            LW_FAULT_RSM_EMPTY, LW_SEVERITY_NOTE, rsms, {0, figures.surfaces, 0.0, 1.0, 0.5},
+            "the light shines, and its RSMs show no surface that it reaches: it lights nothing, "
+            "or they were not drawn");
+        return;
+    }
+    const bool proven = figures.bright >= kFewest, black = !proven && figures.matched >= kFewest;
+    if (black && shareOf(figures.bright, figures.matched) < 0.01) return;
+    findings.add(LW_FAULT_RSM_EMPTY, proven ? LW_SEVERITY_ERROR : LW_SEVERITY_WARNING, rsms,
+                 {figures.reached, figures.reached, 0.0, 1.0, proven ? 0.95 : 0.8},
+                 "the light shines and its RSMs show surfaces, but no texel has flux: was the flux "
+                 "drawn, the right texture bound, and is it above 6e-8 W where it is half floats?",
+                 proven ? "" : " (Right where all that it reaches is black.)");
 }
 
 }  // namespace
@@ -236,16 +264,7 @@ void checkFlux(const Surfaces* g, const LightMaps& light, Findings& findings) {
     const bool hasAlbedo = g && g->albedo && g->albedoTrusted && g->camera && g->trusted;
     for (const Surfaces& map : light.maps)
         if (map.camera && map.flux) addMap(hasAlbedo ? g : nullptr, *light.light, map, figures);
-    if (figures.fluxTexels == 0) {
-        findings.add(LW_FAULT_RSM_EMPTY, figures.surfaces ? LW_SEVERITY_ERROR : LW_SEVERITY_NOTE,
-                     light.name + ".rsms",
-                     {figures.surfaces, figures.surfaces, 0.0, 1.0, figures.surfaces ? 0.9 : 0.5},
-                     figures.surfaces ? "the light shines and its RSMs show surfaces, but no texel has "
-                                        "flux: was the flux drawn, and the right texture bound?"
-                                      : "the light shines, and its RSMs show no surface: it lights "
-                                        "nothing, or they were not drawn");
-        return;
-    }
+    if (figures.fluxTexels == 0) return reportEmpty(light, figures, findings);
     if (figures.pairs.size() < kFewest) return reportBounds(light, figures, findings);
     std::vector<double> logs;
     for (const Pair& pair : figures.pairs) logs.push_back(std::log(pair.ratio / pair.albedo));

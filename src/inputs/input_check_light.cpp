@@ -24,7 +24,7 @@ void checkLightCamera(const LightMaps& light, Findings& findings) {
             if (map.surface(x, y)) distances.push_back(glm::length(map.position.triple(x, y) - eye));
         });
         const double typical = medianOf(std::move(distances)), offset = glm::length(eye - place);
-        if (!(typical > 0.0) || offset <= kLightOffset * typical) continue;
+        if (!(typical > 0.0) || offset <= kLightOffset * typical + map.rounding(place)) continue;
         const double ratio = glm::length(place) > 0.0 ? glm::length(eye) / glm::length(place) : 0.0;
         const bool along = glm::length(eye) > 0.0 &&
                            glm::dot(eye, place) > 0.999 * glm::length(eye) * glm::length(place);

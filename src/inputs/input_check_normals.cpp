@@ -46,9 +46,9 @@ bool geometricNormal(const Surfaces& s, const Place& place, std::uint32_t x, std
     glm::dvec3 p, around[8];  // pairs of opposite pixels: across, down, and the diagonals
     const std::uint32_t xs[8] = {x - 1, x + 1, x, x, x - 1, x + 1, x + 1, x - 1},
                         ys[8] = {y, y, y - 1, y + 1, y - 1, y + 1, y - 1, y + 1};
-    if (!s.surface(x, y) || !place(x, y, p)) return false;
+    if (!s.drawn(x, y) || !place(x, y, p)) return false;
     for (int k = 0; k < 8; ++k)
-        if (!s.surface(xs[k], ys[k]) || !place(xs[k], ys[k], around[k])) return false;
+        if (!s.drawn(xs[k], ys[k]) || !place(xs[k], ys[k], around[k])) return false;
     for (int k = 0; k < 8; k += 2)
         if (glm::length(around[k] + around[k + 1] - 2.0 * p) >
             kSmooth * glm::length(around[k + 1] - around[k]))
@@ -72,7 +72,7 @@ struct Sample {
 std::vector<Sample> samplesOf(const Surfaces& s, const Place& given) {
     std::vector<Sample> samples;
     s.sample([&](std::uint32_t x, std::uint32_t y) {
-        if (!s.surface(x, y)) return;
+        if (!s.drawn(x, y)) return;  // read as another kind, a depth may have no place at all
         Sample sample{x, y, false, {}, s.unitNormal(x, y), s.towardsEye(s.position.triple(x, y))};
         sample.smooth = geometricNormal(s, given, x, y, sample.geometry);
         if (sample.smooth || s.depth) samples.push_back(sample);
@@ -99,7 +99,7 @@ Contest contest(const Surfaces& s, const std::vector<Sample>& samples, const Nor
             guess.place ? geometricNormal(s, guess.place, sample.x, sample.y, geometry) : sample.smooth;
         // Depth read wrongly flattens edges away: only the guess knows where ground is smooth.
         if (guess.place ? !other : !sample.smooth) continue;
-        const bool sided = sample.towards != glm::dvec3(0.0);
+        const bool sided = s.sided();
         const auto cosine = [&](const glm::dvec3& a, const glm::dvec3& b) {
             return sided ? glm::dot(a, b) : std::abs(glm::dot(a, b));
         };
@@ -112,10 +112,10 @@ Contest contest(const Surfaces& s, const std::vector<Sample>& samples, const Nor
         result.worse += before > after + kBetterBy;
         result.agreeing += after > kAgreeing;
         result.perfect += after > 1.0 - kBetterBy;
-        if (after > before + kBetterBy) result.pixels.push_back(pixel);
+        if (s.shown && after > before + kBetterBy) result.pixels.push_back(pixel);
         if (sample.smooth && sided && before < -0.5 && glm::dot(sample.normal, sample.towards) < -0.1) {
             ++result.away;
-            result.awayPixels.push_back(pixel);
+            if (s.shown) result.awayPixels.push_back(pixel);
         }
     }
     return result;
@@ -147,8 +147,29 @@ void reportFlips(const Surfaces& s, Contest& asGiven, Findings& findings) {
         percent(asGiven.away, asGiven.smooth), " of the normals on smooth ground face away from the ",
         s.isRsm ? "light" : "camera",
         ": some meshes have the wrong winding, or two-sided materials are not turned to the viewer");
-    if (!s.isRsm) f.pixels = std::move(asGiven.awayPixels);
+    f.pixels = std::move(asGiven.awayPixels);
     f.step = s.step;
+}
+
+// Depths that have no place though there are normals: beyond the clip planes, or no depth of this kind.
+bool reportNoPlaces(Surfaces& s, const std::vector<Sample>& samples, Findings& findings) {
+    if (!s.depth || samples.size() < kFewest) return false;
+    const float first = s.depth.at(samples[0].x, samples[0].y);
+    bool varied = false;
+    for (const Sample& sample : samples) {
+        if (s.surface(sample.x, sample.y)) return false;
+        varied = varied || s.depth.at(sample.x, sample.y) != first;
+    }
+    s.trusted = false;
+    findings.add(LW_FAULT_NO_SURFACES, varied ? LW_SEVERITY_ERROR : LW_SEVERITY_WARNING,
+                 s.argument("depth"),
+                 {samples.size(), samples.size(), double(first), 0.0, varied ? 0.9 : 0.5},
+                 "no pixel with a normal has a depth that leads to a place in front of the camera (the "
+                 "first is ",
+                 first,
+                 "), which means no surface: are depthKind and the projection matrix those that the "
+                 "depth was drawn with?");
+    return true;
 }
 
 }  // namespace
@@ -157,7 +178,7 @@ void checkNormals(Surfaces& s, const std::vector<NamedCamera>& others, Findings&
     if (!s.camera || !s.trusted) return;
     const Place given = [&s](std::uint32_t x, std::uint32_t y, glm::dvec3& p) {
         p = s.position.triple(x, y);
-        return finite(p);
+        return withinReach(p);
     };
     const NormalGuess asIs{LW_FAULT_NORMAL_DISAGREES, "", {}, {}};
     const std::vector<Sample> samples = samplesOf(s, given);
@@ -179,7 +200,7 @@ void checkNormals(Surfaces& s, const std::vector<NamedCamera>& others, Findings&
     }
     const bool disagrees = now.smooth >= kFewest && shareOf(now.agreeing, now.smooth) < 0.15;
     if (!winner && !disagrees) {
-        reportFlips(s, now, findings);
+        if (!reportNoPlaces(s, samples, findings)) reportFlips(s, now, findings);
         return;
     }
     // Places from a wrong depth are wrong; places of wrong normals stand.
@@ -201,7 +222,7 @@ void checkNormals(Surfaces& s, const std::vector<NamedCamera>& others, Findings&
             : ", and no usual mistake explains it: are both of one frame, and the normals the world's?",
         winner ? ", and " + percent(best.agreeing, best.smooth) + " would if " : std::string(),
         winner ? winner->text : std::string());
-    if (!s.isRsm && winner) f.pixels = std::move(best.pixels);
+    if (winner) f.pixels = std::move(best.pixels);
     f.step = s.step;
 }
 

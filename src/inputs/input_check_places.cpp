@@ -12,8 +12,6 @@ namespace {
 // the picture and not in the matrix moves it by up to half a pixel in x and y, 0.7 in all; matrices
 // rounded on their way leave some more. Less than two, so that no flip or other camera passes.
 constexpr double kTolerancePixels = 1.5;
-// Relative rounding of a coordinate.
-constexpr double kHalfRounding = 1.0 / 1024, kFloatRounding = 1.0 / (1 << 21);
 // Share of surfaces on their pixels from which positions and camera are one: the rest may be portals,
 // particles, imposters. A guess must reach as much and be clearly better.
 constexpr double kGoodShare = 0.8, kClearlyBetter = 0.3;
@@ -21,14 +19,12 @@ constexpr std::uint64_t kFewest = 16;
 
 struct Score {
     std::uint64_t good = 0, all = 0;
-    double medianError = 0.0;  // pixels, of those in front of the camera
+    double medianError = HUGE_VAL;  // pixels, of those in front of the camera; infinite without any
     double share() const { return shareOf(good, all); }
 };
 
 double toleranceAt(const Surfaces& s, const Camera& camera, const glm::dvec3& p) {
-    const double largest = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-    const double footprint = camera.footprint(camera.axial(p));
-    return kTolerancePixels + (s.halfPositions ? kHalfRounding : kFloatRounding) * largest / footprint;
+    return kTolerancePixels + s.rounding(p) / camera.footprint(camera.axial(p));
 }
 
 double pixelError(const Surfaces& s, const PlaceGuess& guess, std::uint32_t x, std::uint32_t y,
@@ -57,8 +53,29 @@ Score scoreOf(const Surfaces& s, const PlaceGuess& guess, std::vector<std::uint3
         else if (missed)
             missed->push_back(y * s.width + x);
     });
-    score.medianError = medianOf(std::move(errors));
+    if (!errors.empty()) score.medianError = medianOf(std::move(errors));
     return score;
+}
+
+// One and the same position on every surface: an image that was never drawn.
+bool onePlace(const Surfaces& s, glm::dvec3& place) {
+    bool any = false, same = true;
+    s.sample([&](std::uint32_t x, std::uint32_t y) {
+        if (!same || !s.surface(x, y)) return;
+        const glm::dvec3 p = s.position.triple(x, y);
+        same = !any || p == place;
+        place = p;
+        any = true;
+    });
+    return any && same;
+}
+
+std::string missText(double medianError) {
+    if (!(medianError < HUGE_VAL)) return "all lie behind it";
+    std::ostringstream text;
+    text.precision(4);
+    text << "median miss " << medianError << " pixels";
+    return text.str();
 }
 
 std::string unitsText(double factor) {
@@ -90,20 +107,43 @@ void reportInvalid(Surfaces& s, Findings& findings) {
     if (!s.camera) s.trusted = false;
 }
 
+// Nearest and farthest depth of the image, one of which stands for the background.
+struct DepthRange {
+    double lowest = HUGE_VAL, highest = -HUGE_VAL;
+    explicit DepthRange(const HostPlanes& depth, std::uint32_t width, std::uint32_t height) {
+        for (std::uint32_t y = 0; y < height; ++y)
+            for (std::uint32_t x = 0; x < width; ++x) {
+                const auto d = double(depth.at(x, y));
+                if (!std::isfinite(d)) continue;
+                lowest = std::min(lowest, d);
+                highest = std::max(highest, d);
+            }
+    }
+    bool between(double depth) const { return depth > lowest && depth < highest; }
+};
+
+}  // namespace
+
 // Zero normals although the position projects to the pixel, or the depth is no clear value.
 void checkMissingNormals(const Surfaces& s, Findings& findings) {
+    if (!s.camera) return;
     std::uint64_t missing = 0, examined = 0;
     std::vector<std::uint32_t> pixels;
     const PlaceGuess none{LW_FAULT_NORMAL_MISSING, "", asGiven, &*s.camera};
+    const DepthRange range(s.depth, s.depth ? s.width : 0, s.height);
     s.sample([&](std::uint32_t x, std::uint32_t y) {
         ++examined;
         if (s.normal.triple(x, y) != glm::dvec3(0.0)) return;
         const glm::dvec3 p = s.position.triple(x, y);
-        double tolerance = 0.0;
-        if (p == glm::dvec3(0.0) || !finite(p) || !(pixelError(s, none, x, y, tolerance) <= tolerance))
-            return;
+        if (!withinReach(p)) return;
+        if (s.depth) {
+            if (!range.between(double(s.depth.at(x, y)))) return;
+        } else {
+            double tolerance = 0.0;
+            if (p == glm::dvec3(0.0) || !(pixelError(s, none, x, y, tolerance) <= tolerance)) return;
+        }
         ++missing;
-        pixels.push_back(y * s.width + x);
+        if (s.shown) pixels.push_back(y * s.width + x);
     });
     // A sky drawn as a dome has positions too, so this is no more than a warning, and only where it is
     // much.
@@ -111,13 +151,13 @@ void checkMissingNormals(const Surfaces& s, Findings& findings) {
     Found& f = findings.add(
         LW_FAULT_NORMAL_MISSING, LW_SEVERITY_WARNING, s.argument("normal"),
         {missing, examined, shareOf(missing, examined), 0.0, 0.5}, percent(missing, examined),
-        " of the pixels have a position that projects to them and a zero normal, which means no "
-        "surface: no light will reach them. Give normals there, unless it is sky");
+        " of the pixels have a ",
+        s.depth ? "depth that is not the background's" : "position that projects to them",
+        " and a zero normal, which means no surface: no light will reach them. Give normals there, "
+        "unless it is sky");
     f.pixels = std::move(pixels);
     f.step = s.step;
 }
-
-}  // namespace
 
 void checkPlaces(Surfaces& s, const std::vector<NamedCamera>& others, Findings& findings) {
     if (!s.cameraError.empty()) reportInvalid(s, findings);
@@ -126,11 +166,18 @@ void checkPlaces(Surfaces& s, const std::vector<NamedCamera>& others, Findings& 
     std::vector<std::uint32_t> missed;
     const Score score = scoreOf(s, given, &missed);
     if (score.all < kFewest) return;
-    if (score.share() >= kGoodShare) {
-        if (!s.isRsm) checkMissingNormals(s, findings);
+    if (score.share() >= kGoodShare) return;
+    s.trusted = false;
+    glm::dvec3 place(0.0);
+    if (onePlace(s, place)) {
+        Found& f = findings.add(LW_FAULT_POSITION_CAMERA, LW_SEVERITY_ERROR, s.argument("position"),
+                                {score.all, score.all, score.medianError, 0.0, 0.95},
+                                "every position is ", place.x, " ", place.y, " ", place.z,
+                                ": was the image drawn, and the right texture bound?");
+        if (s.shown) f.pixels = std::move(missed);
+        f.step = s.step;
         return;
     }
-    s.trusted = false;
     const std::optional<Camera> transposedOne = transposedCamera(s);
     const std::vector<PlaceGuess> guesses = placeGuesses(s, others, transposedOne);
     const PlaceGuess* best = nullptr;
@@ -159,8 +206,8 @@ void checkPlaces(Surfaces& s, const std::vector<NamedCamera>& others, Findings& 
         best ? best->fault : LW_FAULT_POSITION_CAMERA, LW_SEVERITY_ERROR, s.argument("position"),
         {off, score.all, measured, units ? 1.0 : 0.0, best ? bestScore.share() : 0.6},
         percent(off, score.all), what, " have a position that ", s.name,
-        ".camera does not project to them (median miss ", score.medianError, " pixels): ", cause);
-    if (!s.isRsm) f.pixels = std::move(missed);
+        ".camera does not project to them (", missText(score.medianError), "): ", cause);
+    if (s.shown) f.pixels = std::move(missed);
     f.step = s.step;
 }
 

@@ -68,7 +68,7 @@ std::string causeOf(const SpaceGuess* best) {
     return text.str();
 }
 
-void reportSpaces(const LightMaps& light, SpaceScore& given, const SpaceGuess* best,
+void reportSpaces(const Surfaces& g, const LightMaps& light, SpaceScore& given, const SpaceGuess* best,
                   const SpaceScore& bestScore, Findings& findings) {
     const bool units = best && best->fault == LW_FAULT_UNITS_DIFFER;
     Found& f =
@@ -81,7 +81,7 @@ void reportSpaces(const LightMaps& light, SpaceScore& given, const SpaceGuess* b
                      best ? ", and " + percent(bestScore.on, bestScore.all) + " would lie on it: "
                           : std::string(": "),
                      causeOf(best));
-    f.pixels = std::move(given.pixels);
+    if (g.shown) f.pixels = std::move(given.pixels);
 }
 
 void reportElsewhere(const Surfaces& g, const LightMaps& light, const std::vector<Texel>& texels,
@@ -100,17 +100,16 @@ void reportElsewhere(const Surfaces& g, const LightMaps& light, const std::vecto
 
 }  // namespace
 
-void checkSpaces(const Surfaces& g, LightMaps& light, Findings& findings) {
-    checkLightCamera(light, findings);
+void checkSpaces(Surfaces& g, LightMaps& light, Findings& findings) {
     if (!g.camera || !g.trusted) return;
     const std::vector<Texel> texels = texelsOf(light);
     if (texels.size() < kFewestTexels) return;
     const Distances distances = distancesOf(g, [&](std::uint32_t x, std::uint32_t y, glm::dvec3& p) {
         p = g.position.triple(x, y);
-        return true;
+        return withinReach(p);
     });
     SpaceScore given = scoreOf(g, texels, {LW_FAULT_SPACES_DIFFER, "", "", {}, {}, &distances});
-    const bool inFront = given.inside >= kFewestTexels && given.inFrontShare() >= kInFrontShare;
+    const bool inFront = given.facing >= kFewestTexels && given.inFrontShare() >= kInFrontShare;
     if (given.inside >= kFewestTexels && shareOf(given.on, given.inside) >= kOnShare && !inFront) return;
 
     std::vector<Distances> alternatives;
@@ -120,8 +119,10 @@ void checkSpaces(const Surfaces& g, LightMaps& light, Findings& findings) {
     SpaceScore bestScore;
     const SpaceGuess* const best = bestOf(g, texels, given, guesses, bestScore);
     if (best || inFront) {
+        // A G-buffer whose depth is to blame is told once, not for each light.
+        if (best && best->argument == g.argument("depth")) g.trusted = false;
         for (Surfaces& map : light.maps) map.trusted = false;
-        reportSpaces(light, given, best, bestScore, findings);
+        reportSpaces(g, light, given, best, bestScore, findings);
     } else if (given.on == 0) {
         reportElsewhere(g, light, texels, findings);
     }

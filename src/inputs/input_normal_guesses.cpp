@@ -17,7 +17,10 @@ std::vector<NormalGuess> normalGuesses(const Surfaces& s, const std::vector<Name
     const Camera* own = &*s.camera;
     guesses.push_back({LW_FAULT_NORMAL_FLIPPED,
                        std::string("they face away from the ") + (s.isRsm ? "light" : "camera") +
-                           ": turn their sign, or the winding that they come from",
+                           ": turn their sign, or the winding that they come from" +
+                           (s.lightDirection != glm::dvec3(0.0)
+                                ? ". Or the light's direction is turned: it is the way the light travels"
+                                : ""),
                        {},
                        [](const glm::dvec3& n) { return -n; }});
     guesses.push_back(

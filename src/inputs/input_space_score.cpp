@@ -26,6 +26,9 @@ void classify(const Surfaces& g, const Distances& distances, const Texel& texel,
     if (!(pixel.x >= 1.0 && pixel.y >= 1.0 && pixel.x < g.width - 1.0 && pixel.y < g.height - 1.0))
         return;
     ++score.inside;
+    const glm::dvec3 towards = g.camera->perspective() ? g.camera->eye() - p : -g.camera->axis();
+    const bool facing = glm::dot(normal, towards) > 0.0;
+    score.facing += facing;
     const auto px = std::uint32_t(pixel.x), py = std::uint32_t(pixel.y);
     const double t = g.camera->axial(p);
     double nearest = HUGE_VAL, farthest = -HUGE_VAL, closest = HUGE_VAL;
@@ -44,7 +47,7 @@ void classify(const Surfaces& g, const Distances& distances, const Texel& texel,
     if (closest == HUGE_VAL) return;  // background: the host may have left things out
     const double tolerance =
         kTolerancePixels * (g.camera->footprint(t) + texel.width * std::abs(factor)) +
-        kToleranceRelative * std::abs(t);
+        kToleranceRelative * std::abs(t) + texel.rounding * std::abs(factor) + g.rounding(p);
     if (t >= nearest - tolerance && t <= farthest + tolerance) {
         ++score.on;
         score.normals += glm::dot(normal, closestNormal) > 0.8;
@@ -53,6 +56,8 @@ void classify(const Surfaces& g, const Distances& distances, const Texel& texel,
         score.lowY = std::min(score.lowY, py);
         score.highY = std::max(score.highY, py);
     } else if (t < nearest - kInFrontTolerances * tolerance) {
+        ++score.nearer;
+        if (!facing) return;
         ++score.inFront;
         score.pixels.push_back(py * g.width + px);
     }
@@ -71,8 +76,8 @@ std::vector<Texel> texelsOf(const LightMaps& light) {
             for (std::uint32_t x = stride / 2; x < map.width; x += stride) {
                 if (!map.surface(x, y)) continue;
                 const glm::dvec3 p = map.position.triple(x, y);
-                texels.push_back(
-                    {p, map.unitNormal(x, y), map.camera->footprint(map.camera->axial(p)), &map, x, y});
+                texels.push_back({p, map.unitNormal(x, y), map.camera->footprint(map.camera->axial(p)),
+                                  map.rounding(p), &map, x, y});
             }
     }
     return texels;
@@ -80,12 +85,12 @@ std::vector<Texel> texelsOf(const LightMaps& light) {
 
 bool SpaceScore::explains(const Surfaces& g, const SpaceScore& given) const {
     const bool proven = shareOf(normals, on) >= kNormalShare ||
-                        (given.inFrontShare() >= kInFrontShare && inFrontShare() <= kNothingInFront &&
+                        (given.inFrontShare() >= kInFrontShare && nearerShare() <= kNothingInFront &&
                          normals >= kFewestTexels);
     const double least = given.inFrontShare() >= kInFrontShare ? kCloserThanBad : kCloserThanGiven;
     return proven && on >= kFewestTexels && shareOf(on, all) >= kGuessShare &&
            shareOf(on, inside) >= kGuessInside && spreadX(g) >= kSpread && spreadY(g) >= kSpread &&
-           inFrontShare() <= kGuessInFront && double(on) >= least * double(given.on);
+           nearerShare() <= kGuessInFront && double(on) >= least * double(given.on);
 }
 
 SpaceScore scoreOf(const Surfaces& g, const std::vector<Texel>& texels, const SpaceGuess& guess) {

@@ -18,7 +18,8 @@ constexpr double kInFrontShare = 0.15;
 
 struct Texel {
     glm::dvec3 position, normal;
-    double width;  // of the texel there
+    double width;     // of the texel there
+    double rounding;  // of the position
     const Surfaces* map;
     std::uint32_t x, y;
 };
@@ -35,19 +36,24 @@ Distances distancesOf(const Surfaces& g, const Place& place) {
     for (std::uint32_t y = 0; y < g.height; ++y)
         for (std::uint32_t x = 0; x < g.width; ++x) {
             glm::dvec3 p;
-            if (g.surface(x, y) && place(x, y, p))
+            if (g.drawn(x, y) && place(x, y, p))
                 distances[std::size_t(y) * g.width + x] = g.camera->axial(p);
         }
     return distances;
 }
 
 struct SpaceScore {
-    std::uint64_t all = 0, inside = 0, on = 0, inFront = 0, normals = 0;
+    // Inside the picture; of these facing the camera; on what it sees; on it with its normal; facing the
+    // camera in front of what it sees; in front, facing or not.
+    std::uint64_t all = 0, inside = 0, facing = 0, on = 0, normals = 0, inFront = 0, nearer = 0;
     std::uint32_t lowX = ~0u, highX = 0, lowY = ~0u, highY = 0;
     std::vector<std::uint32_t> pixels;  // that texels lie in front of
     double spreadX(const Surfaces& g) const { return on ? double(highX - lowX + 1) / g.width : 0.0; }
     double spreadY(const Surfaces& g) const { return on ? double(highY - lowY + 1) / g.height : 0.0; }
-    double inFrontShare() const { return shareOf(inFront, inside); }
+    // What cannot be: the camera would see it. Walls seen from behind may be culled.
+    double inFrontShare() const { return shareOf(inFront, facing); }
+    // What a guess should hardly bring about.
+    double nearerShare() const { return shareOf(nearer, inside); }
     // Normals prove a guess, or that it brings behind the picture what cannot be in front: outer walls
     // are lit whose inner sides the camera sees.
     bool explains(const Surfaces& g, const SpaceScore& given) const;
