@@ -89,6 +89,9 @@ def is_drawn(point, truth="own"):
 def value(point, metric="relMSE", truth="own"):
     """The error to be drawn; None where there is none or it is not to be drawn."""
     judged = errors(point, truth)
+    # Composites need whole pictures, whose truth may be noisier than that of the judged pixels.
+    if metric in ("score", "flip") and judged is not None and not judged.get("picture_trusted", True):
+        return None
     if not is_drawn(point, truth) or metric not in ("relMSE", "nrmse", "bias", "p99") and metric not in judged:
         return None
     result = METRICS[metric][2](judged)
