@@ -81,10 +81,13 @@ void complete(Arguments& arguments) {
     if (!arguments.pictureNoise.empty())
         chart.truth.pictureNoise = parseNumber("--picture-noise", arguments.pictureNoise);
     if (chart.truth.pictureNoise <= 0.0) throw UsageError("--picture-noise: expected a relMSE above 0");
-    chart.truth.block = arguments.block > 0 ? arguments.block : chart.quick ? 1 : kBlock;
-    if (std::min(size.width, size.height) / chart.truth.block < kFewestPicks)
-        throw UsageError(fmt::format("--judge-one-of {}: expected blocks of which {} fit along {}x{}",
-                                     chart.truth.block, kFewestPicks, size.width, size.height));
+    const int side = std::min(size.width, size.height);
+    const bool hasRoom = side >= kBlock * kFewestPicks;
+    chart.truth.block = arguments.block > 0 ? arguments.block : chart.quick || !hasRoom ? 1 : kBlock;
+    if (chart.truth.block > 1 && side / chart.truth.block < kFewestPicks)
+        throw UsageError(fmt::format("--judge-one-of {}: expected at most {} at {}x{}",
+                                     chart.truth.block, std::max(1, side / kFewestPicks), size.width,
+                                     size.height));
     chart.truth.takesShipped = chart.quick;
 }
 
@@ -133,7 +136,7 @@ void addChart(CLI::App& app) {
         ->add_option("--judge-one-of", arguments->block,
                      "N: judge the irradiance at one pixel of each N x N, whose truth is then dearer "
                      "and less noisy; "
-                     "default: 4 (with --quick 1, all pixels)")
+                     "default: 4; 1, all pixels, with --quick and in small pictures")
         ->check(CLI::Range(1, 64));
     command->add_option(
         "--picture-noise", arguments->pictureNoise,

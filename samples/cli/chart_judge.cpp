@@ -96,7 +96,8 @@ Json judge(const JudgedPicture& picture, const ChartView& view, const std::strin
         Json errors = view.picks().areAll() ? irradianceErrors(metrics, own)
                                             : irradianceErrors(picture, view, own);
         errors["picture_noise"] = number(own.picture().noise);
-        errors["picture_trusted"] = own.picture().noise <= kNoiseShare * metrics.relMse;
+        errors["picture_trusted"] = errors["relMSE"].is_number() &&
+                                    own.picture().noise <= kNoiseShare * errors["relMSE"].get<double>();
         errors["rmse"] = number(metrics.rmse);
         errors["ssim"] = number(metrics.ssim);
         errors["score"] = number(metrics.score);
