@@ -86,7 +86,8 @@ void ChartView::obtainTruths(const std::set<int>& bounces, const TruthOptions& o
     }
     if (wanted.empty()) return;
     std::vector<Truth> wholes;
-    if (!picks_->areAll()) wholes = trace(gbuffer, wanted, options, options.pictureNoise);
+    if (!picks_->areAll() && options.pictureNoise > 0.0)
+        wholes = trace(gbuffer, wanted, options, options.pictureNoise);
     std::vector<Truth> judged = picks_->areAll()
                                     ? trace(gbuffer, wanted, options, options.noise)
                                     : trace(picks_->pick(gbuffer), wanted, options, options.noise);
@@ -120,15 +121,14 @@ void ChartView::addTruth(JudgedTruth judged) {
     for (const char* channel : {"R", "G", "B"})
         for (const float value : judged.picture().image.plane(channel))
             judged.isBlack = judged.isBlack && value == 0.0f;
-    studio::Image& whole = judged.whole ? judged.whole->image : judged.truth.image;
-    addLayers(whole);
-    judged.exposure = studio::autoExposure(studio::composite(whole));
-    if (judged.whole) {
-        studio::Image layers(whole.width, whole.height);
-        addLayers(layers);
-        for (auto& [name, plane] : picks_->pick(layers).channels)
-            judged.truth.image.channels[name] = plane;
-    }
+    studio::Image layers(inputs_.gbuffer().width, inputs_.gbuffer().height);
+    addLayers(layers);
+    const auto complete = [](studio::Image& image, studio::Image from) {
+        for (auto& [name, plane] : from.channels) image.channels[name] = std::move(plane);
+    };
+    complete(judged.truth.image, picks_->pick(layers));
+    if (judged.whole) complete(judged.whole->image, std::move(layers));
+    judged.exposure = studio::autoExposure(studio::composite(judged.picture().image));
     truths_[judged.truth.bounces] = std::move(judged);
 }
 

@@ -17,7 +17,7 @@ namespace cli {
 struct TruthOptions {
     int block = 1;              // irradiance is judged at one pixel of each block x block; 1: at all
     double noise = 1e-3;        // relMSE at the judged pixels
-    double pictureNoise = 0.0;  // of the whole pictures, where they are others
+    double pictureNoise = 0.0;  // of whole pictures, where the judged pixels are fewer; 0: none are made
     double seconds = 0.0;       // for each view, 0: no limit
     bool takesShipped = false;  // shipped one-bounce references where they fit
     bool takesKept = false;     // those in the cache, whatever their noise
