@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <filesystem>
 
 #include "chart_run.h"
@@ -25,30 +24,12 @@ struct Arguments {
     bool skipsReport = false, onlyReport = false;
 };
 
-std::vector<std::string> allScenes() {
-    std::vector<std::string> names;
-    for (const studio::SceneEntry& entry : studio::listScenes()) names.push_back(entry.name);
-    return names;
-}
-
-// Refuses unknown names at once, not after hours with those before them.
-void requireScenes(const std::vector<std::string>& scenes) {
-    const std::vector<std::string> known = allScenes();
-    for (const std::string& scene : scenes)
-        if (std::find(known.begin(), known.end(), scene) == known.end() &&
-            !std::filesystem::exists(scene))
-            asUsage([&] { studio::loadScene(scene); });  // says what it expected
-}
-
-// Bytes for each pixel: the path tracer's sums, a view's buffers and truths, pictures that are judged.
-constexpr double kPixelBytes = 1500.0;
-
 void complete(Arguments& arguments) {
     ChartOptions& chart = arguments.chart;
     if (chart.scenes.empty())
         chart.scenes = chart.quick
                            ? std::vector<std::string>(std::begin(kQuickScenes), std::end(kQuickScenes))
-                           : allScenes();
+                           : sceneNames();
     if (chart.techniques.empty()) chart.techniques = techniqueNames();
     for (const std::string& technique : chart.techniques)
         requireOneOf("technique", technique, techniqueNames());
@@ -57,10 +38,7 @@ void complete(Arguments& arguments) {
     if (chart.deviceWidth != 0)
         requireOneOf("--width", std::to_string(chart.deviceWidth), {"1", "4", "8", "16"});
     chart.firstCameraOnly = arguments.cameras == "first" || chart.quick;
-    const Size size = parseSize(!arguments.size.empty() ? arguments.size
-                                : chart.quick           ? kQuickSize
-                                                        : "1280x720");
-    requireMemory("--size", arguments.size, kPixelBytes * size.width * size.height);
+    const Size size = chartedSize(arguments.size, chart.quick ? kQuickSize : "1280x720");
     requireScenes(chart.scenes);
     chart.width = size.width;
     chart.height = size.height;

@@ -9,6 +9,33 @@
 #include "layers.h"
 
 namespace cli {
+namespace {
+
+// Bytes for each pixel: the path tracer's sums, a view's buffers and truths, pictures that are judged.
+constexpr double kPixelBytes = 1500.0;
+
+}  // namespace
+
+std::vector<std::string> sceneNames() {
+    std::vector<std::string> names;
+    for (const studio::SceneEntry& entry : studio::listScenes()) names.push_back(entry.name);
+    return names;
+}
+
+void requireScenes(const std::vector<std::string>& scenes) {
+    const std::vector<std::string> known = sceneNames();
+    for (const std::string& scene : scenes)
+        if (std::find(known.begin(), known.end(), scene) == known.end() &&
+            !std::filesystem::exists(scene))
+            asUsage([&] { studio::loadScene(scene); });  // says what it expected
+}
+
+Size chartedSize(const std::string& text, const std::string& standard) {
+    const std::string& chosen = text.empty() ? standard : text;
+    const Size size = parseSize(chosen);
+    requireMemory("--size", chosen, kPixelBytes * size.width * size.height);
+    return size;
+}
 
 std::string bouncesText(int bounces) {
     if (bounces == 0) return "all bounces";

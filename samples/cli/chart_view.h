@@ -6,7 +6,9 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <vector>
 
+#include "cli.h"
 #include "reference_cache.h"
 #include "render_inputs.h"
 
@@ -56,6 +58,14 @@ private:
     RenderInputs inputs_;
     std::map<int, JudgedTruth> truths_;  // by bounces
 };
+
+// The names of all scenes that are found.
+std::vector<std::string> sceneNames();
+// UsageError for names that are none and paths that lead nowhere: at once, not after hours with the
+// scenes before them.
+void requireScenes(const std::vector<std::string>& scenes);
+// --size, or else `standard`. UsageError also where the machine has not the memory for one view.
+Size chartedSize(const std::string& text, const std::string& standard);
 
 // Cameras that keyframes don't move; of those the first alone, or all.
 std::vector<std::size_t> stillCameras(const studio::Scene& scene, bool firstOnly);

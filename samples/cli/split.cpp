@@ -8,7 +8,6 @@
 #include "cli.h"
 #include "interrupt.h"
 #include "parameters.h"
-#include "scene.h"
 #include "split_run.h"
 
 namespace cli {
@@ -29,8 +28,7 @@ void complete(Arguments& arguments) {
     SplitOptions& split = arguments.split;
     if (split.scenes.empty() && arguments.isQuick)
         split.scenes.assign(std::begin(kQuickScenes), std::end(kQuickScenes));
-    if (split.scenes.empty())
-        for (const studio::SceneEntry& entry : studio::listScenes()) split.scenes.push_back(entry.name);
+    if (split.scenes.empty()) split.scenes = sceneNames();
     for (const std::string& technique : split.techniques)
         requireOneOf("technique", technique, techniqueNames());
     if (split.techniques.empty())
@@ -42,9 +40,8 @@ void complete(Arguments& arguments) {
         requireOneOf("--width", std::to_string(split.deviceWidth), {"1", "4", "8", "16"});
     split.firstCameraOnly = arguments.cameras == "first" || arguments.isQuick;
     split.skipsAllBounces = split.skipsAllBounces || arguments.isQuick;
-    const Size size = parseSize(!arguments.size.empty() ? arguments.size
-                                : arguments.isQuick     ? kQuickSize
-                                                        : kSize);
+    const Size size = chartedSize(arguments.size, arguments.isQuick ? kQuickSize : kSize);
+    requireScenes(split.scenes);
     split.width = size.width;
     split.height = size.height;
     split.truth.noise = arguments.isQuick ? kQuickNoise : kNoise;
@@ -56,8 +53,8 @@ void complete(Arguments& arguments) {
 void split(Arguments& arguments) {
     complete(arguments);
     const std::string& folder = arguments.split.folder;
-    asUsage([&] { std::filesystem::create_directories(folder); });
     if (!arguments.onlyReport) {
+        asUsage([&] { std::filesystem::create_directories(folder); });
         const InterruptGuard guard;
         runSplit(arguments.split);
         fmt::print("{}\n", (std::filesystem::path(folder) / "split.json").string());
