@@ -70,5 +70,5 @@ def caption(header, points, every):
     if len(points) < every:
         text += f"; {every - len(points)} of {every} not drawn: the truth is too noisy for them"
     if any(not is_trusted(p, name) for p in points for name in SHARES if is_measured(p, name)):
-        text += "; hatched: less than ten times the truth's noise"
+        text += "; hatched: less than ten times the truth's noise, and no step drawn there"
     return text

@@ -20,7 +20,7 @@ constexpr double kQuickNoise = 4e-3, kNoise = 1e-3;  // relMSE of the truths
 
 struct Arguments {
     ChartOptions chart;
-    std::string size, cameras = "all", noise;
+    std::string size, cameras = "all", noise, seconds = "0";
     bool skipsReport = false, onlyReport = false;
 };
 
@@ -42,9 +42,7 @@ void complete(Arguments& arguments) {
     requireScenes(chart.scenes);
     chart.width = size.width;
     chart.height = size.height;
-    chart.truth.noise = chart.quick ? kQuickNoise : kNoise;
-    if (!arguments.noise.empty()) chart.truth.noise = parseNumber("--noise", arguments.noise);
-    if (chart.truth.noise <= 0.0) throw UsageError("--noise: expected a relMSE above 0");
+    setTruthLimits(chart.truth, arguments.noise, chart.quick ? kQuickNoise : kNoise, arguments.seconds);
     chart.truth.takesShipped = chart.quick;
 }
 
@@ -91,9 +89,8 @@ void addChart(CLI::App& app) {
     command->add_option("--noise", arguments->noise, "relMSE to which truths are traced; default: 1e-3");
     command
         ->add_option(
-            "--truth-seconds", options.truth.seconds,
+            "--truth-seconds", arguments->seconds,
             "Most time for the truths of one view; the next chart goes on from there. 0: no limit")
-        ->check(CLI::NonNegativeNumber)
         ->capture_default_str();
     command->add_flag("--kept-truths", options.truth.takesKept,
                       "Take the cache's truths as they are; trace only where it has none");

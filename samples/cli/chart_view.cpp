@@ -37,6 +37,14 @@ Size chartedSize(const std::string& text, const std::string& standard) {
     return size;
 }
 
+void setTruthLimits(TruthOptions& truth, const std::string& noise, double standardNoise,
+                    const std::string& seconds) {
+    truth.noise = noise.empty() ? standardNoise : parseNumber("--noise", noise);
+    if (truth.noise <= 0.0) throw UsageError("--noise: expected a relMSE above 0");
+    truth.seconds = parseNumber("--truth-seconds", seconds);
+    if (truth.seconds < 0.0) throw UsageError("--truth-seconds: expected seconds, 0 or more");
+}
+
 std::string bouncesText(int bounces) {
     if (bounces == 0) return "all bounces";
     return bounces == 1 ? "one bounce" : fmt::format("{} bounces", bounces);

@@ -67,6 +67,11 @@ void requireScenes(const std::vector<std::string>& scenes);
 // --size, or else `standard`. UsageError also where the machine has not the memory for one view.
 Size chartedSize(const std::string& text, const std::string& standard);
 
+// What commands are told of their truths: --noise ("": `standardNoise`) and --truth-seconds. UsageError
+// where one is no number, or not in its range.
+void setTruthLimits(TruthOptions& truth, const std::string& noise, double standardNoise,
+                    const std::string& seconds);
+
 // Cameras that keyframes don't move; of those the first alone, or all.
 std::vector<std::size_t> stillCameras(const studio::Scene& scene, bool firstOnly);
 

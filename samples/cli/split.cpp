@@ -20,7 +20,7 @@ constexpr double kNoise = 1e-3, kQuickNoise = 4e-3;
 
 struct Arguments {
     SplitOptions split;
-    std::string size, cameras = "all", noise;
+    std::string size, cameras = "all", noise, seconds = "0";
     bool isQuick = false, skipsReport = false, onlyReport = false;
 };
 
@@ -44,9 +44,8 @@ void complete(Arguments& arguments) {
     requireScenes(split.scenes);
     split.width = size.width;
     split.height = size.height;
-    split.truth.noise = arguments.isQuick ? kQuickNoise : kNoise;
-    if (!arguments.noise.empty()) split.truth.noise = parseNumber("--noise", arguments.noise);
-    if (!(split.truth.noise > 0.0)) throw UsageError("--noise: expected a relMSE above 0");
+    setTruthLimits(split.truth, arguments.noise, arguments.isQuick ? kQuickNoise : kNoise,
+                   arguments.seconds);
     split.truth.takesShipped = arguments.isQuick;
 }
 
@@ -95,9 +94,8 @@ void addSplit(CLI::App& app) {
     command->add_option("--size", arguments->size, "Picture size, WIDTHxHEIGHT; default: 640x360");
     command->add_option("--noise", arguments->noise, "relMSE to which truths are traced; default: 1e-3");
     command
-        ->add_option("--truth-seconds", options.truth.seconds,
+        ->add_option("--truth-seconds", arguments->seconds,
                      "Most time for one truth; the next run goes on from there. 0: no limit")
-        ->check(CLI::NonNegativeNumber)
         ->capture_default_str();
     command->add_flag("--no-all-bounces", options.skipsAllBounces,
                       "Without the model's share, and the truth of all bounces that it needs");

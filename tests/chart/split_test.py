@@ -77,6 +77,8 @@ class Split(unittest.TestCase):
         self.assertIn("--cameras", self.split("--cameras", "some", code=2))
         self.split("--patterns", "1", code=2)
         self.assertIn("--noise", self.split("--noise", "0", code=2))
+        for seconds in ("nan", "-1", "long"):
+            self.assertIn("--truth-seconds", self.split("--truth-seconds=" + seconds, code=2))
         # Before anything is measured, not after the scenes before it.
         self.assertIn("no scene of this name", self.split("--quick", "--scenes", "cornell", "nowhere", "--size", "64x36", code=2))
         self.assertNotIn([64, 36], [p["size"] for p in self.read()["points"]])
@@ -116,12 +118,16 @@ class Split(unittest.TestCase):
             self.assertFalse(os.path.exists(missing))
 
     def test_a_file_of_another_format_is_refused(self):
-        with tempfile.TemporaryDirectory() as folder:
-            with open(os.path.join(folder, "split.json"), "w", encoding="utf-8") as file:
-                file.write('{"format": "lightwell-chart 1", "views": [], "points": []}')
-            done = subprocess.run([PROGRAM, "split", "--quick", "--out", folder], capture_output=True, text=True, timeout=60)
-            self.assertEqual(done.returncode, 2)
-            self.assertIn('expected results in the format "lightwell-split 1"', done.stderr)
+        ours = '"format": "lightwell-split 1"'
+        for text in ('{"format": "lightwell-chart 1", "header": {}, "views": [], "points": []}', '{"format": 3}', "{",
+                     "{%s, \"views\": [], \"points\": []}" % ours, "{%s, \"header\": {}, \"views\": {}, \"points\": []}" % ours,
+                     "{%s, \"header\": {}, \"views\": [], \"points\": [{\"id\": \"a\"}]}" % ours):
+            with self.subTest(text), tempfile.TemporaryDirectory() as folder:
+                with open(os.path.join(folder, "split.json"), "w", encoding="utf-8") as file:
+                    file.write(text)
+                done = subprocess.run([PROGRAM, "split", "--quick", "--out", folder], capture_output=True, text=True, timeout=60)
+                self.assertEqual(done.returncode, 2, done.stderr)
+                self.assertIn('expected results in the format "lightwell-split 1"', done.stderr)
 
     def test_report(self):
         done = subprocess.run([PROGRAM, "split", "--report-only", "--out", self.folder], capture_output=True, text=True, timeout=120)
