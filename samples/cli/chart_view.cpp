@@ -24,10 +24,19 @@ std::vector<std::string> sceneNames() {
 
 void requireScenes(const std::vector<std::string>& scenes) {
     const std::vector<std::string> known = sceneNames();
-    for (const std::string& scene : scenes)
-        if (std::find(known.begin(), known.end(), scene) == known.end() &&
-            !std::filesystem::exists(scene))
+    std::map<std::string, std::string> byName;
+    for (const std::string& scene : scenes) {
+        const bool isName = std::find(known.begin(), known.end(), scene) != known.end();
+        if (!isName && !std::filesystem::exists(scene))
             asUsage([&] { studio::loadScene(scene); });  // says what it expected
+        const std::string name = isName ? scene : std::filesystem::path(scene).stem().string();
+        const std::string& first = byName.emplace(name, scene).first->second;
+        if (first != scene)
+            throw UsageError(
+                fmt::format("--scenes '{}': expected another name than that of '{}', by which results "
+                            "are told apart",
+                            scene, first));
+    }
 }
 
 Size chartedSize(const std::string& text, const std::string& standard) {

@@ -61,7 +61,7 @@ private:
 
 // The names of all scenes that are found.
 std::vector<std::string> sceneNames();
-// UsageError for names that are none and paths that lead nowhere: at once, not after hours with the
+// UsageError for names that are none, paths that lead nowhere, and two files of one name: at once, not after hours with the
 // scenes before them.
 void requireScenes(const std::vector<std::string>& scenes);
 // --size, or else `standard`. UsageError also where the machine has not the memory for one view.

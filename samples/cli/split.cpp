@@ -94,8 +94,9 @@ void addSplit(CLI::App& app) {
     command->add_option("--size", arguments->size, "Picture size, WIDTHxHEIGHT; default: 640x360");
     command->add_option("--noise", arguments->noise, "relMSE to which truths are traced; default: 1e-3");
     command
-        ->add_option("--truth-seconds", arguments->seconds,
-                     "Most time for one truth; the next run goes on from there. 0: no limit")
+        ->add_option(
+            "--truth-seconds", arguments->seconds,
+            "Most time for the truths of one view; the next run goes on from there. 0: no limit")
         ->capture_default_str();
     command->add_flag("--no-all-bounces", options.skipsAllBounces,
                       "Without the model's share, and the truth of all bounces that it needs");

@@ -5,6 +5,7 @@ matplotlib or D3 is missing.
 """
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -82,6 +83,10 @@ class Split(unittest.TestCase):
         # Before anything is measured, not after the scenes before it.
         self.assertIn("no scene of this name", self.split("--quick", "--scenes", "cornell", "nowhere", "--size", "64x36", code=2))
         self.assertNotIn([64, 36], [p["size"] for p in self.read()["points"]])
+        with tempfile.TemporaryDirectory() as folder:
+            twin = os.path.join(folder, "cornell.json")
+            shutil.copy(os.path.join(SCENES, "cornell.json"), twin)
+            self.assertIn("another name", self.split("--quick", "--scenes", "cornell", twin, code=2))
         self.assertIn("memory", self.split("--quick", "--size", "16384x16384", code=2))
         note = self.split("--quick", "--scenes", "cornell", "--techniques", "rival", "--no-report")
         self.assertIn('rival has no debug view "vpls"', note)
