@@ -94,7 +94,7 @@ def visibility_table(data):
     for point in data["points"]:
         shares = point["shares"]
         lines.append(f"| {point['scene'].replace('_grey', ', every albedo 0.6')} | {point['parameters']['sampling']} | {point['vpls']} | "
-                     f"{point['total']:.3g} | {shares['sampling'] + shares['bounding']:.3g} | {shares['sampling']:.3g} | "
+                     f"{point['total']:.3g} | {left_text(point)} | {shares['sampling']:.3g} | "
                      f"{point['noise']:.1e} |")
     return lines
 
@@ -112,15 +112,29 @@ def measured(data):
     for point in points:
         view, name = split_section.title(point)
         cells = [split_section.figure_text(point, key) for key in ["total", *names]]
-        left = point["shares"]["bounding"] + (point["shares"]["sampling"] or 0.0)
-        lines.append(f"| {view} | {name} | " + " | ".join(cells) + f" | {left:.3g} |")
+        lines.append(f"| {view} | {name} | " + " | ".join(cells) + f" | {left_text(point)} |")
     return lines + [""] + reading(points)
+
+
+def visible(point):
+    """The error that is left with exact visibility, and whether the truth's noise leaves it to be told."""
+    left = point["shares"]["bounding"] + (point["shares"]["sampling"] or 0.0)
+    return left, split_section.is_trusted(point, "visibility exact", left)
+
+
+def left_text(point):
+    left, is_trusted = visible(point)
+    return f"{left:.3g}" if is_trusted else f"({left:.3g})"
 
 
 def reading(points):
     """The figures in words: where each share is largest, and how much visibility is worth."""
     def gain(point):
-        return point["total"] / (point["shares"]["bounding"] + (point["shares"]["sampling"] or 0.0))
+        """At least: no less is left than the truth's noise lets tell."""
+        return point["total"] / max(visible(point)[0], point["noise"] / split_section.TRUSTED)
+
+    def times(point, form):
+        return f"{'' if visible(point)[1] else 'at least '}{gain(point):{form}} times in {point['scene']}"
 
     defaults = [p for p in points if p["label"].startswith("default")]
     if not defaults:
@@ -131,7 +145,7 @@ def reading(points):
     modelled = any(p["truth_of_all_bounces"] for p in defaults)
     hidden = [p for p in defaults if p["shares"]["model"] < 0.0]
     text = (f"With the defaults visibility is the largest share in {ruled} of {len(defaults)} views. Shadow rays from every pixel to every VPL{' and the bounces left out' if modelled else ''} "
-            f"would lower the relMSE {gain(best):.0f} times in {best['scene']} and {gain(least):.1f} times in {least['scene']}.")
+            f"would lower the relMSE {times(best, '.0f')} and {times(least, '.1f')}.")
     if ruled == len(defaults):
         text += " More VPLs, full resolution or another bound would not."
     if hidden:
