@@ -94,51 +94,60 @@ def visibility_table(data):
     for point in data["points"]:
         shares = point["shares"]
         lines.append(f"| {point['scene'].replace('_grey', ', every albedo 0.6')} | {point['parameters']['sampling']} | {point['vpls']} | "
-                     f"{point['total']:.3g} | {shares['sampling'] + shares['bounding']:.3g} | {shares['sampling']:.3g} | "
+                     f"{point['total']:.3g} | {left_text(point)} | {shares['sampling']:.3g} | "
                      f"{point['noise']:.1e} |")
     return lines
 
 
 def measured(data):
-    header, points = data["header"], data["points"]
+    header, (points, _) = data["header"], split_section.current(data)
     names = list(split_section.SHARES)
     lines = [f"Measured {header['written'][:10]} at {header['size'][0]}x{header['size'][1]}, {header['patterns']} patterns, on "
              f"{header['device']['name']}, {header['device']['width']} lanes, with `docs/figures/split.py`"
              + (". Truth: all bounces." if any(p["truth_of_all_bounces"] for p in points) else
-                " `--quick`: truth of one bounce, so without the model's share."), "",
+                ". Truth: as many bounces as the technique models, so without the model's share."), "",
              "![Shares of the error](images/split.svg)", "",
              "| view | technique | relMSE | " + " | ".join(names) + " | with exact visibility |",
              "| --- | --- | ---: | " + " | ".join(["---:"] * (len(names) + 1)) + " |"]
     for point in points:
         view, name = split_section.title(point)
-        cells = [share(point, key) for key in names]
-        left = point["shares"]["bounding"] + (point["shares"]["sampling"] or 0.0)
-        lines.append(f"| {view} | {name} | {point['total']:.3g} | " + " | ".join(cells) + f" | {left:.3g} |")
+        cells = [split_section.figure_text(point, key) for key in ["total", *names]]
+        lines.append(f"| {view} | {name} | " + " | ".join(cells) + f" | {left_text(point)} |")
     return lines + [""] + reading(points)
 
 
-def share(point, key):
-    value = point["shares"][key]
-    if value is None or (key == "model" and not point["truth_of_all_bounces"]):
-        return ""
-    text = f"{value:+.3g}"
-    return f"({text})" if key == "bounding" and not split_section.is_trusted(point) else text
+def visible(point):
+    """The error that is left with exact visibility, and whether the truth's noise leaves it to be told."""
+    left = point["shares"]["bounding"] + (point["shares"]["sampling"] or 0.0)
+    return left, split_section.is_trusted(point, "visibility exact", left)
+
+
+def left_text(point):
+    left, is_trusted = visible(point)
+    return f"{left:.3g}" if is_trusted else f"({left:.3g})"
 
 
 def reading(points):
     """The figures in words: where each share is largest, and how much visibility is worth."""
     def gain(point):
-        return point["total"] / (point["shares"]["bounding"] + (point["shares"]["sampling"] or 0.0))
+        """At least: no less is left than the truth's noise lets tell."""
+        return point["total"] / max(visible(point)[0], point["noise"] / split_section.TRUSTED)
+
+    def times(point, form):
+        return f"{'' if visible(point)[1] else 'at least '}{gain(point):{form}} times in {point['scene']}"
 
     defaults = [p for p in points if p["label"].startswith("default")]
+    if not defaults:
+        return []
     first = [max(p["shares"], key=lambda key, p=p: p["shares"][key] or 0.0) for p in defaults]
     ruled = sum(key == "visibility" for key in first)
     best, least = max(defaults, key=gain), min(defaults, key=gain)
     modelled = any(p["truth_of_all_bounces"] for p in defaults)
     hidden = [p for p in defaults if p["shares"]["model"] < 0.0]
-    text = (f"With the defaults visibility is the largest share in {ruled} of {len(defaults)} views. Shadow rays{' and the bounces left out' if modelled else ''} "
-            f"would lower the relMSE {gain(best):.0f} times in {best['scene']} and {gain(least):.1f} times in {least['scene']}: more VPLs, full "
-            "resolution or another bound would not.")
+    text = (f"With the defaults visibility is the largest share in {ruled} of {len(defaults)} views. Shadow rays from every pixel to every VPL{' and the bounces left out' if modelled else ''} "
+            f"would lower the relMSE {times(best, '.0f')} and {times(least, '.1f')}.")
+    if ruled == len(defaults):
+        text += " More VPLs, full resolution or another bound would not."
     if hidden:
         text += (f" In {len(hidden)} views the model's share is negative: the light that leaks through walls stands in for bounces "
                  "left out, and adding these alone makes the picture worse.")

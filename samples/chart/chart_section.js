@@ -181,7 +181,11 @@ function fillTable() {
   rows = rows.filter(p => words.every(word => `${p.scene} ${p.camera} ${p.technique} ${p.settings} ${p.label}`.toLowerCase().includes(word)));
   if (sorted.column >= 0) {
     const read = COLUMNS[sorted.column][1], sign = sorted.up ? 1 : -1;
-    rows.sort((a, b) => sign * d3.ascending(read(a), read(b)));
+    rows.sort((p, q) => {
+      const a = read(p), b = read(q);
+      const missing = (a === null || a === undefined) - (b === null || b === undefined);  // always last
+      return missing || sign * (typeof a === typeof b ? d3.ascending(a, b) : typeof a === "string" ? 1 : -1) || 0;
+    });
   }
   const lines = d3.select("#figures tbody").selectAll("tr").data(rows).join("tr");
   lines.selectAll("td").data(p => COLUMNS.map(([, read, truth, drawn]) => ({value: read(p), hidden: truth && p.errors[truth] && !p.errors[truth][drawn]})))

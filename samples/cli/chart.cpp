@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <filesystem>
 
 #include "chart_run.h"
@@ -18,47 +17,23 @@ namespace {
 constexpr const char* kQuickScenes[] = {"cornell", "basic"};
 constexpr const char* kQuickSize = "320x180";
 constexpr double kQuickNoise = 4e-3, kNoise = 1e-3;  // relMSE of the truths
-// Irradiance is judged at one pixel of 4 x 4: a sixteenth of the paths, or sixteen times as many for
-// each.
-constexpr int kBlock = 4;
 // Of the whole pictures, which composites are judged by: most composites forgive more than their
 // irradiance.
 constexpr double kPictureNoise = 2e-2;
 
 struct Arguments {
     ChartOptions chart;
-    std::string size, cameras = "all", noise, pictureNoise;
+    std::string size, cameras = "all", noise, pictureNoise, seconds = "0";
     int block = 0;
     bool skipsReport = false, onlyReport = false;
 };
-
-std::vector<std::string> allScenes() {
-    std::vector<std::string> names;
-    for (const studio::SceneEntry& entry : studio::listScenes()) names.push_back(entry.name);
-    return names;
-}
-
-// Refuses unknown names at once, not after hours with those before them.
-void requireScenes(const std::vector<std::string>& scenes) {
-    const std::vector<std::string> known = allScenes();
-    for (const std::string& scene : scenes)
-        if (std::find(known.begin(), known.end(), scene) == known.end() &&
-            !std::filesystem::exists(scene))
-            asUsage([&] { studio::loadScene(scene); });  // says what it expected
-}
-
-// Picks along the shorter side of a picture: fewer would not tell its error.
-constexpr int kFewestPicks = 32;
-
-// Bytes for each pixel: the path tracer's sums, a view's buffers and truths, pictures that are judged.
-constexpr double kPixelBytes = 1500.0;
 
 void complete(Arguments& arguments) {
     ChartOptions& chart = arguments.chart;
     if (chart.scenes.empty())
         chart.scenes = chart.quick
                            ? std::vector<std::string>(std::begin(kQuickScenes), std::end(kQuickScenes))
-                           : allScenes();
+                           : sceneNames();
     if (chart.techniques.empty()) chart.techniques = techniqueNames();
     for (const std::string& technique : chart.techniques)
         requireOneOf("technique", technique, techniqueNames());
@@ -67,27 +42,17 @@ void complete(Arguments& arguments) {
     if (chart.deviceWidth != 0)
         requireOneOf("--width", std::to_string(chart.deviceWidth), {"1", "4", "8", "16"});
     chart.firstCameraOnly = arguments.cameras == "first" || chart.quick;
-    const Size size = parseSize(!arguments.size.empty() ? arguments.size
-                                : chart.quick           ? kQuickSize
-                                                        : "1280x720");
-    requireMemory("--size", arguments.size, kPixelBytes * size.width * size.height);
+    const Size size = chartedSize(arguments.size, chart.quick ? kQuickSize : "1280x720");
     requireScenes(chart.scenes);
     chart.width = size.width;
     chart.height = size.height;
-    chart.truth.noise = chart.quick ? kQuickNoise : kNoise;
-    if (!arguments.noise.empty()) chart.truth.noise = parseNumber("--noise", arguments.noise);
-    if (chart.truth.noise <= 0.0) throw UsageError("--noise: expected a relMSE above 0");
+    setTruthLimits(chart.truth, arguments.noise, chart.quick ? kQuickNoise : kNoise, arguments.seconds);
+    chart.truth.block = judgedBlock(arguments.block, size, chart.quick);
     chart.truth.pictureNoise = kPictureNoise;
     if (!arguments.pictureNoise.empty())
         chart.truth.pictureNoise = parseNumber("--picture-noise", arguments.pictureNoise);
-    if (chart.truth.pictureNoise <= 0.0) throw UsageError("--picture-noise: expected a relMSE above 0");
-    const int side = std::min(size.width, size.height);
-    const bool hasRoom = side >= kBlock * kFewestPicks;
-    chart.truth.block = arguments.block > 0 ? arguments.block : chart.quick || !hasRoom ? 1 : kBlock;
-    if (chart.truth.block > 1 && side / chart.truth.block < kFewestPicks)
-        throw UsageError(fmt::format("--judge-one-of {}: expected at most {} at {}x{}",
-                                     chart.truth.block, std::max(1, side / kFewestPicks), size.width,
-                                     size.height));
+    if (!(chart.truth.pictureNoise > 0.0))
+        throw UsageError("--picture-noise: expected a relMSE above 0");
     chart.truth.takesShipped = chart.quick;
 }
 
@@ -144,9 +109,8 @@ void addChart(CLI::App& app) {
         "irradiance is judged at fewer pixels; default: 2e-2");
     command
         ->add_option(
-            "--truth-seconds", options.truth.seconds,
+            "--truth-seconds", arguments->seconds,
             "Most time for the truths of one view; the next chart goes on from there. 0: no limit")
-        ->check(CLI::NonNegativeNumber)
         ->capture_default_str();
     command->add_flag("--kept-truths", options.truth.takesKept,
                       "Take the cache's truths as they are; trace only where it has none");

@@ -41,8 +41,8 @@ studio::Image shrink(const studio::Image& image) {
 }
 
 // Returns the name below the results' folder.
-std::string writePreview(const std::string& folder, const std::string& name,
-                         const studio::Image& display) {
+std::string writePreview(const std::string& folder, std::string name, const studio::Image& display) {
+    std::replace(name.begin(), name.end(), '/', '_');  // in ids, and in some cameras' names
     const std::string file = "images/" + name + ".jpg";
     studio::writeJpeg((std::filesystem::path(folder) / file).string(), shrink(display), kPreviewQuality);
     return file;

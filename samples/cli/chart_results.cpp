@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <unordered_map>
 
@@ -15,12 +17,29 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+bool hasText(const Json& item, const char* key) {
+    return item.is_object() && item.contains(key) && item[key].is_string();
+}
+
+// All that is read of it here: what else is wrong with an item comes to light in the report.
+bool isResults(const Json& json, const std::string& format) {
+    if (!hasText(json, "format") || json["format"] != format) return false;
+    if (!json.contains("header") || !json["header"].is_object()) return false;
+    for (const char* list : {"views", "points"})
+        if (!json.contains(list) || !json[list].is_array()) return false;
+    const auto isView = [](const Json& view) { return hasText(view, "id"); };
+    const auto isPoint = [](const Json& point) { return hasText(point, "id") && hasText(point, "key"); };
+    return std::all_of(json["views"].begin(), json["views"].end(), isView) &&
+           std::all_of(json["points"].begin(), json["points"].end(), isPoint);
+}
+
 Json readResults(const std::string& path, const std::string& format) {
     std::ifstream file(path);
-    const Json json = Json::parse(file, nullptr, false);
-    const bool isOurs = json.is_object() && json.value("format", "") == format &&
-                        json.contains("views") && json.contains("points");
-    if (!isOurs)
+    const std::string text = std::filesystem::is_regular_file(path)
+                                 ? std::string(std::istreambuf_iterator<char>(file), {})
+                                 : std::string();
+    const Json json = Json::parse(text, nullptr, false);
+    if (!isResults(json, format))
         throw UsageError(fmt::format(
             "{}: expected results in the format \"{}\"; another --out, or remove it", path, format));
     return json;

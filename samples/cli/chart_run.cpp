@@ -272,7 +272,6 @@ void Charter::chartPoint(const ChartView& view, const ChartedPoint& point,
     made.point["truth"] = truth;
     made.picture.bounces = made.point["bounces"];
     made.picture.imageName = made.point["id"];
-    std::replace(made.picture.imageName.begin(), made.picture.imageName.end(), '/', '_');
     made.picture.irradiance = studio::Image(options_.width, options_.height);
     addLayer(made.picture.irradiance, "", renderer->irradiance());
     pending.push_back(std::move(made));

@@ -9,10 +9,68 @@
 #include "layers.h"
 
 namespace cli {
+namespace {
+
+// Bytes for each pixel: the path tracer's sums, a view's buffers and truths, pictures that are judged.
+constexpr double kPixelBytes = 1500.0;
+
+}  // namespace
+
+std::vector<std::string> sceneNames() {
+    std::vector<std::string> names;
+    for (const studio::SceneEntry& entry : studio::listScenes()) names.push_back(entry.name);
+    return names;
+}
+
+void requireScenes(const std::vector<std::string>& scenes) {
+    const std::vector<std::string> known = sceneNames();
+    std::map<std::string, std::string> byName;
+    for (const std::string& scene : scenes) {
+        const bool isName = std::find(known.begin(), known.end(), scene) != known.end();
+        if (!isName && !std::filesystem::exists(scene))
+            asUsage([&] { studio::loadScene(scene); });  // says what it expected
+        const std::string name = isName ? scene : std::filesystem::path(scene).stem().string();
+        const std::string& first = byName.emplace(name, scene).first->second;
+        if (first != scene)
+            throw UsageError(
+                fmt::format("--scenes '{}': expected another name than that of '{}', by which results "
+                            "are told apart",
+                            scene, first));
+    }
+}
+
+Size chartedSize(const std::string& text, const std::string& standard) {
+    const std::string& chosen = text.empty() ? standard : text;
+    const Size size = parseSize(chosen);
+    requireMemory("--size", chosen, kPixelBytes * size.width * size.height);
+    return size;
+}
+
+void setTruthLimits(TruthOptions& truth, const std::string& noise, double standardNoise,
+                    const std::string& seconds) {
+    truth.noise = noise.empty() ? standardNoise : parseNumber("--noise", noise);
+    if (truth.noise <= 0.0) throw UsageError("--noise: expected a relMSE above 0");
+    truth.seconds = parseNumber("--truth-seconds", seconds);
+    if (truth.seconds < 0.0) throw UsageError("--truth-seconds: expected seconds, 0 or more");
+}
 
 std::string bouncesText(int bounces) {
     if (bounces == 0) return "all bounces";
     return bounces == 1 ? "one bounce" : fmt::format("{} bounces", bounces);
+}
+
+// A sixteenth of the paths, or sixteen times as many for each pixel.
+constexpr int kBlock = 4;
+// Picks along the shorter side of a picture: fewer would not tell its error.
+constexpr int kFewestPicks = 32;
+
+int judgedBlock(int asked, const Size& size, bool isQuick) {
+    const int side = std::min(size.width, size.height);
+    if (asked <= 0) return isQuick || side < kBlock * kFewestPicks ? 1 : kBlock;
+    if (asked > 1 && side / asked < kFewestPicks)
+        throw UsageError(fmt::format("--judge-one-of {}: expected at most {} at {}x{}", asked,
+                                     std::max(1, side / kFewestPicks), size.width, size.height));
+    return asked;
 }
 
 std::vector<std::size_t> stillCameras(const studio::Scene& scene, bool firstOnly) {

@@ -7,7 +7,9 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
+#include "cli.h"
 #include "pixel_picks.h"
 #include "reference_cache.h"
 #include "render_inputs.h"
@@ -66,6 +68,23 @@ private:
     std::map<int, JudgedTruth> truths_;  // by bounces
     std::optional<PixelPicks> picks_;
 };
+
+// The names of all scenes that are found.
+std::vector<std::string> sceneNames();
+// UsageError for names that are none, paths that lead nowhere, and two files of one name: at once, not after hours with the
+// scenes before them.
+void requireScenes(const std::vector<std::string>& scenes);
+// --size, or else `standard`. UsageError also where the machine has not the memory for one view.
+Size chartedSize(const std::string& text, const std::string& standard);
+
+// What commands are told of their truths: --noise ("": `standardNoise`) and --truth-seconds. UsageError
+// where one is no number, or not in its range.
+void setTruthLimits(TruthOptions& truth, const std::string& noise, double standardNoise,
+                    const std::string& seconds);
+
+// --judge-one-of (0: not given): one pixel of 4 x 4, every one in quick runs and small pictures. UsageError where too few
+// pixels would be left.
+int judgedBlock(int asked, const Size& size, bool isQuick);
 
 // Cameras that keyframes don't move; of those the first alone, or all.
 std::vector<std::size_t> stillCameras(const studio::Scene& scene, bool firstOnly);

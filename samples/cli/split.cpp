@@ -8,7 +8,6 @@
 #include "cli.h"
 #include "interrupt.h"
 #include "parameters.h"
-#include "scene.h"
 #include "split_run.h"
 
 namespace cli {
@@ -18,11 +17,10 @@ constexpr const char* kQuickScenes[] = {"cornell", "rooms"};
 constexpr const char* kSize = "1280x720";
 constexpr const char* kQuickSize = "320x180";  // of the shipped references
 constexpr double kNoise = 1e-3, kQuickNoise = 4e-3;
-constexpr int kBlock = 4;  // as a chart's, so that both share their truths
 
 struct Arguments {
     SplitOptions split;
-    std::string size, cameras = "all", noise;
+    std::string size, cameras = "all", noise, seconds = "0";
     bool isQuick = false, skipsReport = false, onlyReport = false;
 };
 
@@ -30,8 +28,7 @@ void complete(Arguments& arguments) {
     SplitOptions& split = arguments.split;
     if (split.scenes.empty() && arguments.isQuick)
         split.scenes.assign(std::begin(kQuickScenes), std::end(kQuickScenes));
-    if (split.scenes.empty())
-        for (const studio::SceneEntry& entry : studio::listScenes()) split.scenes.push_back(entry.name);
+    if (split.scenes.empty()) split.scenes = sceneNames();
     for (const std::string& technique : split.techniques)
         requireOneOf("technique", technique, techniqueNames());
     if (split.techniques.empty())
@@ -43,23 +40,21 @@ void complete(Arguments& arguments) {
         requireOneOf("--width", std::to_string(split.deviceWidth), {"1", "4", "8", "16"});
     split.firstCameraOnly = arguments.cameras == "first" || arguments.isQuick;
     split.skipsAllBounces = split.skipsAllBounces || arguments.isQuick;
-    const Size size = parseSize(!arguments.size.empty() ? arguments.size
-                                : arguments.isQuick     ? kQuickSize
-                                                        : kSize);
+    const Size size = chartedSize(arguments.size, arguments.isQuick ? kQuickSize : kSize);
+    requireScenes(split.scenes);
     split.width = size.width;
     split.height = size.height;
-    split.truth.noise = arguments.isQuick ? kQuickNoise : kNoise;
-    if (!arguments.noise.empty()) split.truth.noise = parseNumber("--noise", arguments.noise);
-    if (!(split.truth.noise > 0.0)) throw UsageError("--noise: expected a relMSE above 0");
-    if (split.truth.block == 0) split.truth.block = arguments.isQuick ? 1 : kBlock;
+    setTruthLimits(split.truth, arguments.noise, arguments.isQuick ? kQuickNoise : kNoise,
+                   arguments.seconds);
+    split.truth.block = judgedBlock(split.truth.block, size, arguments.isQuick);
     split.truth.takesShipped = arguments.isQuick;
 }
 
 void split(Arguments& arguments) {
     complete(arguments);
     const std::string& folder = arguments.split.folder;
-    asUsage([&] { std::filesystem::create_directories(folder); });
     if (!arguments.onlyReport) {
+        asUsage([&] { std::filesystem::create_directories(folder); });
         const InterruptGuard guard;
         runSplit(arguments.split);
         fmt::print("{}\n", (std::filesystem::path(folder) / "split.json").string());
@@ -108,9 +103,9 @@ void addSplit(CLI::App& app) {
                       "Take the cache's truths as they are; trace only where it has none");
     command->add_option("--noise", arguments->noise, "relMSE to which truths are traced; default: 1e-3");
     command
-        ->add_option("--truth-seconds", options.truth.seconds,
-                     "Most time for one truth; the next run goes on from there. 0: no limit")
-        ->check(CLI::NonNegativeNumber)
+        ->add_option(
+            "--truth-seconds", arguments->seconds,
+            "Most time for the truths of one view; the next run goes on from there. 0: no limit")
         ->capture_default_str();
     command->add_flag("--no-all-bounces", options.skipsAllBounces,
                       "Without the model's share, and the truth of all bounces that it needs");

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -61,7 +62,8 @@ private:
     void dropOthers(const ChartView& view);
     void traceTruths(ChartView& view);
     std::string pointKey(const ChartView& view, const ChartedPoint& point) const;
-    Json splitPoint(const ChartView& view, const ChartedPoint& point, const std::string& note);
+    Json splitPoint(const ChartView& view, const ChartedPoint& point,
+                    const std::function<void(double ofPoint, const std::string& of)>& progress);
     studio::Image render(const ChartView& view, const Parameters& parameters,
                          std::vector<studio::VplRecord>* vpls);
     studio::Image sumExactly(const ChartView& view, const studio::GBuffer& judged,
@@ -114,7 +116,7 @@ void Splitter::run() {
     for (std::size_t i = 0; i < options_.scenes.size(); ++i) {
         const auto scene = asUsage(
             [&] { return std::make_shared<studio::Scene>(studio::loadScene(options_.scenes[i])); });
-        const auto rayScene = std::make_shared<studio::RayScene>(scene, 0.0f);
+        const auto rayScene = asUsage([&] { return std::make_shared<studio::RayScene>(scene, 0.0f); });
         const auto cameras = stillCameras(*scene, options_.firstCameraOnly);
         viewShare_ = 1.0 / double(options_.scenes.size()) / double(cameras.size());
         for (std::size_t c = 0; c < cameras.size(); ++c) {
@@ -124,8 +126,12 @@ void Splitter::run() {
             input.height = options_.height;
             ChartView view(rayScene, scene->cameras[cameras[c]], input);
             dropOthers(view);
+            if (points_.empty()) return;  // the notes have said why; no truth is needed
             traceTruths(view);
-            splitView(view);
+            if (view.isBlack())
+                fmt::print(stderr, "note: {} has no indirect light and is left out\n", view.id());
+            else
+                splitView(view);
         }
     }
     line_.finish(fmt::format("{} splits", results_.pointCount()));
@@ -165,17 +171,20 @@ void Splitter::traceTruths(ChartView& view) {
     for (const ChartedPoint& point : points_) bounces.insert(modelledBounces(point.sweep.parameters));
     if (!options_.skipsAllBounces) bounces.insert(0);
     TruthOptions truth = options_.truth;
+    studio::ProgressLine line("truth of " + view.id());
     truth.progress = [&](double fraction, double noise) {
-        report(0.0, fmt::format("truth of {}, {:.0f} %{}", view.id(), 100.0 * fraction,
-                                noise < 0.0 ? "" : fmt::format(", noise {:.1e}", noise)));
+        line.update(fraction, noise < 0.0 ? "" : fmt::format("noise (relMSE) {:.2e}", noise));
+        if (InterruptGuard::wasRaised())
+            throw Interrupted("interrupted; the same command goes on with this truth");
     };
     view.obtainTruths(bounces, truth);
+    line.finish();
 }
 
 std::string Splitter::pointKey(const ChartView& view, const ChartedPoint& point) const {
-    std::string text =
-        fmt::format("{} {} {} {} {} {} {}", kProtocol, build_, view.hash(), options_.patterns,
-                    parametersJson(point.sweep.parameters).dump(), info_.name, info_.driver);
+    std::string text = fmt::format("{} {} {} {} {} {} {} {}", kProtocol, build_, view.hash(),
+                                   options_.patterns, parametersJson(point.sweep.parameters).dump(),
+                                   info_.name, info_.driver, info_.width);
     for (const auto& [bounces, judged] : view.truths())
         text += fmt::format(" {} {}", judged.truth.name, judged.truth.samples);
     return shortHash(text);
@@ -192,12 +201,16 @@ void Splitter::splitView(ChartView& view) {
                       {"truths", truths}});
     for (std::size_t i = 0; i < points_.size(); ++i) {
         const ChartedPoint& point = points_[i];
+        const JudgedTruth& own = view.truths().at(modelledBounces(point.sweep.parameters));
+        if (allBounces(view, own).isBlack) continue;  // nothing that the error could be relative to
         const std::string id = pointId(view, point), key = pointKey(view, point);
         if (results_.find(id, key) != nullptr) continue;
         const std::string note = fmt::format("{}, {} {}", view.id(), point.sweep.parameters.technique(),
                                              describeDifference(point.sweep.parameters));
-        report(double(i) / double(points_.size()), note);
-        Json json = splitPoint(view, point, note);
+        const auto progress = [&](double ofPoint, const std::string& of) {
+            report((double(i) + ofPoint) / double(points_.size()), note + of);
+        };
+        Json json = splitPoint(view, point, progress);
         json["id"] = id;
         json["key"] = key;
         results_.putPoint(std::move(json));
@@ -233,7 +246,8 @@ const JudgedTruth& Splitter::allBounces(const ChartView& view, const JudgedTruth
     return all == view.truths().end() ? own : all->second;
 }
 
-Json Splitter::splitPoint(const ChartView& view, const ChartedPoint& point, const std::string& note) {
+Json Splitter::splitPoint(const ChartView& view, const ChartedPoint& point,
+                          const std::function<void(double ofPoint, const std::string& of)>& progress) {
     const JudgedTruth& own = view.truths().at(modelledBounces(point.sweep.parameters));
     const JudgedTruth& all = allBounces(view, own);
     studio::ErrorSplitter splitter(own.truth.image, all.truth.image);
@@ -241,15 +255,17 @@ Json Splitter::splitPoint(const ChartView& view, const ChartedPoint& point, cons
     const studio::GBuffer judged = view.picks().pick(view.inputs().gbuffer());
     std::size_t vplCount = 0;
     for (int seed = 0; seed < patterns; ++seed) {
+        const auto ofPattern = [&](double fraction) {
+            progress((seed + fraction) / patterns,
+                     fmt::format(", pattern {} of {}", seed + 1, patterns));
+        };
+        ofPattern(0.0);
         const Parameters parameters = withSeed(point.sweep.parameters, seed);
         std::vector<studio::VplRecord> vpls;
         const studio::Image rendered = render(view, parameters, &vpls);
         const studio::Image full = render(view, atFullResolution(parameters), nullptr);
-        const studio::Image exact = sumExactly(view, judged, vpls, [&](double fraction) {
-            report(0.0, fmt::format("{}, pattern {} of {}, {:.0f} %", note, seed + 1, patterns,
-                                    100.0 * fraction));
-        });
-        splitter.add(view.picks().pick(rendered), view.picks().pick(full), exact);
+        splitter.add(view.picks().pick(rendered), view.picks().pick(full),
+                     sumExactly(view, judged, vpls, ofPattern));
         vplCount = vpls.size();
     }
     const studio::ErrorSplit split = splitter.result();
@@ -261,6 +277,7 @@ Json Splitter::splitPoint(const ChartView& view, const ChartedPoint& point, cons
     if (split.sampling) shares["sampling"] = *split.sampling;
     return {{"scene", view.sceneName()},
             {"camera", view.cameraName()},
+            {"size", {options_.width, options_.height}},
             {"technique", point.sweep.parameters.technique()},
             {"label", point.sweep.label},
             {"settings", describeDifference(point.sweep.parameters)},
@@ -271,7 +288,8 @@ Json Splitter::splitPoint(const ChartView& view, const ChartedPoint& point, cons
             {"truth_of_all_bounces", all.truth.bounces == 0},
             {"total", split.total},
             {"shares", shares},
-            {"noise", own.truth.noise}};
+            {"noise", own.truth.noise},
+            {"noise_of_total", all.truth.noise}};
 }
 
 }  // namespace

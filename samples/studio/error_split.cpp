@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 namespace studio {
@@ -39,7 +40,13 @@ std::vector<double> ErrorSplitter::flatten(const Image& image) const {
     values.reserve(3 * pixels_.size());
     for (const char* channel : kChannels) {
         const std::vector<float>& plane = image.plane(channel);
-        for (const std::size_t pixel : pixels_) values.push_back(double(plane[pixel]));
+        for (const std::size_t pixel : pixels_) {
+            if (!std::isfinite(plane[pixel]))
+                throw std::runtime_error(
+                    fmt::format("channel {}, pixel {}: expected a finite irradiance, got {}", channel,
+                                pixel, plane[pixel]));
+            values.push_back(double(plane[pixel]));
+        }
     }
     return values;
 }

@@ -3,11 +3,15 @@
 //
 // Of one picture T drawn from N VPLs, with R1 the truth of as many bounces as the technique models and R
 // that of all:
+// clang-format off
 //     model        T  -> T + (R - R1)   the bounces it leaves out are added, exact
-//     resolution   -> F                 every pixel its own surface and every VPL (no halves, no
-//     interleave) visibility   -> V                 a shadow ray for each pixel and VPL sampling     ->
-//     <V>               the mean over infinitely many patterns of N VPLs bounding     -> R1 what is
-//     left: the bounded geometry term, and the RSM's own texels
+//     resolution      -> F              every pixel its own surface and every VPL (no halves, no interleave)
+//     visibility      -> V              a shadow ray for each pixel and VPL
+//     sampling        -> <V>            the mean over infinitely many patterns of N VPLs
+//     bounding        -> R1             what is left: the bounded geometry term, and the RSM's own texels; also
+//                                       light that stands in no RSM at all (a sky, glowing surfaces)
+// clang-format on
+//
 // All errors are <(. - truth)^2 / (R^2 + 0.01 <R>^2)>, the relMSE of docs/accuracy.md, with one and the
 // same denominator, so that the shares add up to the relMSE of T against R. A share is negative where an
 // approximation hides the error of another: light without visibility is too much, bounces left out are
@@ -35,9 +39,10 @@ struct ErrorSplit {
 class ErrorSplitter {
 public:
     // R, G, B of both (W/m^2), normal.* tells surfaces; `all` may be `own` itself. Throws
-    // std::runtime_error when sizes differ, layers are missing, or the truth is black.
+    // std::runtime_error when sizes differ, layers are missing or not finite, or `all` is black.
     ErrorSplitter(const Image& own, const Image& all);
-    // One pattern's pictures (R, G, B): as rendered, at full resolution, with exact visibility.
+    // One pattern's pictures (R, G, B): as rendered, at full resolution, with exact visibility. Throws
+    // std::runtime_error when sizes differ or a value is not finite.
     void add(const Image& rendered, const Image& fullResolution, const Image& exactVisibility);
     int patterns() const { return patterns_; }
     // Throws std::logic_error before the first pattern.

@@ -16,6 +16,7 @@ sys.path.insert(0, os.path.join(ROOT, "samples", "chart"))
 from pareto import pareto_front  # noqa: E402
 import report  # noqa: E402
 import results as charts  # noqa: E402
+import split_section  # noqa: E402
 
 
 def beats(a, b):
@@ -50,6 +51,13 @@ def made_point(view, settings, ms, relmse, noise, label=""):
     return {"id": view + settings, "scene": view, "camera": "c", "technique": "t", "settings": settings, "label": label,
             "bounces": 1, "size": [8, 8], "frames": 9, "ms": {"median": ms, "p99": 2 * ms}, "device_ms": None,
             "errors": {"own": own, "all": None}, "load_average": 0.0}
+
+
+def made_split(noise=1e-3, noise_of_total=1e-3, has_all=True, **shares):
+    shares = {"model": -0.5, "resolution": 0.1, "visibility": 1.2, "sampling": 0.15, "bounding": 0.05, **shares}
+    return {"scene": "s", "camera": "c", "technique": "t", "settings": "x=1", "label": "", "size": [8, 8], "patterns": 4, "vpls": 9,
+            "truth_of_all_bounces": has_all, "total": sum(s or 0.0 for s in shares.values()), "shares": shares, "noise": noise,
+            "noise_of_total": noise_of_total}
 
 
 def made_results(points, header=()):
@@ -190,6 +198,42 @@ class Page(unittest.TestCase):
                 path.write_text(text, encoding="ascii")
                 with self.assertRaisesRegex(report.ReportError, said):
                     report.read_json(path, "f 1")
+
+class Split(unittest.TestCase):
+    def test_steps_end_at_the_last_share(self):
+        steps = split_section.steps(made_split())
+        self.assertEqual([name for name, _ in steps], ["as rendered"] + [f"{n} exact" for n in ("model", "resolution", "visibility", "sampling")])
+        self.assertAlmostEqual(steps[1][1], 1.5)  # a negative share: the error rises
+        self.assertAlmostEqual(steps[-1][1], 0.05)
+        # One pattern, one truth: neither sampling's nor model's share is known.
+        alone = made_split(has_all=False, model=0.0, sampling=None)
+        self.assertEqual([name for name, _ in split_section.steps(alone)], ["as rendered", "resolution exact", "visibility exact"])
+        self.assertEqual([split_section.figure_text(alone, name) for name in ("model", "sampling")], ["", ""])
+
+    def test_what_the_truths_noise_spoils(self):
+        text = lambda name, **noises: split_section.figure_text(made_split(**noises), name)  # noqa: E731
+        self.assertEqual(text("bounding", noise=4e-3), "+0.05")
+        self.assertEqual(text("bounding", noise=6e-3), "(+0.05)")
+        self.assertEqual(text("bounding", bounding=-0.05, noise=1e-4), "(-0.05)")  # no squared error
+        self.assertEqual(text("model", noise_of_total=0.04), "-0.5")
+        self.assertEqual(text("model", noise_of_total=0.06), "(-0.5)")
+        self.assertEqual(text("total", noise_of_total=0.09), "1")
+        self.assertEqual(text("total", noise_of_total=0.11), "(1)")
+        # Differences against one truth, and what differs between patterns: its noise falls out.
+        self.assertEqual(text("visibility", noise=1.0, noise_of_total=1.0), "+1.2")
+        self.assertEqual(text("sampling", noise=1.0, noise_of_total=1.0), "+0.15")
+        self.assertFalse(split_section.is_trusted(made_split(noise=6e-3), "sampling exact", 0.05))
+
+    def test_points_of_another_size_are_left_out(self):
+        points = [made_split(), {**made_split(), "size": [4, 4]}]
+        self.assertEqual(split_section.current({"header": {"size": [4, 4]}, "points": points}), ([points[1]], 1))
+
+    def test_the_text_names_the_truth(self):
+        self.assertIn("against the light of all bounces", split_section.body([made_split()], 0, ""))
+        text = split_section.body([made_split(has_all=False)], 2, "")
+        self.assertIn("against the light of as many bounces as the technique models", text)
+        self.assertNotIn("are added", text)
+        self.assertIn("other sizes in this file, left out: 2", text)
 
 
 if __name__ == "__main__":

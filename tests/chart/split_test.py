@@ -5,12 +5,14 @@ matplotlib or D3 is missing.
 """
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
 import unittest
 
 PROGRAM = os.path.abspath(sys.argv[1]) if len(sys.argv) > 1 else ""
+SCENES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "samples", "scenes")
 SHARES = ["model", "resolution", "visibility", "sampling", "bounding"]
 # rsm's defaults on cornell against one bounce, two patterns, as measured when the split was new: what is left with exact
 # visibility, and with that and without the patterns' noise (truth's own noise 1e-3 in it). More is a regression.
@@ -76,16 +78,61 @@ class Split(unittest.TestCase):
         self.assertIn("--cameras", self.split("--cameras", "some", code=2))
         self.split("--patterns", "1", code=2)
         self.assertIn("--noise", self.split("--noise", "0", code=2))
+        for seconds in ("nan", "-1", "long"):
+            self.assertIn("--truth-seconds", self.split("--truth-seconds=" + seconds, code=2))
+        # Before anything is measured, not after the scenes before it.
+        self.assertIn("no scene of this name", self.split("--quick", "--scenes", "cornell", "nowhere", "--size", "64x36", code=2))
+        self.assertNotIn([64, 36], [p["size"] for p in self.read()["points"]])
+        with tempfile.TemporaryDirectory() as folder:
+            twin = os.path.join(folder, "cornell.json")
+            shutil.copy(os.path.join(SCENES, "cornell.json"), twin)
+            self.assertIn("another name", self.split("--quick", "--scenes", "cornell", twin, code=2))
+        self.assertIn("memory", self.split("--quick", "--size", "16384x16384", code=2))
         note = self.split("--quick", "--scenes", "cornell", "--techniques", "rival", "--no-report")
         self.assertIn('rival has no debug view "vpls"', note)
 
-    def test_a_file_of_another_format_is_refused(self):
+    def test_nothing_is_traced_where_nothing_can_be_split(self):
         with tempfile.TemporaryDirectory() as folder:
-            with open(os.path.join(folder, "split.json"), "w", encoding="utf-8") as file:
-                file.write('{"format": "lightwell-chart 1", "views": [], "points": []}')
-            done = subprocess.run([PROGRAM, "split", "--quick", "--out", folder], capture_output=True, text=True, timeout=60)
-            self.assertEqual(done.returncode, 2)
-            self.assertIn('expected results in the format "lightwell-split 1"', done.stderr)
+            done = subprocess.run([PROGRAM, "split", "--scenes", "cornell", "--techniques", "rival", "--no-report", "--size", "640x360",
+                                   "--out", folder, "--truth-cache", os.path.join(folder, "truths")],
+                                  capture_output=True, text=True, timeout=60)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertFalse(os.path.exists(os.path.join(folder, "truths")))
+
+    def test_a_dark_scene_is_left_out(self):
+        with tempfile.TemporaryDirectory() as folder:
+            with open(os.path.join(SCENES, "cornell.json"), encoding="utf-8") as file:
+                scene = json.load(file)
+            scene["lights"] = []
+            dark = os.path.join(folder, "dark.json")
+            with open(dark, "w", encoding="utf-8") as file:
+                json.dump(scene, file)
+            done = subprocess.run([PROGRAM, "split", "--quick", "--scenes", dark, "cornell", "--size", "32x18", "--no-report", "--noise",
+                                   "0.1", "--patterns", "2", "--out", folder, "--truth-cache", os.path.join(folder, "truths")],
+                                  capture_output=True, text=True, timeout=60)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn("dark/front has no indirect light", done.stderr)
+            with open(os.path.join(folder, "split.json"), encoding="utf-8") as file:
+                self.assertEqual({p["scene"] for p in json.load(file)["points"]}, {"cornell"})
+
+    def test_a_missing_folder_is_not_made_for_its_report(self):
+        with tempfile.TemporaryDirectory() as folder:
+            missing = os.path.join(folder, "missing")
+            done = subprocess.run([PROGRAM, "split", "--report-only", "--out", missing], capture_output=True, text=True, timeout=60)
+            self.assertNotEqual(done.returncode, 0)
+            self.assertFalse(os.path.exists(missing))
+
+    def test_a_file_of_another_format_is_refused(self):
+        ours = '"format": "lightwell-split 1"'
+        for text in ('{"format": "lightwell-chart 1", "header": {}, "views": [], "points": []}', '{"format": 3}', "{",
+                     "{%s, \"views\": [], \"points\": []}" % ours, "{%s, \"header\": {}, \"views\": {}, \"points\": []}" % ours,
+                     "{%s, \"header\": {}, \"views\": [], \"points\": [{\"id\": \"a\"}]}" % ours):
+            with self.subTest(text), tempfile.TemporaryDirectory() as folder:
+                with open(os.path.join(folder, "split.json"), "w", encoding="utf-8") as file:
+                    file.write(text)
+                done = subprocess.run([PROGRAM, "split", "--quick", "--out", folder], capture_output=True, text=True, timeout=60)
+                self.assertEqual(done.returncode, 2, done.stderr)
+                self.assertIn('expected results in the format "lightwell-split 1"', done.stderr)
 
     def test_report(self):
         done = subprocess.run([PROGRAM, "split", "--report-only", "--out", self.folder], capture_output=True, text=True, timeout=120)

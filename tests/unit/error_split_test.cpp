@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -37,7 +38,8 @@ double sumOf(const ErrorSplit& split) {
 }  // namespace
 
 TEST_CASE("each approximation gets what the error loses without it") {
-    // R = 2 and 4 with R1 = 1 and 2: a second bounce as strong as the first. Denominators R^2 + 0.01 * 9.
+    // R = 2 and 4 with R1 = 1 and 2: a second bounce as strong as the first. Denominators R^2 + 0.01
+    // * 9.
     const Image own = picture({1.0f, 2.0f}), all = picture({2.0f, 4.0f});
     const double near = 1.0 / 4.09, far = 1.0 / 16.09;
     ErrorSplitter splitter(own, all);
@@ -106,4 +108,8 @@ TEST_CASE("a split refuses what it cannot mean") {
                       Catch::Matchers::Contains("black"));
     ErrorSplitter splitter(truth, truth);
     CHECK_THROWS_WITH(splitter.add(truth, truth, picture({1.0f})), Catch::Matchers::Contains("got 2x1"));
+    const Image broken = picture({1.0f, std::numeric_limits<float>::quiet_NaN()});
+    CHECK_THROWS_WITH(splitter.add(truth, broken, truth),
+                      Catch::Matchers::Contains("channel R, pixel 1: expected a finite irradiance"));
+    CHECK_THROWS_WITH(ErrorSplitter(broken, truth), Catch::Matchers::Contains("finite"));
 }
