@@ -12,7 +12,7 @@ SecondBounce::SecondBounce(Device& device, const SecondBounceOptions& options)
       draw_(device.programs().kernel("second_bounce/second_bounce", "second_bounce_draw")) {}
 
 void SecondBounce::reserve(std::uint32_t clusterCount) {
-    vpls_.reserve(device_, std::size_t(estimateBytes(options_, clusterCount)), "second-bounce VPLs");
+    if (clusterCount) vpls_.reserve(device_, std::size_t(estimateBytes(options_, clusterCount)), "second-bounce VPLs");
     count_ = clusterCount * options_.perCluster;
 }
 
