@@ -55,35 +55,36 @@ __kernel void paraboloid_map_identity(__global const float* triangles, int strid
     }
 }
 
-// A band of every large triangle's rows at a time, until none is left.
+// A row of tiles of every large triangle at a time, until none is left; in the second sweep those where the first
+// reached a texel.
 LW_FN void draw_list(__global const float* triangles, int stride, __global const lw_paraboloid* frames, int size,
-                     volatile __global uint* records, __global const lw_large_triangle* list, int count, int bands,
-                     const int sweep) {
-    for (int i = (int)get_global_id(0); i < count * bands; i += (int)get_global_size(0)) {
-        const lw_large_triangle entry = list[i / bands];
-        const int y0 = entry.rows & 0xffff, y1 = entry.rows >> 16;
-        const int rows = (y1 - y0 + bands) / bands, first = y0 + (i % bands) * rows;
-        if (first > y1) continue;
-        const lw_canvas canvas = canvas_of(frames, records, size, entry.map);
-        const lw_planes planes = planes_of(splat_corners(triangles, stride, entry.triangle, canvas.frame.origin));
-        draw_rows(canvas, planes, entry.columns & 0xffff, entry.columns >> 16, first, min(first + rows - 1, y1),
-                  (uint)entry.triangle, sweep);
+                     volatile __global uint* records, __global lw_large_triangle* list, int count, const int sweep) {
+    const int tileRows = size / LW_TILE;
+    for (int i = (int)get_global_id(0); i < count * tileRows; i += (int)get_global_size(0)) {
+        __global lw_large_triangle* entry = list + i / tileRows;
+        const int tileY = i % tileRows, map = entry->map, triangle = entry->triangle;
+        if (tileY < (entry->rows & 0xffff) || tileY > (entry->rows >> 16)) continue;
+        if (sweep == LW_IDENTITY && !(entry->reached >> tileY & 1)) continue;
+        const lw_canvas canvas = canvas_of(frames, records, size, map);
+        const lw_planes planes = planes_of(splat_corners(triangles, stride, triangle, canvas.frame.origin));
+        if (draw_tiles(canvas, planes, entry->columns & 0xffff, entry->columns >> 16, tileY, (uint)triangle, sweep))
+            atomic_or((volatile __global uint*)&entry->reached, 1u << tileY);
     }
 }
 
 // Work-items share the list: its length is known on the device alone.
 __kernel void paraboloid_map_depth_large(__global const float* triangles, int stride,
                                          __global const lw_paraboloid* frames, int size,
-                                         volatile __global uint* records, __global const lw_large_triangle* list,
-                                         __global const uint* counters, int capacity, int bands) {
+                                         volatile __global uint* records, __global lw_large_triangle* list,
+                                         __global const uint* counters, int capacity) {
     const int count = (int)min(counters[LW_MAP_LARGE], (uint)capacity);
-    draw_list(triangles, stride, frames, size, records, list, count, bands, LW_DEPTH);
+    draw_list(triangles, stride, frames, size, records, list, count, LW_DEPTH);
 }
 
 __kernel void paraboloid_map_identity_large(__global const float* triangles, int stride,
                                             __global const lw_paraboloid* frames, int size,
-                                            volatile __global uint* records, __global const lw_large_triangle* list,
-                                            __global const uint* counters, int capacity, int bands) {
+                                            volatile __global uint* records, __global lw_large_triangle* list,
+                                            __global const uint* counters, int capacity) {
     const int count = (int)min(counters[LW_MAP_LARGE], (uint)capacity);
-    draw_list(triangles, stride, frames, size, records, list, count, bands, LW_IDENTITY);
+    draw_list(triangles, stride, frames, size, records, list, count, LW_IDENTITY);
 }

@@ -94,6 +94,22 @@ LW_FN uint draw_rows(lw_canvas c, lw_planes planes, int x0, int x1, int y0, int 
     return reached != 0;
 }
 
+// One triangle, the same in every lane, in a row of tiles: LW_WIDTH tiles are looked at together, and those that
+// it can cover are drawn. 1: a texel was reached.
+LW_FN uint draw_tiles(lw_canvas c, lw_planes planes, int tileX0, int tileX1, int tileY, uint triangle, const int sweep) {
+    uint reached = 0;
+    for (int first = tileX0; first <= tileX1; first += LW_WIDTH) {
+        int touched[LW_WIDTH];
+        store(tiles_touched(c.frame, c.step, planes, lanei_iota() + first, tileY), touched, 0);
+        for (int l = 0; l < min(LW_WIDTH, tileX1 - first + 1); ++l) {
+            if (!touched[l]) continue;
+            const int x = (first + l) * LW_TILE, y = tileY * LW_TILE;
+            reached |= draw_rows(c, planes, x, x + LW_TILE - 1, y, y + LW_TILE - 1, triangle, sweep);
+        }
+    }
+    return reached;
+}
+
 // Where large triangles go, and the counters of the list; room for `capacity`.
 typedef struct {
     __global lw_large_triangle* list;
@@ -111,8 +127,9 @@ LW_FN int put_large(lw_large_list large, int map, int triangle, int x0, int x1, 
     lw_large_triangle entry;
     entry.map = map;
     entry.triangle = triangle;
-    entry.columns = x0 | (x1 << 16);
-    entry.rows = y0 | (y1 << 16);
+    entry.columns = (x0 / LW_TILE) | ((x1 / LW_TILE) << 16);
+    entry.rows = (y0 / LW_TILE) | ((y1 / LW_TILE) << 16);
+    entry.reached = 0;
     large.list[slot] = entry;
     return 1;
 }

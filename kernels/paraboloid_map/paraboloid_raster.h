@@ -193,4 +193,35 @@ LW_FN lw_texel_box box_of_corners(lw_paraboloid frame, int size, lw_corners worl
     return box;
 }
 
+// ---- tiles that a triangle can cover
+
+#define LW_TILE 16  // texels a side
+
+// The most that 2 a x - c x^2 is on [x0, x1].
+LW_FN real most_of_parabola(real a, real c, real x0, real x1) {
+    const real top = fmin(fmax(a / select_((real)(1.0f), c, c > 0.0f), x0), x1);
+    const real ends = fmax((2.0f * a - c * x0) * x0, (2.0f * a - c * x1) * x1);
+    return fmax(ends, (2.0f * a - c * top) * top);
+}
+
+// Lanes whose tile (x, y) has a ray on the inner side of the plane with this normal, times `side`. On the disc the
+// triple product is C + (2 A u - C u^2) + (2 B v - C v^2): its maximum over a tile is exact.
+LW_FN mask tile_inside(lw_paraboloid frame, lw_direction normal, real side, real u0, real u1, real v0, real v1) {
+    const lw_direction n = to_frame(frame, normal);
+    const real a = n.x * side, b = n.y * side, c = n.z * side;
+    const real rounding = 1e-5f * (fabs(a) + fabs(b) + fabs(c));
+    return c + most_of_parabola(a, c, u0, u1) + most_of_parabola(b, c, v0, v1) >= -rounding;
+}
+
+LW_FN mask tiles_touched(lw_paraboloid frame, float step, lw_planes t, lanei tileX, int tileY) {
+    const real u0 = paraboloid_uv(to_real(tileX * LW_TILE), step), u1 = u0 + (LW_TILE - 1) * step;
+    const real v0 = paraboloid_uv((real)((float)(tileY * LW_TILE)), step), v1 = v0 + (LW_TILE - 1) * step;
+    // A ray that meets the triangle before the origin has the origin's side of its plane on that of every edge's.
+    const real side = select_((real)(-1.0f), (real)(1.0f), t.offset > 0.0f);
+    const mask edges = and_(and_(tile_inside(frame, t.ab, side, u0, u1, v0, v1),
+                                 tile_inside(frame, t.bc, side, u0, u1, v0, v1)),
+                            tile_inside(frame, t.ca, side, u0, u1, v0, v1));
+    return edges;
+}
+
 #endif

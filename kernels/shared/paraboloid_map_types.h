@@ -17,11 +17,13 @@
 // Maps that a work-item draws, one after the other.
 #define LW_MAPS_PER_ITEM 8
 
-// A triangle on one map that covers so many texels that its rows are shared among work-items.
+// A triangle on one map that covers so many texels that its rows of tiles are shared among work-items.
 typedef struct {
     lw_int map, triangle;
-    lw_int columns, rows;  // first and, 16 bits up, last
+    lw_int columns, rows;  // of tiles: first and, 16 bits up, last
+    lw_uint reached;       // rows of tiles, a bit each, in which the first sweep reached a texel
+    lw_uint unused[3];
 } lw_large_triangle;
-LW_SIZE_CHECK(lw_large_triangle, 16);
+LW_SIZE_CHECK(lw_large_triangle, 32);
 
 #endif

@@ -17,8 +17,6 @@ constexpr std::uint32_t kSmallest = 64, kLargest = 512;
 // Room for large triangles: those that find none are drawn where they were found, by one work-item each. Sponza
 // leaves some tens on each map.
 constexpr std::uint32_t kLargePerMap = 256;
-// Rows of a large triangle that one work-item draws at a time, on a map of which it covers every row.
-constexpr std::uint32_t kBandRows = 16;
 // Work-items that share the list of large triangles, whatever its length.
 constexpr std::size_t kListItems = 1024;
 
@@ -96,17 +94,17 @@ void ParaboloidMap::draw(Executor& executor, const GeometryInput& geometry) {
     const cl_mem triangles = geometry.triangles.memory;
     const cl_int stride = cl_int(geometry.triangles.planeStride), groups = cl_int(geometry.groupCount);
     const cl_int count = cl_int(mapCount_), size = cl_int(size_);
-    const cl_int capacity = cl_int(mapCount_ * kLargePerMap), bands = cl_int(size_ / kBandRows);
+    const cl_int capacity = cl_int(mapCount_ * kLargePerMap);
     const Range group = drawGroup(device_);
     const Range grid{geometry.groupCount / depth_.width(), (mapCount_ + LW_MAPS_PER_ITEM - 1) / LW_MAPS_PER_ITEM};
     executor.run("paraboloid_map.depth", depth_, grid, group, triangles, stride, geometry.groups, groups, frames_,
                  state_, count, size, records_, candidates_, large_, counters_, capacity);
     executor.run("paraboloid_map.depth_large", depthLarge_, {kListItems, 1}, group, triangles, stride, frames_, size,
-                 records_, large_, counters_, capacity, bands);
+                 records_, large_, counters_, capacity);
     executor.run("paraboloid_map.identity", identity_, grid, group, triangles, stride, groups, frames_, state_,
                  count, size, records_, candidates_);
     executor.run("paraboloid_map.identity_large", identityLarge_, {kListItems, 1}, group, triangles, stride, frames_,
-                 size, records_, large_, counters_, capacity, bands);
+                 size, records_, large_, counters_, capacity);
 }
 
 Planes ParaboloidMap::debugShape() const {

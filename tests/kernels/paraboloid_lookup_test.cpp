@@ -11,9 +11,10 @@ using reference::Vec;
 namespace {
 
 constexpr double kDirectionRounding = 3e-7, kTexelRounding = 2e-4, kNormalRounding = 1.0 / 1000;
-// Of 64 texels a side across 2.6 units of the disc, a shadow's edge is a texel wide or two: receivers there may go
-// either way. Measured: 1.5 % false shadow and light together, hard and soft, in a room with a screen.
-constexpr double kMisjudged = 0.02;
+// Along a shadow's edge and in the room's own, receivers within a texel or so may go either way: their share falls
+// with the map's side. Measured, of 2,000 receivers: hard 74 and 48 at 64 texels, 13 and 10 at 256, under half of them
+// lit falsely; soft 94 and 71, 22 and 19.
+constexpr double kMisjudgedTexels = 3.2;
 
 struct Receivers {
     std::vector<Vec> positions, normals;
@@ -108,11 +109,12 @@ TEST_CASE("frames are orthonormal around every normal", "[paraboloid_lookup]") {
 
 TEST_CASE("a room with a screen: lit before it, dark behind it", "[paraboloid_lookup]") {
     const auto width = GENERATE(1u, 16u);
+    const auto size = GENERATE(64u, 256u);
     Mesh mesh;
     mesh.addBox({4, 3, 5}, 3, 2);
     mesh.addQuad({1.2, 0.5, 2.5}, {1.5, 0, 0}, {0, 1.6, 0});
     const std::vector<reference::Triangle> triangles = mesh.triangles();
-    ParaboloidRig rig(width, 64);
+    ParaboloidRig rig(width, size);
     const DrawnMaps maps = rig.drawn(mesh, {clusterAt({2, 1.4, 0}, {0, 0, 1}), clusterAt({2, 0, 3.8}, {0, 1, 0})});
     std::mt19937 random(9);
     std::uniform_real_distribution<double> unit(0.0, 1.0);
@@ -133,19 +135,21 @@ TEST_CASE("a room with a screen: lit before it, dark behind it", "[paraboloid_lo
             lit.push_back(first > reference::length(d) * (1.0 - 1e-6));
         }
         const Answers answers = ask(rig, k, receivers);
-        int hardWrong = 0, dark = 0;
+        int hardWrong = 0, dark = 0, falseLight = 0;
         double softWrong = 0.0;
         for (std::size_t i = 0; i < lit.size(); ++i) {
             REQUIRE((answers.hard[i] == 0.0f || answers.hard[i] == 1.0f));
             REQUIRE((answers.soft[i] >= 0.0f && answers.soft[i] <= 1.0f));
             dark += !lit[i];
             hardWrong += (answers.hard[i] != 0.0f) != lit[i];
+            falseLight += answers.hard[i] != 0.0f && !lit[i];
             softWrong += std::abs(double(answers.soft[i]) - (lit[i] ? 1.0 : 0.0));
         }
-        CAPTURE(k, dark, hardWrong, softWrong);
+        CAPTURE(k, dark, hardWrong, falseLight, softWrong);
         CHECK(dark > 50);
-        CHECK(hardWrong < kMisjudged * double(lit.size()));
-        CHECK(softWrong < kMisjudged * double(lit.size()));
+        CHECK(hardWrong < kMisjudgedTexels / size * double(lit.size()));
+        CHECK(2 * falseLight <= hardWrong);
+        CHECK(softWrong < kMisjudgedTexels / size * double(lit.size()));
     }
 }
 
