@@ -62,6 +62,10 @@ def conditions(results):
         text += ": the machine was shared, so that times are too long."
     else:
         text += ": the machine was ours alone."
+    block = header.get("judged_block", 1)
+    if block > 1:
+        text += (f" The irradiance is judged at one pixel of each {block} x {block}; score and FLIP stand in brackets where the truth of whole "
+                 "pictures is too noisy for them.")
     return [text]
 
 
@@ -159,9 +163,15 @@ def front_table(results):
             own = errors(point)
             lines.append(f"| {view['scene']}, {view['camera']} | {point['technique']} | {settings_text(point)} | "
                          f"{ms(results, point):.1f} | " + (f"{point['ms']['median']:.0f} | " if clock else "") +
-                         f"{own['relMSE']:.3g} | {own['nrmse']:.3g} | {100 * own['bias']:+.1f} % | "
-                         f"{own['score']:.2f} | {own['flip']:.3f} |")
+                         f"{own['relMSE']:.3g} | {own['nrmse']:.3g} | {100 * own['bias']:+.1f} % | {composite_cells(point)} |")
     return lines
+
+
+def composite_cells(point):
+    """Score and FLIP; in brackets where the truth of whole pictures is too noisy for them."""
+    own = errors(point)
+    cells = [f"{own['score']:.2f}", f"{own['flip']:.3f}"]
+    return " | ".join(cells if is_drawn(point, metric="flip") else [f"({cell})" for cell in cells])
 
 
 def thinned(points, most=4):
@@ -181,7 +191,7 @@ def technique_text(results, technique):
         mark = "" if is_drawn(p) else " (not trusted)"
         others = f"{every['relMSE']:.3g} | {100 * every['bias']:+.1f} %" if every and is_drawn(p, "all") else " | "
         lines.append(f"| {p['scene']}, {p['camera']} | {ms(results, p):.1f} | {p['ms']['median']:.1f} | {p['ms']['p99']:.1f} | {own['relMSE']:.3g}{mark} | "
-                     f"{own['nrmse']:.3g} | {100 * own['bias']:+.1f} % | {own['score']:.2f} | {own['flip']:.3f} | {others} | "
+                     f"{own['nrmse']:.3g} | {100 * own['bias']:+.1f} % | {composite_cells(p)} | {others} | "
                      f"{own['noise']:.1e} |")
     trusted = [p for p in defaults if is_drawn(p)]
     if trusted:

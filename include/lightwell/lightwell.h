@@ -523,9 +523,10 @@ LW_API LWStatus lwRender(LWTechnique technique, LWView view, const LWGBuffer* gb
 /** What can be wrong with what a host hands over. docs/checking-inputs.md says how each is found, from
  *  which size on, and what cures it. */
 typedef enum LWInputFault {
-    LW_FAULT_NOT_FINITE = 0,       /**< NaN or infinity on a surface */
+    LW_FAULT_NOT_FINITE = 0,       /**< NaN, infinity or a position beyond reach on a surface */
     LW_FAULT_NEGATIVE = 1,         /**< negative albedo, radiance or flux */
-    LW_FAULT_NO_SURFACES = 2,      /**< every normal is zero: validity will be zero everywhere */
+    LW_FAULT_NO_SURFACES = 2,      /**< every normal is zero, or no depth leads to a place: validity will
+                                        be zero everywhere */
     LW_FAULT_NORMAL_MISSING = 3,   /**< zero normals where position or depth shows a surface */
     LW_FAULT_NORMAL_LENGTH = 4,    /**< normals that are not unit */
     LW_FAULT_NORMAL_ENCODED = 5,   /**< normals still stored as n/2 + 1/2 */
@@ -599,7 +600,7 @@ LW_API LWStatus lwDescribeInputFault(uint32_t index, LWInputFaultInfo* info);
  *  `findings`: room for `capacity` of them, the most severe first; null where that is 0. `*count` gets the
  *  number found, which may be more.
  *  `overlay`: null, or 3 channels of the view's size: the G-buffer shaded grey, affected pixels in their
- *  finding's colour, linear RGB in [0,1]; needs `gbuffer`.
+ *  finding's colour, linear RGB in [0,1]; needs `gbuffer`, whose faults alone it shows.
  *  What lwUpdate or lwRender would refuse is refused with the same error. `frame->sync` is honoured. */
 LW_API LWStatus lwCheckInputs(LWView view, const LWFrame* frame, const LWGBuffer* gbuffer,
                               LWInputFinding* findings, uint32_t capacity, uint32_t* count,

@@ -6,7 +6,8 @@ const SIZE = {width: 760, height: 430, left: 64, right: 16, top: 12, bottom: 44}
 
 function errorOf(point) {
   const judged = point.errors[choice.truth];
-  if (!judged || !judged.drawn || !point.ms || judged[choice.metric] === undefined) return null;
+  const drawn = judged && (data.metrics[choice.metric].onAll ? judged.drawn : judged.pictureDrawn);
+  if (!drawn || !point.ms || judged[choice.metric] === undefined) return null;
   const raw = judged[choice.metric];
   const value = choice.metric === "score" ? 10 - raw : Math.abs(raw);
   return value > 0 ? value : null;
@@ -167,10 +168,11 @@ const COLUMNS = [
   ["scene", p => p.scene], ["camera", p => p.camera], ["technique", p => p.technique], ["settings", p => p.settings],
   ["name", p => p.label], ["bounces", p => p.bounces || "all"], ["frames", p => p.frames], ["ms", p => p.ms && p.ms.median],
   ["p99 ms", p => p.ms && p.ms.p99], ["processor ms", p => p.ms && p.ms.processor],
-  ...["relMSE", "nrmse", "bias", "p99", "score", "flip"].map(key => [key, p => p.errors.own && p.errors.own[key], "own"]),
+  ...["relMSE", "nrmse", "bias", "p99", "score", "flip"].map(key =>
+    [key, p => p.errors.own && p.errors.own[key], "own", data.metrics[key].onAll ? "drawn" : "pictureDrawn"]),
   ["noise", p => p.errors.own && p.errors.own.noise],
-  ["relMSE, all bounces", p => p.errors.all && p.errors.all.relMSE, "all"],
-  ["bias, all bounces", p => p.errors.all && p.errors.all.bias, "all"]];
+  ["relMSE, all bounces", p => p.errors.all && p.errors.all.relMSE, "all", "drawn"],
+  ["bias, all bounces", p => p.errors.all && p.errors.all.bias, "all", "drawn"]];
 let sorted = {column: -1, up: true};
 
 function fillTable() {
@@ -182,7 +184,7 @@ function fillTable() {
     rows.sort((a, b) => sign * d3.ascending(read(a), read(b)));
   }
   const lines = d3.select("#figures tbody").selectAll("tr").data(rows).join("tr");
-  lines.selectAll("td").data(p => COLUMNS.map(([, read, truth]) => ({value: read(p), hidden: truth && p.errors[truth] && !p.errors[truth].drawn})))
+  lines.selectAll("td").data(p => COLUMNS.map(([, read, truth, drawn]) => ({value: read(p), hidden: truth && p.errors[truth] && !p.errors[truth][drawn]})))
     .join("td").attr("class", cell => cell.hidden ? "hidden-figure" : null)
     .text(cell => typeof cell.value === "number" && !Number.isInteger(cell.value) ? short(cell.value) : cell.value);
 }

@@ -12,7 +12,7 @@ host's output, against its error. Left and low is good; the grey line is the Par
 Points with a ring are named settings. Wheel and drag zoom a chart, a double click shows all again; a click on
 a point shows its picture, where there is one, below.</p>
 <p>A technique is judged against the truth of as many bounces as it models; the choice below compares all of them with the
-light of all bounces. No point is drawn where the truth's own noise exceeds a tenth of its error.</p>
+light of all bounces. No point is drawn where the truth's own noise exceeds a tenth of its error. {judged}</p>
 <form id="choices">
   <label>error <select id="metric"></select></label>
   <label>against <select id="truth"></select></label>
@@ -42,7 +42,7 @@ def make(folder):
             "colours": {t: colour_of(results, t) for t in results.techniques},
             "metrics": {key: {"title": title, "onAll": on_all} for key, (title, on_all, _) in METRICS.items()},
             "truths": TRUTHS, "sharedViews": len(results.shared), "times": results.times, "time": results.time()}
-    body = BODY.format(left=left_out(left), truths=truth_table(results), head=head(results))
+    body = BODY.format(judged=judged_text(results), left=left_out(left), truths=truth_table(results), head=head(results))
     script = (HERE / "chart_section.js").read_text(encoding="utf-8")
     return Section("Speed against accuracy", body, data, script, written=write_plots(results))
 
@@ -51,8 +51,8 @@ def describe_point(point, pictures=()):
     described = {key: point[key] for key in ("id", "technique", "settings", "label", "bounces", "ms")}
     described["scene"], described["camera"] = point.get("scene", ""), point.get("camera", "")
     described["frames"], described["deviceMs"] = point.get("frames"), point.get("device_ms")
-    described["errors"] = {truth: dict(errors(point, truth), drawn=is_drawn(point, truth)) if errors(point, truth) else None
-                           for truth in TRUTHS}
+    described["errors"] = {truth: dict(errors(point, truth), drawn=is_drawn(point, truth), pictureDrawn=is_drawn(point, truth, "flip"))
+                           if errors(point, truth) else None for truth in TRUTHS}
     if point in pictures:
         described["picture"] = True
     return described
@@ -88,6 +88,14 @@ def pictured(results, points):
     return chosen
 
 
+def judged_text(results):
+    block = results.header.get("judged_block", 1)
+    if block == 1:
+        return ""
+    return (f"The irradiance is judged at one pixel of each {block} x {block}, composites on whole pictures, whose truth is noisier "
+            "and leaves out more points.")
+
+
 def head(results):
     header = results.header
     rows = [("size", "{} x {} pixels".format(*header["size"]) + (", quick form" if header["quick"] else "")),
@@ -121,8 +129,10 @@ def truth_table(results):
                       p["bounces"] == truth["bounces"]]
             kind = "all" if truth["bounces"] == 0 else "own"
             rows.append((view["scene"], view["camera"], truth["bounces"] or "all", truth["samples"], f"{truth['noise']:.2e}",
-                         f"{sum(not is_drawn(p, kind) for p in points)} of {len(points)}"))
-    return table(["scene", "camera", "bounces", "samples per pixel", "noise (relMSE)", "points too accurate for it"], rows)
+                         f"{sum(not is_drawn(p, kind) for p in points)} of {len(points)}",
+                         truth.get("picture_samples", truth["samples"]), f"{truth.get('picture_noise', truth['noise']):.2e}"))
+    return table(["scene", "camera", "bounces", "samples per judged pixel", "noise (relMSE)", "points too accurate for it",
+                  "samples per pixel of whole pictures", "their noise"], rows)
 
 
 def left_out(left):

@@ -80,16 +80,19 @@ def errors(point, truth="own"):
     return point["errors"].get(truth)
 
 
-def is_drawn(point, truth="own"):
-    """No figure is drawn where the truth's own noise exceeds a tenth of the error, or without a time."""
+def is_drawn(point, truth="own", metric="relMSE"):
+    """No figure is drawn where the truth's own noise exceeds a tenth of the error, or without a time. Composites need whole
+    pictures, whose truth may be noisier than that of the pixels that the irradiance is judged at."""
     judged = errors(point, truth)
-    return judged is not None and judged["trusted"] and point["ms"] is not None
+    if judged is None or not judged["trusted"] or point["ms"] is None:
+        return False
+    return METRICS[metric][1] or judged.get("picture_trusted", True)
 
 
 def value(point, metric="relMSE", truth="own"):
     """The error to be drawn; None where there is none or it is not to be drawn."""
     judged = errors(point, truth)
-    if not is_drawn(point, truth) or metric not in ("relMSE", "nrmse", "bias", "p99") and metric not in judged:
+    if not is_drawn(point, truth, metric) or metric not in ("relMSE", "nrmse", "bias", "p99") and metric not in judged:
         return None
     result = METRICS[metric][2](judged)
     return result if result > 0.0 else None  # logarithmic axes
@@ -147,6 +150,7 @@ def mean_errors(group, truth, base):
     mean = {"views": len(drawn), "trusted": 2 * len(drawn) >= len(group) and (len(drawn) == len(group) or base is not None)}
     if not mean["trusted"]:
         drawn = group  # for the table, in grey
+    mean["picture_trusted"] = all(errors(p, truth).get("picture_trusted", True) for p in drawn)
     places = {(p["scene"], p["camera"]) for p in drawn}
     for metric, (_, _, read) in METRICS.items():
         if any(metric not in errors(p, truth) for p in group):

@@ -18,10 +18,17 @@ namespace {
 constexpr const char* kQuickScenes[] = {"cornell", "basic"};
 constexpr const char* kQuickSize = "320x180";
 constexpr double kQuickNoise = 4e-3, kNoise = 1e-3;  // relMSE of the truths
+// Irradiance is judged at one pixel of 4 x 4: a sixteenth of the paths, or sixteen times as many for
+// each.
+constexpr int kBlock = 4;
+// Of the whole pictures, which composites are judged by: most composites forgive more than their
+// irradiance.
+constexpr double kPictureNoise = 2e-2;
 
 struct Arguments {
     ChartOptions chart;
-    std::string size, cameras = "all", noise;
+    std::string size, cameras = "all", noise, pictureNoise;
+    int block = 0;
     bool skipsReport = false, onlyReport = false;
 };
 
@@ -39,6 +46,9 @@ void requireScenes(const std::vector<std::string>& scenes) {
             !std::filesystem::exists(scene))
             asUsage([&] { studio::loadScene(scene); });  // says what it expected
 }
+
+// Picks along the shorter side of a picture: fewer would not tell its error.
+constexpr int kFewestPicks = 32;
 
 // Bytes for each pixel: the path tracer's sums, a view's buffers and truths, pictures that are judged.
 constexpr double kPixelBytes = 1500.0;
@@ -67,6 +77,17 @@ void complete(Arguments& arguments) {
     chart.truth.noise = chart.quick ? kQuickNoise : kNoise;
     if (!arguments.noise.empty()) chart.truth.noise = parseNumber("--noise", arguments.noise);
     if (chart.truth.noise <= 0.0) throw UsageError("--noise: expected a relMSE above 0");
+    chart.truth.pictureNoise = kPictureNoise;
+    if (!arguments.pictureNoise.empty())
+        chart.truth.pictureNoise = parseNumber("--picture-noise", arguments.pictureNoise);
+    if (chart.truth.pictureNoise <= 0.0) throw UsageError("--picture-noise: expected a relMSE above 0");
+    const int side = std::min(size.width, size.height);
+    const bool hasRoom = side >= kBlock * kFewestPicks;
+    chart.truth.block = arguments.block > 0 ? arguments.block : chart.quick || !hasRoom ? 1 : kBlock;
+    if (chart.truth.block > 1 && side / chart.truth.block < kFewestPicks)
+        throw UsageError(fmt::format("--judge-one-of {}: expected at most {} at {}x{}",
+                                     chart.truth.block, std::max(1, side / kFewestPicks), size.width,
+                                     size.height));
     chart.truth.takesShipped = chart.quick;
 }
 
@@ -111,6 +132,16 @@ void addChart(CLI::App& app) {
         ->capture_default_str();
     command->add_option("--size", arguments->size, "Picture size, WIDTHxHEIGHT; default: 1280x720");
     command->add_option("--noise", arguments->noise, "relMSE to which truths are traced; default: 1e-3");
+    command
+        ->add_option("--judge-one-of", arguments->block,
+                     "N: judge the irradiance at one pixel of each N x N, whose truth is then dearer "
+                     "and less noisy; "
+                     "default: 4; 1, all pixels, with --quick and in small pictures")
+        ->check(CLI::Range(1, 64));
+    command->add_option(
+        "--picture-noise", arguments->pictureNoise,
+        "relMSE to which the truths of whole pictures (score, FLIP, previews) are traced where the "
+        "irradiance is judged at fewer pixels; default: 2e-2");
     command
         ->add_option(
             "--truth-seconds", options.truth.seconds,

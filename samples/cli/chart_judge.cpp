@@ -75,19 +75,29 @@ Json irradianceErrors(const studio::Metrics& metrics, const JudgedTruth& judged)
     return json;
 }
 
+// The errors of the irradiance at the pixels where the view is judged.
+Json irradianceErrors(const JudgedPicture& picture, const ChartView& view, const JudgedTruth& judged) {
+    return irradianceErrors(
+        studio::compareIrradiance(view.picks().pick(picture.irradiance), judged.truth.image), judged);
+}
+
 }  // namespace
 
 Json judge(const JudgedPicture& picture, const ChartView& view, const std::string& folder) {
     const JudgedTruth& own = view.truths().at(picture.bounces);
     Json json{{"own", nullptr}, {"all", nullptr}, {"images", Json::object()}};
     const studio::Image display =
-        studio::toneMap(lit(picture.irradiance, own.truth.image), own.exposure);
+        studio::toneMap(lit(picture.irradiance, own.picture().image), own.exposure);
     json["images"]["picture"] = writePreview(folder, picture.imageName, display);
     if (!own.isBlack) {
         studio::MetricMaps maps;
         const studio::Metrics metrics =
-            studio::compareImages(picture.irradiance, own.truth.image, &maps);
-        Json errors = irradianceErrors(metrics, own);
+            studio::compareImages(picture.irradiance, own.picture().image, &maps);
+        Json errors = view.picks().areAll() ? irradianceErrors(metrics, own)
+                                            : irradianceErrors(picture, view, own);
+        errors["picture_noise"] = number(own.picture().noise);
+        errors["picture_trusted"] = errors["relMSE"].is_number() &&
+                                    own.picture().noise <= kNoiseShare * errors["relMSE"].get<double>();
         errors["rmse"] = number(metrics.rmse);
         errors["ssim"] = number(metrics.ssim);
         errors["score"] = number(metrics.score);
@@ -97,8 +107,7 @@ Json judge(const JudgedPicture& picture, const ChartView& view, const std::strin
         json["images"]["error"] = writePreview(folder, picture.imageName + "_error", maps.relativeError);
     }
     if (const auto all = view.truths().find(0); all != view.truths().end() && !all->second.isBlack)
-        json["all"] = irradianceErrors(
-            studio::compareIrradiance(picture.irradiance, all->second.truth.image), all->second);
+        json["all"] = irradianceErrors(picture, view, all->second);
     return json;
 }
 
@@ -107,7 +116,7 @@ Json writeViewPictures(const ChartView& view, const std::string& folder) {
     const std::string stem = view.sceneName() + "_" + view.cameraName();
     for (const auto& [bounces, judged] : view.truths()) {
         const std::string key = bounces == 0 ? "all" : std::to_string(bounces);
-        const studio::Image& truth = judged.truth.image;
+        const studio::Image& truth = judged.picture().image;
         json["truth_" + key] = writePreview(folder, stem + "_truth_" + key,
                                             studio::toneMap(studio::composite(truth), judged.exposure));
         if (json.contains("direct")) continue;

@@ -32,7 +32,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "lightwell-chart 1";
 // Part of every point's key: raise it when the way of measuring changes.
-constexpr const char* kProtocol = "3";
+constexpr const char* kProtocol = "4";
 constexpr std::size_t kBatch =
     6;  // points timed before their errors are computed, on all cores, and saved
 
@@ -113,6 +113,7 @@ Json Charter::describeRun() const {
     header["versions"] = versionsJson();
     header["build"] = build_;
     header["noise_target"] = options_.truth.noise;
+    header["judged_block"] = options_.truth.block;
     header["noise_share"] = kNoiseShare;
     header["frames"] = {{"warm_up", limits_.warmUp},
                         {"fewest", limits_.fewest},
@@ -203,6 +204,8 @@ Json Charter::describeView(const ChartView& view) {
                           {"noise", judged.truth.noise},
                           {"samples", judged.truth.samples},
                           {"name", judged.truth.name},
+                          {"picture_noise", judged.picture().noise},
+                          {"picture_samples", judged.picture().samples},
                           {"shipped", judged.isShipped}});
     return {{"id", view.id()},
             {"scene", view.sceneName()},
@@ -228,7 +231,8 @@ std::string Charter::truthKey(const ChartView& view, const ChartedPoint& point) 
     std::string text = kProtocol;
     for (const int bounces : {modelledBounces(point.sweep.parameters), 0})
         if (const auto truth = view.truths().find(bounces); truth != view.truths().end())
-            text += fmt::format(" {} {}", truth->second.truth.name, truth->second.truth.samples);
+            text += fmt::format(" {} {} {}", truth->second.truth.name, truth->second.truth.samples,
+                                truth->second.picture().samples);
     return shortHash(text);
 }
 

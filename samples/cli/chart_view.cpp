@@ -73,27 +73,42 @@ bool ChartView::loadShipped(JudgedTruth& judged) const {
 }
 
 void ChartView::obtainTruths(const std::set<int>& bounces, const TruthOptions& options) {
-    TruthRequest request;
-    request.bounces.clear();
+    const studio::GBuffer& gbuffer = inputs_.gbuffer();
+    picks_.emplace(gbuffer.width, gbuffer.height, options.block);
+    std::vector<int> wanted;
     for (const int count : bounces) {
         JudgedTruth shipped;
         shipped.truth.bounces = count;
-        if (options.takesShipped && loadShipped(shipped))
+        if (options.takesShipped && picks_->areAll() && loadShipped(shipped))
             addTruth(std::move(shipped));
         else
-            request.bounces.push_back(count);
+            wanted.push_back(count);
     }
-    if (request.bounces.empty()) return;
-    request.noise = options.noise;
+    if (wanted.empty()) return;
+    std::vector<Truth> wholes;
+    if (!picks_->areAll() && options.pictureNoise > 0.0)
+        wholes = trace(gbuffer, wanted, options, options.pictureNoise);
+    std::vector<Truth> judged = picks_->areAll()
+                                    ? trace(gbuffer, wanted, options, options.noise)
+                                    : trace(picks_->pick(gbuffer), wanted, options, options.noise);
+    for (std::size_t i = 0; i < judged.size(); ++i) {
+        JudgedTruth truth;
+        truth.truth = std::move(judged[i]);
+        if (!wholes.empty()) truth.whole = std::move(wholes[i]);
+        addTruth(std::move(truth));
+    }
+}
+
+std::vector<Truth> ChartView::trace(const studio::GBuffer& gbuffer, const std::vector<int>& bounces,
+                                    const TruthOptions& options, double noise) const {
+    TruthRequest request;
+    request.bounces = bounces;
+    request.noise = noise;
     request.seconds = options.seconds;
     request.takesKept = options.takesKept;
     request.directory = options.directory;
     request.progress = options.progress;
-    for (Truth& truth : cli::obtainTruths(*scene_, inputs_.gbuffer(), request)) {
-        JudgedTruth judged;
-        judged.truth = std::move(truth);
-        addTruth(std::move(judged));
-    }
+    return cli::obtainTruths(*scene_, gbuffer, request);
 }
 
 bool ChartView::isBlack() const {
@@ -104,10 +119,16 @@ bool ChartView::isBlack() const {
 void ChartView::addTruth(JudgedTruth judged) {
     judged.isBlack = true;
     for (const char* channel : {"R", "G", "B"})
-        for (const float value : judged.truth.image.plane(channel))
+        for (const float value : judged.picture().image.plane(channel))
             judged.isBlack = judged.isBlack && value == 0.0f;
-    addLayers(judged.truth.image);
-    judged.exposure = studio::autoExposure(studio::composite(judged.truth.image));
+    studio::Image layers(inputs_.gbuffer().width, inputs_.gbuffer().height);
+    addLayers(layers);
+    const auto complete = [](studio::Image& image, studio::Image from) {
+        for (auto& [name, plane] : from.channels) image.channels[name] = std::move(plane);
+    };
+    complete(judged.truth.image, picks_->pick(layers));
+    if (judged.whole) complete(judged.whole->image, std::move(layers));
+    judged.exposure = studio::autoExposure(studio::composite(judged.picture().image));
     truths_[judged.truth.bounces] = std::move(judged);
 }
 

@@ -4,16 +4,20 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 
+#include "pixel_picks.h"
 #include "reference_cache.h"
 #include "render_inputs.h"
 
 namespace cli {
 
 struct TruthOptions {
-    double noise = 1e-3;        // relMSE
+    int block = 1;              // irradiance is judged at one pixel of each block x block; 1: at all
+    double noise = 1e-3;        // relMSE at the judged pixels
+    double pictureNoise = 0.0;  // of whole pictures, where the judged pixels are fewer; 0: none are made
     double seconds = 0.0;       // for each view, 0: no limit
     bool takesShipped = false;  // shipped one-bounce references where they fit
     bool takesKept = false;     // those in the cache, whatever their noise
@@ -22,7 +26,9 @@ struct TruthOptions {
 };
 
 struct JudgedTruth {
-    Truth truth;
+    Truth truth;                 // at the view's judged pixels
+    std::optional<Truth> whole;  // of every pixel, where the judged ones are fewer
+    const Truth& picture() const { return whole ? *whole : truth; }
     bool isShipped = false;
     bool isBlack = false;   // no light: errors relative to it have no meaning
     float exposure = 1.0f;  // of its composite
@@ -43,18 +49,22 @@ public:
     void obtainTruths(const std::set<int>& bounces, const TruthOptions& options);
     const std::map<int, JudgedTruth>& truths() const { return truths_; }
     bool isBlack() const;  // in all its truths
+    const PixelPicks& picks() const { return *picks_; }  // since obtainTruths: the judged pixels
     // Irradiance with the layers of this view, for comparisons and composites.
     studio::Image withLayers(const studio::PlanarBuffer& irradiance) const;
 
 private:
     bool loadShipped(JudgedTruth& truth) const;
     void addTruth(JudgedTruth judged);
+    std::vector<Truth> trace(const studio::GBuffer& gbuffer, const std::vector<int>& bounces,
+                             const TruthOptions& options, double noise) const;
     void addLayers(studio::Image& image) const;
 
     std::shared_ptr<studio::RayScene> scene_;
     std::string camera_;
     RenderInputs inputs_;
     std::map<int, JudgedTruth> truths_;  // by bounces
+    std::optional<PixelPicks> picks_;
 };
 
 // Cameras that keyframes don't move; of those the first alone, or all.

@@ -15,9 +15,10 @@ namespace cli {
 namespace {
 
 constexpr const char* kQuickScenes[] = {"cornell", "rooms"};
-constexpr const char* kSize = "640x360";
+constexpr const char* kSize = "1280x720";
 constexpr const char* kQuickSize = "320x180";  // of the shipped references
 constexpr double kNoise = 1e-3, kQuickNoise = 4e-3;
+constexpr int kBlock = 4;  // as a chart's, so that both share their truths
 
 struct Arguments {
     SplitOptions split;
@@ -50,6 +51,7 @@ void complete(Arguments& arguments) {
     split.truth.noise = arguments.isQuick ? kQuickNoise : kNoise;
     if (!arguments.noise.empty()) split.truth.noise = parseNumber("--noise", arguments.noise);
     if (!(split.truth.noise > 0.0)) throw UsageError("--noise: expected a relMSE above 0");
+    if (split.truth.block == 0) split.truth.block = arguments.isQuick ? 1 : kBlock;
     split.truth.takesShipped = arguments.isQuick;
 }
 
@@ -95,7 +97,15 @@ void addSplit(CLI::App& app) {
                       "About a minute: 320x180, two scenes with shipped references, one bounce");
     command->add_option("--cameras", arguments->cameras, "all (but keyframed ones) or first")
         ->capture_default_str();
-    command->add_option("--size", arguments->size, "Picture size, WIDTHxHEIGHT; default: 640x360");
+    command->add_option("--size", arguments->size, "Picture size, WIDTHxHEIGHT; default: 1280x720");
+    options.truth.block = 0;
+    command
+        ->add_option(
+            "--judge-one-of", options.truth.block,
+            "N: split the error at one pixel of each N x N; default: 4 (with --quick 1, all pixels)")
+        ->check(CLI::Range(1, 64));
+    command->add_flag("--kept-truths", options.truth.takesKept,
+                      "Take the cache's truths as they are; trace only where it has none");
     command->add_option("--noise", arguments->noise, "relMSE to which truths are traced; default: 1e-3");
     command
         ->add_option("--truth-seconds", options.truth.seconds,

@@ -32,7 +32,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kSplitFormat = "lightwell-split 1";
-constexpr const char* kProtocol = "split 1";  // raise it when the way of measuring changes
+constexpr const char* kProtocol = "split 2";  // raise it when the way of measuring changes
 
 // Values at which a technique's pictures are not coarsened, of whichever of the parameters it has
 // (docs/adding-a-technique.md).
@@ -64,7 +64,8 @@ private:
     Json splitPoint(const ChartView& view, const ChartedPoint& point, const std::string& note);
     studio::Image render(const ChartView& view, const Parameters& parameters,
                          std::vector<studio::VplRecord>* vpls);
-    studio::Image sumExactly(const ChartView& view, const std::vector<studio::VplRecord>& vpls,
+    studio::Image sumExactly(const ChartView& view, const studio::GBuffer& judged,
+                             const std::vector<studio::VplRecord>& vpls,
                              const std::function<void(double)>& progress) const;
     void report(double ofView, const std::string& note);
     const JudgedTruth& allBounces(const ChartView& view, const JudgedTruth& own) const;
@@ -103,6 +104,7 @@ Json Splitter::describeRun() const {
     header["patterns"] = options_.patterns;
     header["build"] = build_;
     header["noise_target"] = options_.truth.noise;
+    header["judged_block"] = options_.truth.block;
     return header;
 }
 
@@ -213,14 +215,14 @@ studio::Image Splitter::render(const ChartView& view, const Parameters& paramete
     return image;
 }
 
-studio::Image Splitter::sumExactly(const ChartView& view, const std::vector<studio::VplRecord>& vpls,
+studio::Image Splitter::sumExactly(const ChartView& view, const studio::GBuffer& judged,
+                                   const std::vector<studio::VplRecord>& vpls,
                                    const std::function<void(double)>& progress) const {
     studio::PathTracerOptions tracer;
     tracer.vpls = &vpls;
     tracer.progress = [&](double fraction, double) { progress(fraction); };
-    const studio::Image traced =
-        studio::tracePaths(view.inputs().scene(), view.inputs().gbuffer(), tracer);
-    studio::Image image(options_.width, options_.height);
+    const studio::Image traced = studio::tracePaths(view.inputs().scene(), judged, tracer);
+    studio::Image image(judged.width, judged.height);
     for (const char* channel : {"R", "G", "B"})
         image.plane(channel) = traced.plane(std::string("bounce1.") + channel);
     return image;
@@ -236,17 +238,18 @@ Json Splitter::splitPoint(const ChartView& view, const ChartedPoint& point, cons
     const JudgedTruth& all = allBounces(view, own);
     studio::ErrorSplitter splitter(own.truth.image, all.truth.image);
     const int patterns = point.sweep.parameters.has("seed") ? options_.patterns : 1;
+    const studio::GBuffer judged = view.picks().pick(view.inputs().gbuffer());
     std::size_t vplCount = 0;
     for (int seed = 0; seed < patterns; ++seed) {
         const Parameters parameters = withSeed(point.sweep.parameters, seed);
         std::vector<studio::VplRecord> vpls;
         const studio::Image rendered = render(view, parameters, &vpls);
         const studio::Image full = render(view, atFullResolution(parameters), nullptr);
-        const studio::Image exact = sumExactly(view, vpls, [&](double fraction) {
+        const studio::Image exact = sumExactly(view, judged, vpls, [&](double fraction) {
             report(0.0, fmt::format("{}, pattern {} of {}, {:.0f} %", note, seed + 1, patterns,
                                     100.0 * fraction));
         });
-        splitter.add(rendered, full, exact);
+        splitter.add(view.picks().pick(rendered), view.picks().pick(full), exact);
         vplCount = vpls.size();
     }
     const studio::ErrorSplit split = splitter.result();

@@ -12,7 +12,7 @@ struct SplitOptions {
     std::vector<std::string> scenes, techniques;
     std::vector<std::string> only;  // as in a chart; empty: defaults and named settings
     std::string folder, device;
-    int width = 640, height = 360;
+    int width = 1280, height = 720;
     int deviceWidth = 0;  // lanes per work-item; 0: by probe
     int patterns = 4;     // seeds that the sampling's share is estimated from
     bool firstCameraOnly = false, skipsAllBounces = false;

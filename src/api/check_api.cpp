@@ -1,12 +1,37 @@
 // Entry points: checking inputs.
 #include <algorithm>
+#include <cstring>
 
 #include "api/call.h"
 #include "api/frame_arguments.h"
 #include "api/structs.h"
+#include "compute/raw_enum.h"
+#include "inputs/image_check.h"
 #include "inputs/input_check.h"
 
 using namespace lightwell;
+
+namespace {
+
+bool sameImage(const LWImage& a, const LWImage& b) {
+    return a.host == b.host && a.clMem == b.clMem && rawEnum(a.format) == rawEnum(b.format) &&
+           a.byteOffset == b.byteOffset && a.byteRowStride == b.byteRowStride &&
+           a.bytePixelStride == b.bytePixelStride && a.bytePlaneStride == b.bytePlaneStride;
+}
+
+// The same pixels seen by the same cameras.
+bool sameGBuffer(const LWGBuffer& a, const LWGBuffer& b) {
+    for (LWImage LWGBuffer::*image :
+         {&LWGBuffer::position, &LWGBuffer::depth, &LWGBuffer::normal, &LWGBuffer::albedo,
+          &LWGBuffer::directRadiance, &LWGBuffer::roughness, &LWGBuffer::motion,
+          &LWGBuffer::receiveMask})
+        if (!sameImage(a.*image, b.*image)) return false;
+    return rawEnum(a.depthKind) == rawEnum(b.depthKind) &&
+           std::memcmp(&a.camera, &b.camera, sizeof a.camera) == 0 &&
+           std::memcmp(&a.previousCamera, &b.previousCamera, sizeof a.previousCamera) == 0;
+}
+
+}  // namespace
 
 std::uint32_t lwCountInputFaults(void) {
     return std::uint32_t(inputFaults().size());
@@ -36,6 +61,8 @@ LWStatus lwCheckInputs(LWView view, const LWFrame* frame, const LWGBuffer* gbuff
                  " findings, got null");
         if (!frame && !gbuffer)
             fail(LW_ERROR_INVALID_ARGUMENT, "frame, gbuffer: expected at least one, got null");
+        // As everywhere, an image of which nothing is set is none.
+        if (overlay && imageAbsent(*overlay)) overlay = nullptr;
         if (overlay && !gbuffer)
             fail(LW_ERROR_INVALID_ARGUMENT, "overlay: expected a gbuffer to draw it over, got null");
 
@@ -57,9 +84,8 @@ LWStatus lwCheckInputs(LWView view, const LWFrame* frame, const LWGBuffer* gbuff
             names.push_back("frame.sourceViews[" + std::to_string(i) + "].gbuffer");
             held.push_back(call.viewOfDevice(source.view, names.back().c_str()));
             // The view's own G-buffer, handed over twice as is usual.
-            const bool again = gbuffer && source.view == view &&
-                               source.gbuffer->normal.host == ownGBuffer.normal.host &&
-                               source.gbuffer->normal.clMem == ownGBuffer.normal.clMem;
+            const bool again =
+                gbuffer && source.view == view && sameGBuffer(*source.gbuffer, ownGBuffer);
             if (!again) views.push_back({held.back().get(), source.gbuffer, names.back().c_str()});
         }
         const SyncArgument sync(checkedFrame ? checkedFrame->sync : nullptr,

@@ -30,17 +30,35 @@ void refuseBadImages(Device& device, const LWFrame* frame, const std::vector<Che
     if (overlay) OutputTarget::check(device, *views[0].view, *overlay, 3, "overlay");
 }
 
-std::vector<LightMaps> readLights(Executor& executor, const LWFrame* frame) {
-    std::vector<LightMaps> lights;
-    for (std::uint32_t l = 0; frame && l < frame->lightCount; ++l) {
-        const LWLight& light = frame->lights[l];
-        LightMaps maps{&light, "frame.lights[" + std::to_string(l) + "]", {}};
-        for (std::uint32_t r = 0; r < light.rsmCount; ++r)
-            maps.maps.push_back(
-                readRsm(executor, light, light.rsms[r], maps.name + ".rsms[" + std::to_string(r) + "]"));
-        lights.push_back(std::move(maps));
+LightMaps readLight(Executor& executor, const LWLight& light, std::uint32_t index) {
+    LightMaps maps{&light, "frame.lights[" + std::to_string(index) + "]", {}};
+    for (std::uint32_t r = 0; r < light.rsmCount; ++r)
+        maps.maps.push_back(
+            readRsm(executor, light, light.rsms[r], maps.name + ".rsms[" + std::to_string(r) + "]"));
+    return maps;
+}
+
+void checkView(Surfaces& g, bool reset, Findings& findings) {
+    checkValues(g, findings);
+    checkPlaces(g, {}, findings);
+    const bool placed = g.trusted;  // wrong normals leave places right
+    checkNormals(g, {}, findings);
+    if (g.depth ? g.trusted : placed) checkMissingNormals(g, findings);
+    if (!reset) checkMotion(g, findings);  // across a cut, motion means nothing
+}
+
+void checkLight(std::vector<Surfaces>& views, LightMaps& light, Findings& findings) {
+    std::vector<NamedCamera> cameras;
+    for (const Surfaces& g : views)
+        if (g.camera) cameras.push_back({g.name + ".camera", &*g.camera});
+    for (Surfaces& map : light.maps) {
+        checkValues(map, findings);
+        checkPlaces(map, cameras, findings);
+        checkNormals(map, cameras, findings);
     }
-    return lights;
+    checkLightCamera(light, findings);
+    for (Surfaces& g : views) checkSpaces(g, light, findings);
+    checkFlux(views.empty() ? nullptr : &views[0], light, findings);
 }
 
 // Grey by the angle to the viewer, or to the vertical without a camera.
@@ -96,26 +114,15 @@ std::vector<LWInputFinding> checkInputs(Executor& executor, const LWFrame* frame
     for (const CheckedView& view : views)
         buffers.push_back(
             readGBuffer(executor, *view.gbuffer, view.view->width, view.view->height, view.name));
-    std::vector<LightMaps> lights = readLights(executor, frame);
-
-    std::vector<NamedCamera> cameras;
-    for (Surfaces& g : buffers) {
-        checkValues(g, findings);
-        checkPlaces(g, {}, findings);
-        checkNormals(g, {}, findings);
-        checkMotion(g, findings);
-        if (g.camera) cameras.push_back({g.name + ".camera", &*g.camera});
+    if (overlay) buffers[0].shown = true;
+    for (Surfaces& g : buffers) checkView(g, frame && frame->reset, findings);
+    // One light's maps at a time: a frame may have more of them than fit into memory as floats.
+    for (std::uint32_t l = 0; frame && l < frame->lightCount; ++l) {
+        LightMaps light = readLight(executor, frame->lights[l], l);
+        checkLight(buffers, light, findings);
     }
-    for (LightMaps& light : lights) {
-        for (Surfaces& map : light.maps) {
-            checkValues(map, findings);
-            checkPlaces(map, cameras, findings);
-            checkNormals(map, cameras, findings);
-        }
-        for (const Surfaces& g : buffers) checkSpaces(g, light, findings);
-        checkFlux(buffers.empty() ? nullptr : &buffers[0], light, findings);
-    }
-    for (const Surfaces& g : buffers) checkDirect(g, lights, findings);
+    for (const Surfaces& g : buffers)
+        if (frame) checkDirect(g, frame->lights, frame->lightCount, findings);
 
     std::vector<Found> found = findings.takeSorted();
     if (overlay) drawOverlay(executor, *views[0].view, buffers[0], found, *overlay);

@@ -1,12 +1,12 @@
 // Flux against the light. Through a texel comes E_perp * A_texel from a sun and I(w) * Omega_texel from
 // a lamp; flux over that is the albedo of the surface, which the G-buffer knows where it sees the same
 // surface. A common factor between the two, or the sRGB curve, names the mistake. Without such places
-// only bounds are left: no surface reflects more than it gets. (A little over 300 lines: figures, names
-// of factors and reports are of one piece.)
+// only bounds are left: no surface reflects more than it gets.
 #include <algorithm>
 #include <cmath>
 
 #include "inputs/input_check_parts.h"
+#include "inputs/input_light.h"
 
 namespace lightwell {
 namespace {
@@ -20,46 +20,18 @@ constexpr double kLowest = 0.7, kHighest = 1.4;
 constexpr double kNamed = 0.12;
 // Darker albedo is mostly rounding.
 constexpr double kDarkest = 0.02;
+// And no material but black velvet reflects less than this.
+constexpr double kBlackest = 0.01;
 // sRGB is named when it explains the ratios this much better than nothing does, and well.
 constexpr double kCurveResidual = 0.1, kCurveGain = 0.4, kPlainResidual = 0.15;
 // More than all light: albedo of 1 and rounding.
 constexpr double kWholePower = 1.02;
-// Share of pixels with one and the same factor that makes it the factor of the picture, and the share
-// that may at most have none: the fully lit ones, in no scene tried below a tenth of the lit.
-constexpr double kPeakShare = 0.2, kNoPeakShare = 0.03, kPeakWidth = 0.04;
 
 double srgbDecode(double v) {
     return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
 }
 double srgbEncode(double v) {
     return v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
-}
-
-double coneFalloff(const LWLight& light, const glm::dvec3& way) {
-    if (light.kind != LW_LIGHT_SPOT) return 1.0;
-    const glm::dvec3 axis(light.direction[0], light.direction[1], light.direction[2]);
-    const double length = glm::length(axis);
-    if (!(length > 0.0)) return 1.0;
-    // KHR_lights_punctual.
-    const double cosine = glm::dot(way, axis / length), inner = std::cos(double(light.innerConeAngle)),
-                 outer = std::cos(double(light.outerConeAngle));
-    const double ramp = std::min(1.0, std::max(0.0, (cosine - outer) / std::max(1e-3, inner - outer)));
-    return ramp * ramp;
-}
-
-glm::dvec3 emitted(const LWLight& light) {
-    const float* v = light.kind == LW_LIGHT_DIRECTIONAL ? light.irradiance : light.radiantIntensity;
-    return {double(v[0]), double(v[1]), double(v[2])};
-}
-
-// Flux through a texel.
-glm::dvec3 incidentFlux(const LWLight& light, const Surfaces& map, std::uint32_t x, std::uint32_t y) {
-    const Camera& camera = *map.camera;
-    if (!camera.perspective()) return emitted(light) * camera.pixelArea();
-    const glm::dvec3 ray = camera.rays().at(x, y);  // 1 long along the axis
-    const double length = glm::length(ray);
-    return emitted(light) *
-           (coneFalloff(light, ray / length) * camera.pixelArea() / (length * length * length));
 }
 
 // Flux over incident flux, and the albedo of the same place in the G-buffer.
@@ -88,6 +60,8 @@ struct FluxFigures {
     std::vector<double> ratios;
     double flux = 0.0, incident = 0.0;  // W, of the examined texels with flux, channels added
     std::uint64_t lit = 0, surfaces = 0, impossible = 0, fluxTexels = 0;
+    // Texels that the light reaches; those of the same place as a pixel; of these, not black ones.
+    std::uint64_t reached = 0, matched = 0, bright = 0;
     double texels = 0.0;  // of one map
 };
 
@@ -101,10 +75,18 @@ void addMap(const Surfaces* g, const LWLight& light, const Surfaces& map, FluxFi
         const glm::dvec3 incident = incidentFlux(light, map, x, y);
         const double in = incident.x + incident.y + incident.z, out = flux.x + flux.y + flux.z;
         // Rims of cones: rounding of the edge itself.
-        if (!(in > 1e-3 * (emitted(light).x + emitted(light).y + emitted(light).z) *
-                       map.camera->pixelArea()) ||
-            !(out > 0.0))
+        if (!(in >
+              1e-3 * (emitted(light).x + emitted(light).y + emitted(light).z) * map.camera->pixelArea()))
             return;
+        ++figures.reached;
+        const glm::dvec3 p = map.position.triple(x, y);
+        glm::dvec3 albedo(0.0);
+        const bool known =
+            g && map.trusted &&
+            albedoOf(*g, p, map.unitNormal(x, y), map.camera->footprint(map.camera->axial(p)), albedo);
+        figures.matched += known;
+        figures.bright += known && std::max({albedo.x, albedo.y, albedo.z}) >= kDarkest;
+        if (!(out > 0.0)) return;
         ++figures.lit;
         figures.flux += out;
         figures.incident += in;
@@ -112,11 +94,7 @@ void addMap(const Surfaces* g, const LWLight& light, const Surfaces& map, FluxFi
         bool impossible = false;
         for (int c = 0; c < 3; ++c) impossible = impossible || flux[c] > kWholePower * incident[c];
         figures.impossible += impossible;
-        glm::dvec3 albedo;
-        const glm::dvec3 p = map.position.triple(x, y);
-        if (!g || !map.trusted ||
-            !albedoOf(*g, p, map.unitNormal(x, y), map.camera->footprint(map.camera->axial(p)), albedo))
-            return;
+        if (!known) return;
         for (int c = 0; c < 3; ++c)
             if (albedo[c] >= kDarkest && flux[c] > 0.0 && incident[c] > 0.0)
                 figures.pairs.push_back({flux[c] / incident[c], albedo[c]});
@@ -213,7 +191,7 @@ bool reportCurve(const Surfaces& g, const LightMaps& light, const FluxFigures& f
                             "albedo and RSM flux over incident flux differ by ",
                             100.0 * (std::exp(plain) - 1.0), " % (mean over quantiles), and by ",
                             100.0 * (std::exp(best) - 1.0), " % after the sRGB curve: ", text);
-    if (gbuffer)
+    if (gbuffer && g.shown)
         g.sample([&](std::uint32_t x, std::uint32_t y) {
             if (g.surface(x, y)) f.pixels.push_back(y * g.width + x);
         });
@@ -251,9 +229,29 @@ void reportBounds(const LightMaps& light, const FluxFigures& figures, Findings& 
                      percent(figures.impossible, figures.lit),
                      " of the lit texels reflect more than the light brings them: albedo above 1, or "
                      "flux that is not this light's alone");
-    } else if (medianOf(figures.ratios) < 0.5 / figures.texels * 8.0) {
+    } else if (medianOf(figures.ratios) < std::min(kBlackest, 0.5 / figures.texels * 8.0)) {
         reportFactor(light, figures, whole / 0.5, false, findings);
     }
+}
+
+// No flux at all. Right where the light reaches nothing, or black things alone (metals have no diffuse
+// albedo).
+void reportEmpty(const LightMaps& light, const FluxFigures& figures, Findings& findings) {
+    const std::string rsms = light.name + ".rsms";
+    if (figures.reached == 0) {
+        findings.add(
+            LW_FAULT_RSM_EMPTY, LW_SEVERITY_NOTE, rsms, {0, figures.surfaces, 0.0, 1.0, 0.5},
+            "the light shines, and its RSMs show no surface that it reaches: it lights nothing, "
+            "or they were not drawn");
+        return;
+    }
+    const bool proven = figures.bright >= kFewest, black = !proven && figures.matched >= kFewest;
+    if (black && shareOf(figures.bright, figures.matched) < 0.01) return;
+    findings.add(LW_FAULT_RSM_EMPTY, proven ? LW_SEVERITY_ERROR : LW_SEVERITY_WARNING, rsms,
+                 {figures.reached, figures.reached, 0.0, 1.0, proven ? 0.95 : 0.8},
+                 "the light shines and its RSMs show surfaces, but no texel has flux: was the flux "
+                 "drawn, the right texture bound, and is it above 6e-8 W where it is half floats?",
+                 proven ? "" : " (Right where all that it reaches is black.)");
 }
 
 }  // namespace
@@ -266,16 +264,7 @@ void checkFlux(const Surfaces* g, const LightMaps& light, Findings& findings) {
     const bool hasAlbedo = g && g->albedo && g->albedoTrusted && g->camera && g->trusted;
     for (const Surfaces& map : light.maps)
         if (map.camera && map.flux) addMap(hasAlbedo ? g : nullptr, *light.light, map, figures);
-    if (figures.fluxTexels == 0) {
-        findings.add(LW_FAULT_RSM_EMPTY, figures.surfaces ? LW_SEVERITY_ERROR : LW_SEVERITY_NOTE,
-                     light.name + ".rsms",
-                     {figures.surfaces, figures.surfaces, 0.0, 1.0, figures.surfaces ? 0.9 : 0.5},
-                     figures.surfaces ? "the light shines and its RSMs show surfaces, but no texel has "
-                                        "flux: was the flux drawn, and the right texture bound?"
-                                      : "the light shines, and its RSMs show no surface: it lights "
-                                        "nothing, or they were not drawn");
-        return;
-    }
+    if (figures.fluxTexels == 0) return reportEmpty(light, figures, findings);
     if (figures.pairs.size() < kFewest) return reportBounds(light, figures, findings);
     std::vector<double> logs;
     for (const Pair& pair : figures.pairs) logs.push_back(std::log(pair.ratio / pair.albedo));
@@ -285,64 +274,6 @@ void checkFlux(const Surfaces* g, const LightMaps& light, Findings& findings) {
         std::min(residual(figures.pairs, srgbDecode), residual(figures.pairs, srgbEncode));
     if (curve <= std::max(asFactor, 0.02) && reportCurve(*g, light, figures, findings)) return;
     if (factor > kHighest || factor < kLowest) reportFactor(light, figures, factor, true, findings);
-}
-
-void checkDirect(const Surfaces& g, const std::vector<LightMaps>& lights, Findings& findings) {
-    if (!g.direct || !g.albedo || !g.albedoTrusted || !g.trusted || lights.empty()) return;
-    static constexpr struct {
-        double factor;
-        const char* text;
-    } kFactors[] = {
-        {1.0, ""},
-        {kPi, "it is pi times what albedo / pi * E makes: the 1/pi of a diffuse surface is missing"},
-        {1 / kPi, "it is 1/pi of what albedo / pi * E makes: divided by pi twice"},
-        {2.0, "it is twice what albedo / pi * E makes"},
-        {0.5, "it is half of what albedo / pi * E makes"}};
-    std::uint64_t peaks[std::size(kFactors)] = {}, examined = 0;
-    std::vector<std::uint32_t> pixels;
-    for (const LightMaps& light : lights) {
-        const glm::dvec3 sent = emitted(*light.light);
-        if (!(sent.x + sent.y + sent.z > 0.0)) return;
-    }
-    g.sample([&](std::uint32_t x, std::uint32_t y) {
-        if (!g.surface(x, y)) return;
-        const glm::dvec3 p = g.position.triple(x, y), n = g.unitNormal(x, y),
-                         albedo = g.albedo.triple(x, y), direct = g.direct.triple(x, y);
-        glm::dvec3 irradiance(0.0);
-        for (const LightMaps& light : lights) {
-            const LWLight& l = *light.light;
-            glm::dvec3 way(l.direction[0], l.direction[1], l.direction[2]);
-            if (l.kind == LW_LIGHT_DIRECTIONAL) {
-                const double length = glm::length(way);
-                if (length > 0.0) irradiance += emitted(l) * std::max(0.0, glm::dot(n, -way / length));
-                continue;
-            }
-            way = p - glm::dvec3(l.position[0], l.position[1], l.position[2]);
-            const double distance = glm::length(way);
-            irradiance +=
-                emitted(l) * (coneFalloff(l, way / distance) *
-                              std::max(0.0, glm::dot(n, -way / distance)) / (distance * distance));
-        }
-        const double wanted =
-            (albedo.x * irradiance.x + albedo.y * irradiance.y + albedo.z * irradiance.z) / kPi;
-        const double given = direct.x + direct.y + direct.z;
-        if (!(wanted > 0.0) || !std::isfinite(wanted) || !(given > 0.0) || !std::isfinite(given)) return;
-        ++examined;
-        pixels.push_back(y * g.width + x);
-        for (std::size_t k = 0; k < std::size(kFactors); ++k)
-            peaks[k] += std::abs(std::log(given / wanted / kFactors[k].factor)) < kPeakWidth;
-    });
-    if (examined < kFewest || shareOf(peaks[0], examined) > kNoPeakShare) return;
-    for (std::size_t k = 1; k < std::size(kFactors); ++k) {
-        if (shareOf(peaks[k], examined) < kPeakShare) continue;
-        Found& f = findings.add(LW_FAULT_DIRECT_SCALE, LW_SEVERITY_ERROR, g.argument("directRadiance"),
-                                {peaks[k], examined, kFactors[k].factor, 1.0, 0.9}, "for ",
-                                percent(peaks[k], examined), " of the lit pixels ", kFactors[k].text,
-                                "; nearly none have the right value");
-        f.pixels = std::move(pixels);
-        f.step = g.step;
-        return;
-    }
 }
 
 }  // namespace lightwell

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compute/error.h"
 #include "inputs/input_check_parts.h"
 
 namespace lightwell {
@@ -29,15 +30,57 @@ struct Guess {
 
 struct Sample {
     glm::dvec2 given, expected;
+    glm::dvec2 steady;  // what is expected of motion without the jitter that the matrices hold
+    double rounding;    // of the position, in pixels
     std::uint32_t pixel;
+
+    double shortest() const { return std::min(glm::length(expected), glm::length(steady)); }
+    bool fits(const glm::dvec2& motion) const {
+        const auto near = [&](const glm::dvec2& wanted) {
+            return glm::length(motion - wanted) <=
+                   kAbsolutePixels + rounding + kRelative * glm::length(wanted);
+        };
+        return near(expected) || near(steady);
+    }
 };
 
 std::uint64_t matches(const std::vector<Sample>& samples, const glm::dvec2& factor) {
     std::uint64_t count = 0;
-    for (const Sample& sample : samples)
-        count += glm::length(sample.given * factor - sample.expected) <=
-                 kAbsolutePixels + kRelative * glm::length(sample.expected);
+    for (const Sample& sample : samples) count += sample.fits(sample.given * factor);
     return count;
+}
+
+// Temporal anti-aliasing moves the whole picture by part of a pixel, another one each frame: rows x and
+// y of the projection change by a small share of its last row. Motion holds that in some engines and not
+// in others, and both serve. The previous camera with this frame's jitter; none where nothing or more
+// differs.
+std::optional<Camera> withoutJitter(const Surfaces& s) {
+    LWCamera steady = *s.previousMatrices;
+    const float *now = s.matrices->projection, *last = steady.projection + 12;
+    double length2 = 0.0;
+    for (int c = 0; c < 4; ++c) length2 += double(last[c]) * double(last[c]);
+    bool any = false;
+    for (int row = 0; row < 2; ++row) {
+        float* before = steady.projection + 4 * row;
+        double shift = 0.0, rest = 0.0, size = 0.0;
+        for (int c = 0; c < 4; ++c)
+            shift += (double(before[c]) - double(now[4 * row + c])) * double(last[c]) / length2;
+        for (int c = 0; c < 4; ++c) {
+            rest = std::max(
+                rest, std::abs(double(before[c]) - shift * double(last[c]) - double(now[4 * row + c])));
+            size = std::max(size, std::abs(double(now[4 * row + c])));
+        }
+        const double pixel = 2.0 / (row == 0 ? s.width : s.height);
+        if (rest > 1e-5 * size || std::abs(shift) > pixel) return std::nullopt;
+        any = any || shift != 0.0;
+        std::copy_n(now + 4 * row, 4, before);
+    }
+    if (!any) return std::nullopt;
+    try {
+        return Camera(steady, s.width, s.height, s.argument("previousCamera"));
+    } catch (const Error&) {
+        return std::nullopt;
+    }
 }
 
 // Cameras at rest: no pixel of a resting surface moves.
@@ -55,44 +98,41 @@ void checkStatic(const Surfaces& s, const std::vector<Sample>& still, Findings& 
         " of the pixels move (by up to ", longest,
         " pixels) while camera and previousCamera are equal: keep the last frame's camera for "
         "previousCamera");
-    for (const Sample& sample : still) f.pixels.push_back(sample.pixel);
+    if (s.shown)
+        for (const Sample& sample : still) f.pixels.push_back(sample.pixel);
     f.step = s.step;
 }
 
-}  // namespace
+struct Samples {
+    std::vector<Sample> moved, still;  // by the cameras
+};
 
-void checkMotion(const Surfaces& s, Findings& findings) {
-    if (!s.motion || !s.camera || !s.previous || !s.trusted) return;
-    std::vector<Sample> moved, still;
-    std::vector<double> lengths, expected;
+Samples samplesOf(const Surfaces& s) {
+    Samples samples;
+    const std::optional<Camera> steadyPrevious = withoutJitter(s);
     s.sample([&](std::uint32_t x, std::uint32_t y) {
         const glm::dvec2 given(double(s.motion.at(x, y, 0)), double(s.motion.at(x, y, 1)));
-        glm::dvec2 before;
+        glm::dvec2 before, steady;
+        const glm::dvec3 p = s.position.triple(x, y);
         if (!s.surface(x, y) || !std::isfinite(given.x) || !std::isfinite(given.y)) return;
-        if (!s.previous->project(s.position.triple(x, y), before)) return;  // it was behind the camera
-        const Sample sample{given, before - glm::dvec2(x + 0.5, y + 0.5), y * s.width + x};
-        if (glm::length(sample.expected) >= kShortest) {
-            moved.push_back(sample);
-            lengths.push_back(glm::length(given));
-            expected.push_back(glm::length(sample.expected));
-        } else {
-            still.push_back(sample);
-        }
+        if (!s.previous->project(p, before)) return;  // it was behind the camera
+        if (!steadyPrevious || !steadyPrevious->project(p, steady)) steady = before;
+        const glm::dvec2 centre(x + 0.5, y + 0.5);
+        const double rounding = s.rounding(p) / s.previous->footprint(s.previous->axial(p));
+        const Sample sample{given, before - centre, steady - centre, rounding, y * s.width + x};
+        (sample.shortest() >= kShortest + rounding ? samples.moved : samples.still).push_back(sample);
     });
-    const std::uint64_t all = moved.size();
-    if (all < kFewest || all < still.size() / 16) {
-        bool equal = true;
-        for (int k = 0; k < 16; ++k)
-            equal = equal && s.matrices->view[k] == s.previousMatrices->view[k] &&
-                    s.matrices->projection[k] == s.previousMatrices->projection[k];
-        if (equal) checkStatic(s, still, findings);
-        return;
-    }
-    const std::uint64_t good = matches(moved, glm::dvec2(1.0));
-    if (shareOf(good, all) >= kRestingShare) return;
+    return samples;
+}
 
-    const double w = s.width, h = s.height;
-    const Guess guesses[] = {
+bool equalCameras(const Surfaces& s) {
+    return std::equal(s.matrices->view, s.matrices->view + 16, s.previousMatrices->view) &&
+           std::equal(s.matrices->projection, s.matrices->projection + 16,
+                      s.previousMatrices->projection);
+}
+
+std::vector<Guess> guessesFor(double w, double h) {
+    return {
         {LW_FAULT_MOTION_SIGN,
          {-1, -1},
          "its sign is turned: Lightwell wants the previous position less this one; or camera "
@@ -122,8 +162,14 @@ void checkMotion(const Surfaces& s, Findings& findings) {
          "it is in clip coordinates and this position less the previous: multiply by "
          "-width/2 and height/2"},
     };
+}
+
+// The guess that makes clearly more vectors right than the `good` that are; null where none does.
+const Guess* bestOf(const std::vector<Guess>& guesses, const std::vector<Sample>& moved,
+                    std::uint64_t good, std::uint64_t& bestCount) {
     const Guess* best = nullptr;
-    std::uint64_t bestCount = good;
+    const std::uint64_t all = moved.size();
+    bestCount = good;
     for (const Guess& guess : guesses) {
         const std::uint64_t count = matches(moved, guess.factor);
         if (shareOf(count, all) < kRestingShare ||
@@ -133,8 +179,32 @@ void checkMotion(const Surfaces& s, Findings& findings) {
         best = &guess;
         bestCount = count;
     }
-    std::uint64_t zero = 0;
-    for (const double length : lengths) zero += length == 0.0;
+    return best;
+}
+
+}  // namespace
+
+void checkMotion(const Surfaces& s, Findings& findings) {
+    if (!s.motion || !s.camera || !s.previous || !s.trusted) return;
+    const Samples samples = samplesOf(s);
+    const std::vector<Sample>& moved = samples.moved;
+    const std::uint64_t all = moved.size();
+    if (all < kFewest || all < samples.still.size() / 16) {
+        if (equalCameras(s)) checkStatic(s, samples.still, findings);
+        return;
+    }
+    const std::uint64_t good = matches(moved, glm::dvec2(1.0));
+    if (shareOf(good, all) >= kRestingShare) return;
+
+    const std::vector<Guess> guesses = guessesFor(s.width, s.height);
+    std::uint64_t bestCount = 0, zero = 0;
+    const Guess* const best = bestOf(guesses, moved, good, bestCount);
+    std::vector<double> lengths, expected;
+    for (const Sample& sample : moved) {
+        lengths.push_back(glm::length(sample.given));
+        expected.push_back(glm::length(sample.expected));
+        zero += lengths.back() == 0.0;
+    }
     const bool allZero = shareOf(zero, all) >= kNearlyAll;
     const double measured = medianOf(lengths), wanted = medianOf(expected);
     // Without a guess: objects may move with the camera or all over the picture.
@@ -156,9 +226,7 @@ void checkMotion(const Surfaces& s, Findings& findings) {
         " of the surfaces that the cameras move, motion is not what previousCamera says (median ",
         measured, " for ", wanted, " pixels): ", cause);
     for (const Sample& sample : moved)
-        if (glm::length(sample.given - sample.expected) >
-            kAbsolutePixels + kRelative * glm::length(sample.expected))
-            f.pixels.push_back(sample.pixel);
+        if (s.shown && !sample.fits(sample.given)) f.pixels.push_back(sample.pixel);
     f.step = s.step;
 }
 

@@ -1,12 +1,10 @@
 // Normals and depth against each other: the normal that neighbouring positions span must be the one that
 // the host gives. Depth read wrongly bends planes, and normals of another space turn away; the guess
 // that makes both agree is the cause. Interpolated and mapped normals differ from the geometry's, but at
-// random, so that no guess is better nearly everywhere. (A little over 300 lines: a dozen guesses with
-// their texts.)
+// random, so that no guess is better nearly everywhere.
 #include <cmath>
-#include <functional>
 
-#include "inputs/input_check_parts.h"
+#include "inputs/input_normal_guesses.h"
 
 namespace lightwell {
 namespace {
@@ -32,17 +30,7 @@ constexpr double kSmoothShare = 0.1;
 // in every scene tried.
 constexpr double kFlippedShare = 0.02;
 
-using Place = std::function<bool(std::uint32_t x, std::uint32_t y, glm::dvec3& p)>;
-
-struct Guess {
-    LWInputFault fault;
-    std::string text;
-    Place place;                                          // empty: as given
-    std::function<glm::dvec3(const glm::dvec3&)> normal;  // of the unit normal as given
-    bool flipX = false, flipY = false;                    // the normal of the mirrored pixel
-};
-
-glm::dvec3 normalBy(const Surfaces& s, const Guess& guess, std::uint32_t x, std::uint32_t y,
+glm::dvec3 normalBy(const Surfaces& s, const NormalGuess& guess, std::uint32_t x, std::uint32_t y,
                     const glm::dvec3& given) {
     if (guess.normal) return guess.normal(given);
     if (!guess.flipX && !guess.flipY) return given;
@@ -58,9 +46,9 @@ bool geometricNormal(const Surfaces& s, const Place& place, std::uint32_t x, std
     glm::dvec3 p, around[8];  // pairs of opposite pixels: across, down, and the diagonals
     const std::uint32_t xs[8] = {x - 1, x + 1, x, x, x - 1, x + 1, x + 1, x - 1},
                         ys[8] = {y, y, y - 1, y + 1, y - 1, y + 1, y - 1, y + 1};
-    if (!s.surface(x, y) || !place(x, y, p)) return false;
+    if (!s.drawn(x, y) || !place(x, y, p)) return false;
     for (int k = 0; k < 8; ++k)
-        if (!s.surface(xs[k], ys[k]) || !place(xs[k], ys[k], around[k])) return false;
+        if (!s.drawn(xs[k], ys[k]) || !place(xs[k], ys[k], around[k])) return false;
     for (int k = 0; k < 8; k += 2)
         if (glm::length(around[k] + around[k + 1] - 2.0 * p) >
             kSmooth * glm::length(around[k + 1] - around[k]))
@@ -84,7 +72,7 @@ struct Sample {
 std::vector<Sample> samplesOf(const Surfaces& s, const Place& given) {
     std::vector<Sample> samples;
     s.sample([&](std::uint32_t x, std::uint32_t y) {
-        if (!s.surface(x, y)) return;
+        if (!s.drawn(x, y)) return;  // read as another kind, a depth may have no place at all
         Sample sample{x, y, false, {}, s.unitNormal(x, y), s.towardsEye(s.position.triple(x, y))};
         sample.smooth = geometricNormal(s, given, x, y, sample.geometry);
         if (sample.smooth || s.depth) samples.push_back(sample);
@@ -103,7 +91,7 @@ struct Contest {
 
 // `guess` against what was given. An orthographic camera without a known direction cannot tell sides:
 // cosines then count by their size.
-Contest contest(const Surfaces& s, const std::vector<Sample>& samples, const Guess& guess) {
+Contest contest(const Surfaces& s, const std::vector<Sample>& samples, const NormalGuess& guess) {
     Contest result;
     for (const Sample& sample : samples) {
         glm::dvec3 geometry = sample.geometry;
@@ -111,7 +99,7 @@ Contest contest(const Surfaces& s, const std::vector<Sample>& samples, const Gue
             guess.place ? geometricNormal(s, guess.place, sample.x, sample.y, geometry) : sample.smooth;
         // Depth read wrongly flattens edges away: only the guess knows where ground is smooth.
         if (guess.place ? !other : !sample.smooth) continue;
-        const bool sided = sample.towards != glm::dvec3(0.0);
+        const bool sided = s.sided();
         const auto cosine = [&](const glm::dvec3& a, const glm::dvec3& b) {
             return sided ? glm::dot(a, b) : std::abs(glm::dot(a, b));
         };
@@ -124,120 +112,20 @@ Contest contest(const Surfaces& s, const std::vector<Sample>& samples, const Gue
         result.worse += before > after + kBetterBy;
         result.agreeing += after > kAgreeing;
         result.perfect += after > 1.0 - kBetterBy;
-        if (after > before + kBetterBy) result.pixels.push_back(pixel);
+        if (s.shown && after > before + kBetterBy) result.pixels.push_back(pixel);
         if (sample.smooth && sided && before < -0.5 && glm::dot(sample.normal, sample.towards) < -0.1) {
             ++result.away;
-            result.awayPixels.push_back(pixel);
+            if (s.shown) result.awayPixels.push_back(pixel);
         }
     }
     return result;
 }
 
-glm::dvec3 unit(const glm::dvec3& v) {
-    const double length = glm::length(v);
-    return length > 0.0 ? v / length : v;
-}
-
-std::vector<Guess> normalGuesses(const Surfaces& s, const std::vector<NamedCamera>& others) {
-    std::vector<Guess> guesses;
-    const Camera* own = &*s.camera;
-    guesses.push_back({LW_FAULT_NORMAL_FLIPPED,
-                       std::string("they face away from the ") + (s.isRsm ? "light" : "camera") +
-                           ": turn their sign, or the winding that they come from",
-                       {},
-                       [](const glm::dvec3& n) { return -n; }});
-    guesses.push_back(
-        {LW_FAULT_NORMAL_SPACE,
-         "they are in view space of the buffer's own camera: multiply by the transposed view rotation",
-         {},
-         [own](const glm::dvec3& n) { return unit(own->directionFromView(n)); }});
-    guesses.push_back(
-        {LW_FAULT_NORMAL_SPACE,
-         "they are in view space with z turned (a left-handed view): bring them to the world",
-         {},
-         [own](const glm::dvec3& n) {
-             return unit(own->directionFromView({n.x, n.y, -n.z}));
-         }});
-    guesses.push_back({LW_FAULT_NORMAL_ENCODED,
-                       "they are still stored as n/2 + 1/2 and were then normalised: decode first",
-                       {},
-                       [](const glm::dvec3& n) {
-                           // |2 s n - 1| = 1 for the length s that was lost; the larger root, which lies
-                           // on the side of all normals but those near (-1, -1, -1).
-                           const double sum = n.x + n.y + n.z, root = sum * sum - 2.0;
-                           return root < 0.0 ? n : unit((sum + std::sqrt(root)) * n - 1.0);
-                       }});
-    guesses.push_back({LW_FAULT_IMAGE_FLIPPED,
-                       "their rows were read the other way round: bottom-up beside positions that are "
-                       "top-down, or the reverse",
-                       {},
-                       {},
-                       false,
-                       true});
-    guesses.push_back({LW_FAULT_IMAGE_FLIPPED, "their columns were mirrored", {}, {}, true, false});
-    for (const NamedCamera& other : others) {
-        const Camera* camera = other.camera;
-        guesses.push_back(
-            {LW_FAULT_NORMAL_SPACE,
-             "they are in the view space of " + other.name + ": bring them to the world",
-             {},
-             [camera](const glm::dvec3& n) { return unit(camera->directionFromView(n)); }});
-    }
-    for (const AxesChange& change : axesChanges()) {
-        const glm::dmat3 matrix = change.matrix;
-        guesses.push_back({LW_FAULT_NORMAL_SPACE,
-                           std::string("normals and positions have different axes: ") + change.what,
-                           {},
-                           [matrix](const glm::dvec3& n) { return matrix * n; }});
-    }
-    return guesses;
-}
-
-std::vector<Guess> depthGuesses(const Surfaces& s) {
-    static constexpr struct {
-        LWDepthKind kind;
-        const char* name;
-    } kKinds[] = {{LW_DEPTH_ZERO_TO_ONE, "LW_DEPTH_ZERO_TO_ONE"},
-                  {LW_DEPTH_GL, "LW_DEPTH_GL"},
-                  {LW_DEPTH_AXIAL, "LW_DEPTH_AXIAL"},
-                  {LW_DEPTH_RADIAL, "LW_DEPTH_RADIAL"}};
-    std::vector<Guess> guesses;
-    const auto placeBy = [&s](const LwUnprojection& u, bool reversed) -> Place {
-        return [&s, u, reversed](std::uint32_t x, std::uint32_t y, glm::dvec3& p) {
-            const double depth = double(s.depth.at(x, y));
-            return unprojectDepth(u, x + 0.5, y + 0.5, reversed ? 1.0 - depth : depth, p);
-        };
-    };
-    for (const auto& kind : kKinds) {
-        LwUnprojection u{};
-        try {
-            u = s.camera->unprojection(kind.kind);
-        } catch (const std::exception&) {
-            continue;  // a distance with an orthographic camera that has no front
-        }
-        if (kind.kind == s.depthKind) {
-            if (kind.kind == LW_DEPTH_ZERO_TO_ONE || kind.kind == LW_DEPTH_GL)
-                guesses.push_back({LW_FAULT_DEPTH_REVERSED,
-                                   "1 - depth fits: the depth is reversed and the projection matrix is "
-                                   "not, or the other way "
-                                   "round. Give the matrix that the depth was drawn with",
-                                   placeBy(u, true),
-                                   {}});
-        } else {
-            guesses.push_back({LW_FAULT_DEPTH_KIND,
-                               std::string("depthKind ") + kind.name + " fits",
-                               placeBy(u, false),
-                               {}});
-        }
-    }
-    return guesses;
-}
-
 // Of several guesses that win, the one that makes most of the picture agree.
-const Guess* bestOf(const Surfaces& s, const std::vector<Sample>& samples,
-                    const std::vector<Guess>& guesses, Contest& best) {
-    const Guess* winner = nullptr;
-    for (const Guess& guess : guesses) {
+const NormalGuess* bestOf(const Surfaces& s, const std::vector<Sample>& samples,
+                          const std::vector<NormalGuess>& guesses, Contest& best) {
+    const NormalGuess* winner = nullptr;
+    for (const NormalGuess& guess : guesses) {
         Contest result = contest(s, samples, guess);
         if (result.smooth < kFewest || double(result.smooth) < kSmoothShare * double(samples.size()) ||
             !result.won())
@@ -259,8 +147,29 @@ void reportFlips(const Surfaces& s, Contest& asGiven, Findings& findings) {
         percent(asGiven.away, asGiven.smooth), " of the normals on smooth ground face away from the ",
         s.isRsm ? "light" : "camera",
         ": some meshes have the wrong winding, or two-sided materials are not turned to the viewer");
-    if (!s.isRsm) f.pixels = std::move(asGiven.awayPixels);
+    f.pixels = std::move(asGiven.awayPixels);
     f.step = s.step;
+}
+
+// Depths that have no place though there are normals: beyond the clip planes, or no depth of this kind.
+bool reportNoPlaces(Surfaces& s, const std::vector<Sample>& samples, Findings& findings) {
+    if (!s.depth || samples.size() < kFewest) return false;
+    const float first = s.depth.at(samples[0].x, samples[0].y);
+    bool varied = false;
+    for (const Sample& sample : samples) {
+        if (s.surface(sample.x, sample.y)) return false;
+        varied = varied || s.depth.at(sample.x, sample.y) != first;
+    }
+    s.trusted = false;
+    findings.add(LW_FAULT_NO_SURFACES, varied ? LW_SEVERITY_ERROR : LW_SEVERITY_WARNING,
+                 s.argument("depth"),
+                 {samples.size(), samples.size(), double(first), 0.0, varied ? 0.9 : 0.5},
+                 "no pixel with a normal has a depth that leads to a place in front of the camera (the "
+                 "first is ",
+                 first,
+                 "), which means no surface: are depthKind and the projection matrix those that the "
+                 "depth was drawn with?");
+    return true;
 }
 
 }  // namespace
@@ -269,9 +178,9 @@ void checkNormals(Surfaces& s, const std::vector<NamedCamera>& others, Findings&
     if (!s.camera || !s.trusted) return;
     const Place given = [&s](std::uint32_t x, std::uint32_t y, glm::dvec3& p) {
         p = s.position.triple(x, y);
-        return finite(p);
+        return withinReach(p);
     };
-    const Guess asIs{LW_FAULT_NORMAL_DISAGREES, "", {}, {}};
+    const NormalGuess asIs{LW_FAULT_NORMAL_DISAGREES, "", {}, {}};
     const std::vector<Sample> samples = samplesOf(s, given);
     Contest now = contest(s, samples, asIs);
     if (now.smooth < kFewest && !s.depth) return;
@@ -280,18 +189,18 @@ void checkNormals(Surfaces& s, const std::vector<NamedCamera>& others, Findings&
         return reportFlips(s, now, findings);
 
     Contest best, bestDepth;
-    const Guess* winner = nullptr;
-    const std::vector<Guess> normals = normalGuesses(s, others);
-    const std::vector<Guess> depths = s.depth ? depthGuesses(s) : std::vector<Guess>();
+    const NormalGuess* winner = nullptr;
+    const std::vector<NormalGuess> normals = normalGuesses(s, others);
+    const std::vector<NormalGuess> depths = s.depth ? depthGuesses(s) : std::vector<NormalGuess>();
     winner = bestOf(s, samples, normals, best);
-    const Guess* depthWinner = bestOf(s, samples, depths, bestDepth);
+    const NormalGuess* depthWinner = bestOf(s, samples, depths, bestDepth);
     if (depthWinner && (!winner || bestDepth.agreeing > best.agreeing)) {
         winner = depthWinner;
         best = std::move(bestDepth);
     }
     const bool disagrees = now.smooth >= kFewest && shareOf(now.agreeing, now.smooth) < 0.15;
     if (!winner && !disagrees) {
-        reportFlips(s, now, findings);
+        if (!reportNoPlaces(s, samples, findings)) reportFlips(s, now, findings);
         return;
     }
     // Places from a wrong depth are wrong; places of wrong normals stand.
@@ -313,7 +222,7 @@ void checkNormals(Surfaces& s, const std::vector<NamedCamera>& others, Findings&
             : ", and no usual mistake explains it: are both of one frame, and the normals the world's?",
         winner ? ", and " + percent(best.agreeing, best.smooth) + " would if " : std::string(),
         winner ? winner->text : std::string());
-    if (!s.isRsm && winner) f.pixels = std::move(best.pixels);
+    if (winner) f.pixels = std::move(best.pixels);
     f.step = s.step;
 }
 

@@ -20,6 +20,8 @@ struct NamedCamera {
 void checkValues(Surfaces& surfaces, Findings& findings);
 // input_check_places.cpp: positions against the camera.
 void checkPlaces(Surfaces& surfaces, const std::vector<NamedCamera>& others, Findings& findings);
+// The same file: surfaces that were given no normal. After the other checks of a trusted buffer.
+void checkMissingNormals(const Surfaces& surfaces, Findings& findings);
 // input_check_normals.cpp: normals and depth against each other and the camera.
 void checkNormals(Surfaces& surfaces, const std::vector<NamedCamera>& others, Findings& findings);
 // input_check_motion.cpp
@@ -32,13 +34,17 @@ struct LightMaps {
     std::vector<Surfaces> maps;
 };
 // input_check_spaces.cpp: the maps of a light against the G-buffer: one space, one unit, one scene.
-void checkSpaces(const Surfaces& gbuffer, LightMaps& light, Findings& findings);
+void checkSpaces(Surfaces& gbuffer, LightMaps& light, Findings& findings);
+// input_check_light.cpp: a lamp's position against the cameras of its maps.
+void checkLightCamera(const LightMaps& light, Findings& findings);
 // input_check_flux.cpp: flux against the light, and with a trusted G-buffer (else null) against its
 // albedo.
 void checkFlux(const Surfaces* gbuffer, const LightMaps& light, Findings& findings);
-void checkDirect(const Surfaces& gbuffer, const std::vector<LightMaps>& lights, Findings& findings);
+// input_check_direct.cpp
+void checkDirect(const Surfaces& gbuffer, const LWLight* lights, std::uint32_t count,
+                 Findings& findings);
 
-// Signed exchanges of axes that hosts get wrong.
+// input_conventions.cpp. Signed exchanges of axes that hosts get wrong.
 struct AxesChange {
     const char* what;
     glm::dmat3 matrix;  // from what the host gave to what is meant

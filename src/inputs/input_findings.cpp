@@ -15,9 +15,9 @@ struct FaultText {
     const char* summary;
 };
 constexpr FaultText kFaults[] = {
-    {LW_FAULT_NOT_FINITE, "not-finite", "NaN or infinity on a surface"},
+    {LW_FAULT_NOT_FINITE, "not-finite", "NaN, infinity or a position beyond reach on a surface"},
     {LW_FAULT_NEGATIVE, "negative", "negative albedo, radiance or flux"},
-    {LW_FAULT_NO_SURFACES, "no-surfaces", "every normal is zero"},
+    {LW_FAULT_NO_SURFACES, "no-surfaces", "every normal is zero, or no depth leads to a place"},
     {LW_FAULT_NORMAL_MISSING, "normal-missing", "zero normals where position or depth shows a surface"},
     {LW_FAULT_NORMAL_LENGTH, "normal-length", "normals that are not unit"},
     {LW_FAULT_NORMAL_ENCODED, "normal-encoded", "normals still stored as n/2 + 1/2"},

@@ -48,7 +48,7 @@ void makeCamera(const LWCamera& matrices, Surfaces& surfaces, std::optional<Came
     try {
         camera.emplace(matrices, surfaces.width, surfaces.height, surfaces.argument(field));
     } catch (const Error& error) {
-        surfaces.cameraError = error.what();
+        if (surfaces.cameraError.empty()) surfaces.cameraError = error.what();  // the first one's
     }
 }
 
@@ -83,9 +83,14 @@ bool cameraAbsent(const LWCamera& camera) {
            std::all_of(camera.projection, camera.projection + 16, zero);
 }
 
-bool Surfaces::surface(std::uint32_t x, std::uint32_t y) const {
-    const glm::dvec3 n = normal.triple(x, y);
-    return finite(n) && glm::dot(n, n) > 0.0 && finite(position.triple(x, y));
+bool withinReach(const glm::dvec3& p) {
+    constexpr double kFarthest = LW_LARGEST_DISTANCE;
+    return finite(p) && glm::dot(p, p) <= kFarthest * kFarthest;
+}
+
+double Surfaces::rounding(const glm::dvec3& p) const {
+    constexpr double kHalf = 1.0 / 1024, kFloat = 1.0 / (1 << 21);  // of the largest coordinate
+    return (halfPositions ? kHalf : kFloat) * std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
 }
 
 glm::dvec3 Surfaces::towardsEye(const glm::dvec3& p) const {
@@ -114,8 +119,7 @@ bool unprojectDepth(const LwUnprojection& u, double i, double j, double depth, g
         p *= u.mode == LW_UNPROJECT_RADIAL ? depth / glm::length(p) : depth;
     }
     position = p + glm::dvec3(u.origin.s[0], u.origin.s[1], u.origin.s[2]);
-    constexpr double kFarthest = LW_LARGEST_DISTANCE;  // as the kernels refuse them
-    return finite(position) && glm::dot(position, position) <= kFarthest * kFarthest;
+    return withinReach(position);
 }
 
 Surfaces readGBuffer(Executor& executor, const LWGBuffer& gbuffer, std::uint32_t width,
@@ -133,6 +137,7 @@ Surfaces readGBuffer(Executor& executor, const LWGBuffer& gbuffer, std::uint32_t
     s.albedo = readImage(executor, gbuffer.albedo, kAlbedoRole, s.argument("albedo"));
     s.direct = readImage(executor, gbuffer.directRadiance, kRadianceRole, s.argument("directRadiance"));
     s.motion = readImage(executor, gbuffer.motion, kMotionRole, s.argument("motion"));
+    s.roughness = readImage(executor, gbuffer.roughness, kScalarRole, s.argument("roughness"));
     if (!cameraAbsent(gbuffer.camera)) {
         s.matrices = &gbuffer.camera;
         makeCamera(gbuffer.camera, s, s.camera, "camera");

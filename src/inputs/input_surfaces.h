@@ -41,15 +41,16 @@ private:
 };
 
 bool finite(const glm::dvec3& v);
+bool withinReach(const glm::dvec3& p);  // as the kernels judge; false for NaN
 
 struct Surfaces {
     std::string name;  // "gbuffer", "frame.lights[0].rsms[1]"
     std::uint32_t width = 0, height = 0;
-    std::uint32_t step = 1;                   // every how many pixels in x and y are examined
-    HostPlanes position;                      // as the host gave it, or from the depth
-    HostPlanes depth;                         // empty with positions
-    HostPlanes normal;                        // as stored: not brought to unit length
-    HostPlanes albedo, direct, motion, flux;  // empty where absent
+    std::uint32_t step = 1;                              // every how many pixels in x and y are examined
+    HostPlanes position;                                 // as the host gave it, or from the depth
+    HostPlanes depth;                                    // empty with positions
+    HostPlanes normal;                                   // as stored: not brought to unit length
+    HostPlanes albedo, direct, motion, roughness, flux;  // empty where absent
     LWDepthKind depthKind = LW_DEPTH_ZERO_TO_ONE;
     bool halfPositions = false;
     const LWCamera* matrices = nullptr;
@@ -60,17 +61,29 @@ struct Surfaces {
     // sure of its sign).
     glm::dvec3 lightDirection{0.0};
     bool isRsm = false;
+    bool shown = false;  // in the overlay: findings then keep their pixels
     // Positions fit the camera and normals the positions: what rests on them can be judged.
     bool trusted = true;
     bool albedoTrusted = true;
 
-    // A pixel with a finite nonzero normal and a finite position.
-    bool surface(std::uint32_t x, std::uint32_t y) const;
+    // A finite nonzero normal.
+    bool drawn(std::uint32_t x, std::uint32_t y) const {
+        const glm::dvec3 n = normal.triple(x, y);
+        return finite(n) && glm::dot(n, n) > 0.0;
+    }
+    // The same with a position within reach.
+    bool surface(std::uint32_t x, std::uint32_t y) const {
+        return drawn(x, y) && withinReach(position.triple(x, y));
+    }
+    // By how much a position may be off its true place because of its format.
+    double rounding(const glm::dvec3& p) const;
     glm::dvec3 unitNormal(std::uint32_t x, std::uint32_t y) const {
         return glm::normalize(normal.triple(x, y));
     }
     // Unit vector from p to where the surfaces are seen from; zero when that is not known.
     glm::dvec3 towardsEye(const glm::dvec3& p) const;
+    // Whether that is known at all.
+    bool sided() const { return camera && (camera->perspective() || lightDirection != glm::dvec3(0.0)); }
     // Calls body(x, y) for every examined pixel.
     template <class Body>
     void sample(const Body& body) const {

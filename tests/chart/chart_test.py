@@ -30,7 +30,8 @@ SLACK = 1.1
 QUICK = ["--quick", "--techniques", "rsm", "--no-report"]
 POINT_KEYS = {"id", "key", "truth", "build", "warm_up", "processor_ms", "scene", "camera", "technique", "label", "settings", "parameters", "bounces", "size", "device",
               "frames", "ms", "device_ms", "bytes", "load_average", "errors", "images"}
-ERROR_KEYS = {"bounces", "relMSE", "nrmse", "bias", "p99", "noise", "trusted", "rmse", "ssim", "score", "score255", "flip"}
+ERROR_KEYS = {"bounces", "relMSE", "nrmse", "bias", "p99", "noise", "trusted", "rmse", "ssim", "score", "score255", "flip",
+              "picture_noise", "picture_trusted"}
 
 
 def start(*arguments):
@@ -156,6 +157,23 @@ class Chart(unittest.TestCase):
         self.assertEqual({p["parameters"].get("vpls", 64) for p in points}, {64, 1024})
         self.assertEqual({p["errors"]["own"]["bounces"] for p in points if p["technique"] == "rival"}, {1, 2})
         self.assertTrue(all(p["ms"]["median"] > 0 and p["device"] is None for p in points if p["technique"] == "rival"))
+
+    def test_some_pixels_tell_the_error_of_all(self):
+        """One pixel of 4 x 4: errors of the irradiance within what so few pixels can tell, at the same effort a better truth."""
+        common = ("--quick", "--scenes", "cornell", "--size", "320x180", "--techniques", "rsm", "--only", "vpls=256", "--no-report")
+        self.chart(*common, "--judge-one-of", "1")
+        whole = {p["id"]: p["errors"]["own"] for p in self.results()["points"]}
+        self.chart(*common, "--judge-one-of", "4", "--picture-noise", "0.05")
+        [truth] = self.results()["views"][0]["truths"]
+        self.assertLessEqual(truth["noise"], 4e-3)
+        self.assertGreater(truth["samples"], truth["picture_samples"])
+        for point in self.results()["points"]:
+            own = point["errors"]["own"]
+            self.assertEqual(own["picture_trusted"], own["picture_noise"] <= 0.1 * own["relMSE"])
+            # 3,600 pixels: the mean of their terms is known to some 4 %, that of the light to 1 %.
+            self.assertLess(abs(own["relMSE"] / whole[point["id"]]["relMSE"] - 1.0), 0.15)
+            self.assertLess(abs(own["bias"] - whole[point["id"]]["bias"]), 0.03)
+        self.assertIn("--judge-one-of 8", self.chart(*common, "--judge-one-of", "8", code=2))
 
     def test_refusals(self):
         self.assertIn("rsm", self.chart("--techniques", "nothing", code=2))

@@ -69,6 +69,16 @@ class Drawn(unittest.TestCase):
         self.assertIsNone(charts.value(hidden))
         self.assertEqual(charts.front([clear, hidden]), [clear])  # though faster and better by its figure
 
+    def test_composites_need_the_truth_of_whole_pictures(self):
+        point = made_point("a", "x", 1.0, 0.5, 0.01)
+        point["errors"]["own"].update(picture_noise=0.06, picture_trusted=False)
+        self.assertEqual(charts.value(point), 0.5)
+        self.assertIsNone(charts.value(point, "flip"))
+        self.assertEqual(charts.front([point], "score"), [])
+        mean = charts.means_over_views(made_results([point, made_point("b", "x", 1.0, 0.5, 0.01)]))[0][0]
+        self.assertEqual(charts.value(mean), 0.5)
+        self.assertIsNone(charts.value(mean, "score"))
+
     def test_no_truth_no_point(self):
         self.assertIsNone(charts.value(made_point("a", "x", 1.0, 0.5, 0.0), truth="all"))
 
