@@ -85,21 +85,24 @@ void KMeans::reserve(std::uint32_t count) {
 void KMeans::record(Executor& executor, const Buffer& vpls, std::uint32_t count, bool restart) {
     reserve(count);
     if (options_.clusters == 0) {
-        if (count) executor.run("kmeans.identity", identity_, gridOver(count), kGroup, vpls, cl_int(count), assignment_, clusters_);
+        if (count)
+            executor.run("kmeans.identity", identity_, gridOver(count), kGroup, vpls, cl_int(count), assignment_,
+                         clusters_);
         return;
     }
     const std::uint32_t stride = strideOf(count);
     const cl_int clusters = cl_int(clusterCount_), keep = warm_ && options_.warmStart && !restart ? 1 : 0;
     const cl_float2 weights = {{options_.positionWeight, options_.normalWeight}};
-    executor.run("kmeans.unpack", unpack_, gridOver(stride), kGroup, vpls, cl_int(count), cl_int(stride), sites_, assignment_);
-    executor.run("kmeans.frame", frame_, groupOf(frame_), groupOf(frame_), sites_, cl_int(stride), clusters_, clusters, keep,
-                 frameBuffer_, means_);
+    executor.run("kmeans.unpack", unpack_, gridOver(stride), kGroup, vpls, cl_int(count), cl_int(stride), sites_,
+                 assignment_);
+    executor.run("kmeans.frame", frame_, groupOf(frame_), groupOf(frame_), sites_, cl_int(stride), clusters_, clusters,
+                 keep, frameBuffer_, means_);
     iterate(executor, stride, keep == 0);
     executor.run("kmeans.members", members_, gridOver(chunksOf(stride) * wideItems(clusterCount_, members_)),
                  groupOf(members_), vpls, cl_int(count), sites_, cl_int(stride), assignment_, means_, clusters, weights,
                  partials_);
-    executor.run("kmeans.finish", finish_, {clusterCount_, 1}, kGroup, vpls, cl_int(stride), partials_, means_, frameBuffer_,
-                 clusters, clusters_);
+    executor.run("kmeans.finish", finish_, {clusterCount_, 1}, kGroup, vpls, cl_int(stride), partials_, means_,
+                 frameBuffer_, clusters, clusters_);
     warm_ = true;
 }
 

@@ -91,6 +91,12 @@ TEST_CASE("of equally near means the first, of equally near members the first", 
     CHECK(first.clusters[std::size_t(first.assignment[2])].medoidPosition.s[3] == 2.0f);
     const Clustered second = cluster(rig, pass, {at(-1.25), at(-0.75), at(1.25), at(0.75), at(0.0)});
     CHECK(second.assignment[4] == 0);
+    // Also of a new mean: cluster 0 has lost its VPLs and is given the farthest one; another lies half way to it.
+    KMeans again(rig.device(), options);
+    const Clustered pair = cluster(rig, again, {at(-16), at(16)});
+    const double x = pair.assignment[0] == 1 ? -16 : 16, half = 0.25 * x;
+    const Clustered third = cluster(rig, again, {at(x), at(x + 2 * half), at(x + half)});
+    CHECK(third.assignment == std::vector<cl_int>{1, 0, 0});
 }
 
 TEST_CASE("warm starts keep clusters in their places and give a dying one another", "[kmeans]") {
@@ -135,7 +141,7 @@ TEST_CASE("warm starts keep clusters in their places and give a dying one anothe
     CHECK(bitDifference(numbers(dawn), numbers(clusterOnce(rig, optionsOf(5), dark))) == "");
 }
 
-TEST_CASE("several clusters that die at once get distinct places", "[kmeans]") {
+TEST_CASE("several clusters that die at once get distinct places", "[kmeans][large]") {
     KernelRig rig(GENERATE(1u, 16u));
     KMeans pass(rig.device(), optionsOf(32));
     cluster(rig, pass, roomVpls(300, 1));
@@ -167,6 +173,8 @@ TEST_CASE("nothing, one, one place, fewer than clusters", "[kmeans]") {
             got = cluster(rig, pass, place, restart);
             checkSound(got, place);
             CHECK(liveCount(got) == 1);
+            // Of 200 members as near, in two chunks.
+            CHECK(got.clusters[std::size_t(got.assignment[0])].medoidPosition.s[3] == 0.0f);
             got = cluster(rig, pass, few, restart);
             checkSound(got, few);
             got = cluster(rig, pass, fewer, restart);
@@ -180,7 +188,7 @@ TEST_CASE("nothing, one, one place, fewer than clusters", "[kmeans]") {
         }
 }
 
-TEST_CASE("positions and flux at the ends of their range", "[kmeans]") {
+TEST_CASE("positions and flux at the ends of their range", "[kmeans][large]") {
     KernelRig rig(GENERATE(1u, 16u));
     Vpls far = roomVpls(300, 31);
     for (std::size_t i = 0; i < far.size(); ++i)

@@ -10,7 +10,7 @@ namespace {
 // Two means whose squared distances differ by less may come out either way: a distance is a sum of six squares of
 // differences of numbers up to 1, each rounded to 6e-8, of means that were rounded as often as they have members.
 constexpr double kNearTie = 2e-6;
-// Of all VPLs that may lie so near between two means. (Measured: none, in all cases here.)
+// Of all VPLs that may lie so near between two means. (None does in the cases here.)
 constexpr double kTiesShare = 1e-3;
 // Mean position in diagonals, mean normal: rounding of sums of up to 300 terms of at most 1.
 constexpr double kMeanRounding = 2e-6;
