@@ -60,7 +60,8 @@ LW_FN uint touch_lanes(lw_canvas c, real distance, lanei at, uint triangle, uint
     uint reached = 0;
     for (int l = 0; l < LW_WIDTH; ++l)
         if (distances[l] > 0.0f)
-            reached |= (uint)touch(c.records + 2 * (c.first + texels[l]), distances[l], triangle + (uint)l * perLane, sweep) << l;
+            reached |= (uint)touch(c.records + 2 * (c.first + texels[l]), distances[l], triangle + (uint)l * perLane,
+                                   sweep) << l;
     return reached;
 }
 
