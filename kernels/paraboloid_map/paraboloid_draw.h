@@ -17,8 +17,8 @@
 // Texels of a triangle's box up to which 16 triangles are drawn at once, a texel of each; above it, a triangle's
 // texels 16 at once. And those of a large triangle, which are shared among work-items: too few, and the list
 // costs more than they do; too many, and one work-item keeps all others waiting.
-#define LW_FEW_TEXELS 10
-#define LW_MANY_TEXELS 2048
+#define LW_FEW_TEXELS 16
+#define LW_MANY_TEXELS (64 * LW_WIDTH)
 
 typedef struct {
     lw_paraboloid frame;
@@ -60,7 +60,8 @@ LW_FN uint touch_lanes(lw_canvas c, real distance, lanei at, uint triangle, uint
     uint reached = 0;
     for (int l = 0; l < LW_WIDTH; ++l)
         if (distances[l] > 0.0f)
-            reached |= (uint)touch(c.records + 2 * (c.first + texels[l]), distances[l], triangle + (uint)l * perLane, sweep) << l;
+            reached |= (uint)touch(c.records + 2 * (c.first + texels[l]), distances[l], triangle + (uint)l * perLane,
+                                   sweep) << l;
     return reached;
 }
 

@@ -142,7 +142,7 @@ LW_FN real paraboloid_visibility(__global const float* records, int firstRecord,
     const real last = (float)(size - 1);
     const real x = fmin(fmax(r.x, 0.0f), last), y = fmin(fmax(r.y, 0.0f), last);
     const lanei x0 = to_lanei(x), y0 = to_lanei(y);
-    const lanei x1 = min(x0 + 1, size - 1), y1 = min(y0 + 1, size - 1);
+    const lanei x1 = min(x0 + 1, (lanei)(size - 1)), y1 = min(y0 + 1, (lanei)(size - 1));
     const real fx = x - to_real(x0), fy = y - to_real(y0);
     const real a = ones_(paraboloid_texel_lit(records, firstRecord, size, x0, y0, r));
     const real b = ones_(paraboloid_texel_lit(records, firstRecord, size, x1, y0, r));

@@ -40,8 +40,8 @@ Triangle readTriangle(const LWGeometry& g, std::uint32_t t) {
     for (std::size_t corner = 0; corner < 3; ++corner)
         for (std::size_t c = 0; c < 3; ++c)
             triangle.values[3 * corner + c] = g.vertices[3 * std::size_t(vertexOf(g, 3 * std::size_t(t) + corner)) + c];
-    for (std::size_t c = 0; c < 3; ++c)
-        triangle.values[LW_TRIANGLE_ALBEDO + c] = g.triangleAlbedo ? g.triangleAlbedo[3 * std::size_t(t) + c] : kDefaultAlbedo;
+    const float* albedo = g.triangleAlbedo ? g.triangleAlbedo + 3 * std::size_t(t) : nullptr;
+    for (std::size_t c = 0; c < 3; ++c) triangle.values[LW_TRIANGLE_ALBEDO + c] = albedo ? albedo[c] : kDefaultAlbedo;
     return triangle;
 }
 
@@ -237,7 +237,8 @@ std::uint64_t GeometryInput::estimateBytes(std::uint32_t triangleCount) {
     if (triangleCount > kMaxTriangles)
         fail(LW_ERROR_INVALID_ARGUMENT, "frame.geometry.triangleCount: expected at most ", kMaxTriangles, ", got ",
              triangleCount);
-    return (std::uint64_t(paddedTo16(triangleCount)) * kPlaneCount + std::uint64_t(groupsOf(triangleCount)) * 4) * sizeof(float);
+    const std::uint64_t planes = std::uint64_t(paddedTo16(triangleCount)) * kPlaneCount;
+    return (planes + std::uint64_t(groupsOf(triangleCount)) * 4) * sizeof(float);
 }
 
 }  // namespace lightwell

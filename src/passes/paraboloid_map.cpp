@@ -15,8 +15,8 @@ constexpr const char* kProgram = "paraboloid_map/paraboloid_map";
 constexpr const char* kDraw = "paraboloid_map/paraboloid_draw";
 constexpr std::uint32_t kSmallest = 64, kLargest = 512;
 // Room for large triangles: those that find none are drawn where they were found, by one work-item each. Sponza
-// leaves some tens on each map.
-constexpr std::uint32_t kLargePerMap = 256;
+// leaves two or three hundred on each map of 256 texels a side.
+constexpr std::uint32_t kLargePerMap = 1024;
 // Work-items that share the list of large triangles, whatever its length.
 constexpr std::size_t kListItems = 1024;
 

@@ -110,6 +110,7 @@ TEST_CASE("frames are orthonormal around every normal", "[paraboloid_lookup]") {
 TEST_CASE("a room with a screen: lit before it, dark behind it", "[paraboloid_lookup]") {
     const auto width = GENERATE(1u, 16u);
     const auto size = GENERATE(64u, 256u);
+    if (size > 64 && testSize({256, 256}).first < 256) return;  // a slow driver
     Mesh mesh;
     mesh.addBox({4, 3, 5}, 3, 2);
     mesh.addQuad({1.2, 0.5, 2.5}, {1.5, 0, 0}, {0, 1.6, 0});

@@ -238,14 +238,14 @@ TEST_CASE("more large triangles than the list holds are drawn all the same, and 
     const auto width = GENERATE(1u, 16u);
     ParaboloidRig rig(width, 64);
     Mesh mesh;  // walls one behind the other, each over half the map
-    for (int i = 0; i < 200; ++i) mesh.addQuad({-9, -9, 2.0 - 0.005 * i}, {18, 0, 0}, {0, 18, 0});
+    for (int i = 0; i < 600; ++i) mesh.addQuad({-9, -9, 2.0 - 0.002 * i}, {18, 0, 0}, {0, 18, 0});
     const std::vector<lw_cluster> clusters = {kFour[0]};
     const std::uint64_t inlined = countOf(rig.draw(mesh, clusters), "inline_triangles");
-    CHECK(inlined == 400 - 256);
+    CHECK(inlined == 1200 - 1024);
     const DrawnMaps maps = rig.maps();
-    CHECK(double(maps.distance(maps.at(0, 32, 32))) == Approx(2.0 - 0.005 * 199).epsilon(0.01));
+    CHECK(double(maps.distance(maps.at(0, 32, 32))) == Approx(2.0 - 0.002 * 599).epsilon(0.01));
     Mesh front;
-    front.addQuad({-9, -9, 2.0 - 0.005 * 199}, {18, 0, 0}, {0, 18, 0});
+    front.addQuad({-9, -9, 2.0 - 0.002 * 599}, {18, 0, 0}, {0, 18, 0});
     ParaboloidRig alone(width, 64);
     const DrawnMaps expected = alone.drawn(front, clusters);
     int differing = 0;
