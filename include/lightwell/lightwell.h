@@ -404,6 +404,40 @@ typedef struct LWRsmDesc {
 
 LW_API void lwDefaultRsm(LWRsmDesc* desc);
 
+typedef enum LWVisibility {
+    LW_VISIBILITY_NONE = 0, /**< every VPL lights every surface that faces it */
+    LW_VISIBILITY_HARD = 1, /**< the nearest texel of the cluster's map decides */
+    LW_VISIBILITY_SOFT = 2  /**< the share of its four nearest texels (percentage-closer) */
+} LWVisibility;
+
+typedef enum LWDirections {
+    LW_DIRECTIONS_COSINE = 0, /**< by the cosine at the cluster: every VPL carries the same share of its flux */
+    LW_DIRECTIONS_DISC = 1,   /**< evenly over the map's disc (Aranha et al. 2020) */
+    LW_DIRECTIONS_SQUARE = 2  /**< evenly over the square about it: a fifth of the VPLs is lost */
+} LWDirections;
+
+/** Technique "ssvp": VPLs in clusters, each cluster's visibility in a paraboloid map of the frame's triangles
+ *  (LWFrame::geometry; without it nothing blocks and there is no second bounce, which the stats say), a second
+ *  bounce drawn from the maps. */
+typedef struct LWSsvpDesc {
+    uint32_t structSize;
+    uint32_t vpls;           /**< of the first bounce, drawn from all RSMs together */
+    LWVplSampling sampling;
+    uint32_t clusters;       /**< 1 .. 64; 0: every VPL its own, with a map each */
+    uint32_t mapSize;        /**< texels a side of a cluster's map: 64 .. 512, a multiple of 16 */
+    LWVisibility visibility;
+    uint32_t bounces;        /**< 1 or 2 */
+    uint32_t secondVpls;     /**< of the second bounce, for each cluster; they light what faces them, unshadowed */
+    LWDirections directions; /**< in which a cluster's second-bounce VPLs are drawn */
+    uint32_t warmStart;      /**< 1: clusters start where they were in the frame before */
+    uint32_t interleave;     /**< as LWRsmDesc's */
+    uint32_t filter;         /**< as LWRsmDesc's */
+    LWResolution resolution; /**< as LWRsmDesc's */
+    uint32_t seed;           /**< shifts the sample sets; 0: unshifted */
+} LWSsvpDesc;
+
+LW_API void lwDefaultSsvp(LWSsvpDesc* desc);
+
 /* A technique's parameters, described for tools: the command line's --set and every chart read them
  * here, so a new technique needs no other registration. */
 typedef enum LWParameterKind {
@@ -457,6 +491,7 @@ LW_API LWStatus lwDescribeTechnique(uint32_t index, LWTechniqueInfo* info);
 LW_API LWStatus lwCreateTechnique(LWDevice device, const char* name, const void* desc,
                                   LWTechnique* technique);
 LW_API LWStatus lwCreateRsm(LWDevice device, const LWRsmDesc* desc, LWTechnique* technique);
+LW_API LWStatus lwCreateSsvp(LWDevice device, const LWSsvpDesc* desc, LWTechnique* technique);
 LW_API LWStatus lwRetainTechnique(LWTechnique technique);
 LW_API LWStatus lwReleaseTechnique(LWTechnique technique);
 

@@ -5,14 +5,10 @@
 //
 // Sampling texel p with probability P_p divides its flux *and* its area by N * P_p.
 // Planes of `texels`: position xyz, normal xyz, flux rgb, area; `planeStride` floats apart.
+#include "shared/hammersley.h"
+#include "shared/vpl_list.h"
 #include "shared/wide.h"
-#include "shared/vpl_types.h"
 #include "shared/subset_order.h"
-
-// This work-item's place in a list that src/passes/vpl_sampling.cpp folds into rows of work-items: drivers may
-// compile a kernel anew for more than 65,535 groups along an axis, which no frame shall do. (The host sees to
-// it that the rounded-up grid stays below 2^31.)
-LW_FN int lw_list_index(void) { return (int)get_global_id(1) * (int)get_global_size(0) + (int)get_global_id(0); }
 
 // What a texel is drawn by. The mean of the channels, not luminance: a texel that reflects only blue
 // must keep a probability in proportion to what it sends.
@@ -63,29 +59,6 @@ LW_FN int find_sum(__global const float* sums, int count, float target) {
     return low;
 }
 
-// The radical inverse of k in base 2, in [0,1): 24 bits, so that it never rounds up to 1.
-LW_FN float radical_inverse(uint k) {
-    k = (k << 16) | (k >> 16);
-    k = ((k & 0x00ff00ffu) << 8) | ((k & 0xff00ff00u) >> 8);
-    k = ((k & 0x0f0f0f0fu) << 4) | ((k & 0xf0f0f0f0u) >> 4);
-    k = ((k & 0x33333333u) << 2) | ((k & 0xccccccccu) >> 2);
-    // The last swap in floats, exact as the halves share no bit: written as the others, LLVM recognises a
-    // bit reversal and emits an intrinsic that Oclgrind lacks.
-    const float odd = (float)((k & 0x55555555u) >> 7), even = (float)((k & 0xaaaaaaaau) >> 9);
-    return (odd + even) * (1.0f / 16777216.0f);
-}
-
-LW_FN float wrap_unit(float u) {
-    u -= u >= 1.0f ? 1.0f : 0.0f;
-    return fmin(u, 0.99999994f);
-}
-
-// What the gather's bounded term needs beside the VPL as the host knows it.
-LW_FN lw_vpl bounded(lw_vpl vpl) {
-    vpl.normal.w = vpl.positionArea.w * (0.25f * M_1_PI_F);
-    return vpl;
-}
-
 LW_FN lw_vpl texel_vpl(__global const float* texels, int planeStride, int texel, float factor) {
     __global const float* p = texels + texel;
     lw_vpl vpl;
@@ -93,14 +66,6 @@ LW_FN lw_vpl texel_vpl(__global const float* texels, int planeStride, int texel,
     vpl.normal = (float4)(p[3 * planeStride], p[4 * planeStride], p[5 * planeStride], 0.0f);
     vpl.flux = (float4)(p[6 * planeStride] * factor, p[7 * planeStride] * factor, p[8 * planeStride] * factor, 0.0f);
     return bounded(vpl);
-}
-
-LW_FN lw_vpl no_vpl(void) {
-    lw_vpl vpl;
-    vpl.positionArea = (float4)(0.0f);
-    vpl.normal = (float4)(0.0f);
-    vpl.flux = (float4)(0.0f);
-    return vpl;
 }
 
 // One work-item = one slot of the VPL list (order.subsets * order.capacity of them). Of the order's

@@ -72,6 +72,7 @@ FrameSample LibraryRenderer::renderFrame(const RenderInputs& inputs, bool reset)
     frame.lightCount = std::uint32_t(inputs.lights().size());
     frame.sourceViews = &source;
     frame.sourceViewCount = 1;
+    frame.geometry = &inputs.geometry();
     std::copy_n(inputs.environment(), 3, frame.environment);
     LWOutput output = lightwell::make<LWOutput>();
     output.irradiance = describePlanes(irradiance_);

@@ -47,6 +47,16 @@ LWRsm describeRsm(const studio::Rsm& from) {
     return to;
 }
 
+LWGeometry describeTriangles(const studio::SceneTriangles& from) {
+    LWGeometry to = lightwell::make<LWGeometry>();
+    to.vertices = from.vertices.data();
+    to.triangleAlbedo = from.albedo.data();
+    to.triangleCount = from.count();
+    to.vertexCount = 3 * from.count();
+    to.version = from.version;
+    return to;
+}
+
 LWLight describeLight(const studio::Light& from, const std::vector<LWRsm>& rsms) {
     LWLight to = lightwell::make<LWLight>();
     copyVector(from.position, to.position);
@@ -91,7 +101,9 @@ RenderInputs::RenderInputs(const studio::RayScene& scene, const studio::Camera& 
           scene, camera, options.width, options.height,
           options.previousCamera != nullptr ? *options.previousCamera : camera,
           options.previousCamera != nullptr ? options.previousTime : options.time)),
-      lwGBuffer_(describeGBuffer(gbuffer_)) {
+      lwGBuffer_(describeGBuffer(gbuffer_)),
+      triangles_(studio::sceneTriangles(scene)),
+      lwGeometry_(describeTriangles(triangles_)) {
     studio::RsmOptions rsmOptions = options.rsm;
     rsmOptions.view = &gbuffer_;
     for (std::size_t i = 0; i < scene.scene().lights.size(); ++i) {

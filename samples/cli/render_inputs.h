@@ -7,6 +7,7 @@
 
 #include "gbuffer.h"
 #include "lightwell/lightwell.h"
+#include "scene_triangles.h"
 
 namespace cli {
 
@@ -31,6 +32,7 @@ public:
     const studio::GBuffer& gbuffer() const { return gbuffer_; }
     const LWGBuffer& lwGBuffer() const { return lwGBuffer_; }
     const std::vector<LWLight>& lights() const { return lights_; }
+    const LWGeometry& geometry() const { return lwGeometry_; }
     const float* environment() const { return environment_; }
     std::uint64_t rsmTexelCount() const;
 
@@ -41,6 +43,8 @@ private:
     std::vector<std::vector<LWRsm>> lwRsms_;
     std::vector<LWLight> lights_;
     LWGBuffer lwGBuffer_{};
+    studio::SceneTriangles triangles_;
+    LWGeometry lwGeometry_{};
     float environment_[3] = {};
 };
 

@@ -81,6 +81,10 @@ LWStatus lwCreateRsm(LWDevice device, const LWRsmDesc* desc, LWTechnique* techni
     return createTechnique("lwCreateRsm", device, "rsm", desc, technique);
 }
 
+LWStatus lwCreateSsvp(LWDevice device, const LWSsvpDesc* desc, LWTechnique* technique) {
+    return createTechnique("lwCreateSsvp", device, "ssvp", desc, technique);
+}
+
 LWStatus lwRetainTechnique(LWTechnique technique) {
     return enter("lwRetainTechnique",
                  [&](Call&) { retainHandle(HandleKind::kTechnique, technique, "technique"); });
@@ -117,6 +121,7 @@ LWStatus lwEstimateFrameMemory(LWDevice device, const char* name, const void* de
         const FrameArgument own(call, frame);
         FrameShape shape;
         shape.vplCount = own.get().vplCount;
+        if (own.get().geometry) shape.triangles = own.get().geometry->triangleCount;
         for (std::uint32_t l = 0; l < own.get().lightCount; ++l)
             for (std::uint32_t r = 0; r < own.get().lights[l].rsmCount; ++r) {
                 const LWImage& flux = own.get().lights[l].rsms[r].flux;

@@ -12,6 +12,7 @@ struct FrameShape {
     std::uint64_t rows = 0;          // of all RSMs
     std::uint64_t largestMap = 0;    // texels of the largest RSM
     std::uint32_t vplCount = 0;      // the host's own VPLs
+    std::uint32_t triangles = 0;     // of the host's geometry
     bool uploads = false;            // host memory goes through copies on the device (no unified memory)
     void addMap(std::uint64_t width, std::uint64_t height) {
         texels += width * height;

@@ -12,43 +12,7 @@ namespace {
 constexpr Range kGroup{64, 1};
 constexpr const char* kProgram = "vpl_sampling/vpl_sampling";
 
-// A list of work-items in rows of at most 2^17, a multiple of every group and of no more groups (of 4 at least) than
-// a grid may have without a driver telling it from a small one, whatever the list's length. See lw_list_index.
-Range gridOver(std::size_t count) {
-    constexpr std::size_t kRow = std::size_t(1) << 17;
-    return {std::min(count, kRow), (count + kRow - 1) / kRow};
-}
-
-// Two decorrelated numbers in [0,1) of a seed (Murmur's finaliser); (0, 0) for seed 0.
-cl_float2 rotation(std::uint32_t seed) {
-    auto unit = [](std::uint32_t x) {
-        x = (x ^ (x >> 16)) * 0x85ebca6bu;
-        x = (x ^ (x >> 13)) * 0xc2b2ae35u;
-        return float((x ^ (x >> 16)) >> 8) / 16777216.0f;
-    };
-    cl_float2 shift = {{0.0f, 0.0f}};
-    if (seed) shift = {{unit(seed), unit(seed ^ 0x9e3779b9u)}};
-    return shift;
-}
-
 }  // namespace
-
-lw_subset_order subsetOrder(std::uint32_t count, std::uint32_t subsets) {
-    // The middle bits choose the subset: as many index bits above them as below.
-    std::uint32_t step = 1;
-    while (std::uint64_t(step) * 2 * step * 2 * subsets <= count) step *= 2;
-    const std::uint64_t rounds = (count + std::uint64_t(step) * subsets - 1) / (std::uint64_t(step) * subsets);
-    std::uint64_t capacity = std::max<std::uint64_t>(rounds, 1) * step;
-    capacity += capacity & 1;  // the gather takes two VPLs at a time
-    if (capacity * subsets * 12 > std::uint64_t(std::numeric_limits<std::int32_t>::max()))
-        fail(LW_ERROR_UNSUPPORTED, "vpls: ", count, " VPLs exceed the 32-bit indices of the kernels");
-    lw_subset_order order;
-    order.subsets = cl_int(subsets);
-    order.step = cl_int(step);
-    order.capacity = cl_int(capacity);
-    order.count = cl_int(count);
-    return order;
-}
 
 VplSampling::VplSampling(Device& device, const VplSamplingOptions& options)
     : device_(device),
@@ -98,7 +62,7 @@ void VplSampling::draw(Executor& executor, const RsmInput& rsms, std::uint32_t s
                  uniform, texelSums_, rowTotals_);
     executor.run("vpl_sampling.total", total_, {1, 1}, {1, 1}, rowTotals_, rowCount, rowSumsBuffer_);
     executor.run("vpl_sampling.draw", draw_, slots, kGroup, rsms.texels, rsms.rows, rowCount, texelSums_,
-                 rowSumsBuffer_, uniform, cl_int(sampleCount), rotation(options_.seed), authored_, order_, vpls_);
+                 rowSumsBuffer_, uniform, cl_int(sampleCount), sampleRotation(options_.seed), authored_, order_, vpls_);
 }
 
 Planes VplSampling::debugShape() const {

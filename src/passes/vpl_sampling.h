@@ -7,6 +7,7 @@
 #include "compute/buffer.h"
 #include "compute/executor.h"
 #include "inputs/rsm_input.h"
+#include "passes/vpl_list.h"
 #include "shared/subset_order.h"
 #include "shared/vpl_types.h"
 
@@ -18,9 +19,6 @@ struct VplSamplingOptions {
     std::uint32_t subsets = 16;    // of the gather
     std::uint32_t seed = 0;        // Cranley-Patterson rotation; 0: none
 };
-
-// The slots of `count` VPLs dealt out to `subsets`.
-lw_subset_order subsetOrder(std::uint32_t count, std::uint32_t subsets);
 
 class VplSampling {
 public:

@@ -22,6 +22,9 @@ LWImage imageOf(Pixels& pixels, LWFormat format) {
 struct Inputs {
     Pixels position{}, normal{}, flux{}, depth{}, irradiance{}, validity{};
     LWCamera camera{};
+    // One triangle that fills a map, and slivers: kernels may tell large ones from small ones.
+    std::array<float, 27> vertices{{-9, 1, -9, 9, 1, -9, 0, 1, 9, 0, 0.5f, 0, 0.001f, 0.5f, 0, 0, 0.5f, 0.001f,
+                                    1, 0.5f, 0, 1.001f, 0.5f, 0, 1, 0.5f, 0.001f}};
 
     Inputs() {
         for (std::uint32_t i = 0; i < kSize * kSize; ++i) {
@@ -74,8 +77,15 @@ void exerciseTechnique(Executor& executor, Technique& technique) {
         light.direction[1] = -1.0f;
         light.rsmCount = 1;
         light.rsms = &rsm;
+        LWGeometry geometry{};
+        geometry.structSize = sizeof geometry;
+        geometry.vertices = inputs.vertices.data();
+        geometry.vertexCount = std::uint32_t(inputs.vertices.size() / 3);
+        geometry.triangleCount = geometry.vertexCount / 3;
+        geometry.version = byDepth ? 1 : 2;
         LWFrame frame{};
         frame.structSize = sizeof frame;
+        frame.geometry = &geometry;
         frame.lightCount = 1;
         frame.lights = &light;
         LWOutput output{};

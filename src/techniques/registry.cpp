@@ -1,5 +1,6 @@
 // One line per technique.
 #include "techniques/rsm.h"
+#include "techniques/ssvp.h"
 #include "techniques/technique.h"
 
 namespace lightwell {
@@ -7,6 +8,7 @@ namespace lightwell {
 const std::vector<TechniqueEntry>& techniqueEntries() {
     static const std::vector<TechniqueEntry> entries = {
         rsmEntry(),
+        ssvpEntry(),
     };
     return entries;
 }

@@ -2,7 +2,8 @@
 #include "techniques/rsm_parameters.h"
 
 #include <cstddef>
-#include <iterator>
+
+#include "techniques/parameter_table.h"
 
 namespace lightwell {
 namespace {
@@ -15,50 +16,29 @@ constexpr double kVplSweep[] = {64, 256, 1024, 4096};
 constexpr double kSamplingSweep[] = {LW_SAMPLING_FLUX, LW_SAMPLING_UNIFORM};
 constexpr double kResolutionSweep[] = {LW_RESOLUTION_FULL, LW_RESOLUTION_HALF};
 
-LWParameter parameter(const char* name, const char* description, LWParameterKind kind, std::size_t byteOffset,
-                      double minimum, double maximum, double defaultValue) {
-    LWParameter p{};
-    p.name = name;
-    p.description = description;
-    p.kind = kind;
-    p.byteOffset = std::uint32_t(byteOffset);
-    p.minimum = minimum;
-    p.maximum = maximum;
-    p.defaultValue = defaultValue;
-    return p;
-}
-
 }  // namespace
 
 const std::vector<LWParameter>& rsmParameters() {
-    static const std::vector<LWParameter> table = [] {
-        std::vector<LWParameter> all = {
-            parameter("vpls", "virtual point lights drawn from all RSMs together; 0: every texel. Error falls and time grows with it",
-                      LW_PARAMETER_UINT, offsetof(LWRsmDesc, vpls), 0, 1u << 24, 256),
-            parameter("sampling", "what VPLs are drawn by: reflected flux, or every texel alike", LW_PARAMETER_ENUM,
-                      offsetof(LWRsmDesc, sampling), 0, 1, LW_SAMPLING_FLUX),
-            parameter("interleave", "n of n x n pixels that share out the VPLs: time falls with n^2, noise at edges grows",
-                      LW_PARAMETER_UINT, offsetof(LWRsmDesc, interleave), 1, 8, 4),
-            parameter("filter", "edge-aware n x n filter after an interleaved gather", LW_PARAMETER_BOOL,
-                      offsetof(LWRsmDesc, filter), 0, 1, 1),
-            parameter("resolution", "pixels that are gathered; half: every second column and row, up-sampled after",
-                      LW_PARAMETER_ENUM, offsetof(LWRsmDesc, resolution), 0, 1, LW_RESOLUTION_FULL),
-            parameter("seed", "shift of the sample set; 0: unshifted", LW_PARAMETER_UINT, offsetof(LWRsmDesc, seed), 0,
-                      4294967295.0, 0)};
-        all[0].sweep = kVplSweep;
-        all[0].sweepCount = std::uint32_t(std::size(kVplSweep));
-        all[1].choices = kSamplingNames;
-        all[1].sweep = kSamplingSweep;
-        all[1].sweepCount = std::uint32_t(std::size(kSamplingSweep));
-        all[2].allowed = kInterleaveValues;
-        all[2].allowedCount = std::uint32_t(std::size(kInterleaveValues));
-        all[2].sweep = kInterleaveSweep;
-        all[2].sweepCount = std::uint32_t(std::size(kInterleaveSweep));
-        all[4].choices = kResolutionNames;
-        all[4].sweep = kResolutionSweep;
-        all[4].sweepCount = std::uint32_t(std::size(kResolutionSweep));
-        return all;
-    }();
+    static const std::vector<LWParameter> table = {
+        swept(parameter("vpls", "virtual point lights drawn from all RSMs together; 0: every texel. Error falls and time grows with it",
+                        LW_PARAMETER_UINT, offsetof(LWRsmDesc, vpls), 0, 1u << 24, 256),
+              kVplSweep),
+        swept(choosing(parameter("sampling", "what VPLs are drawn by: reflected flux, or every texel alike", LW_PARAMETER_ENUM,
+                                 offsetof(LWRsmDesc, sampling), 0, 1, LW_SAMPLING_FLUX),
+                       kSamplingNames),
+              kSamplingSweep),
+        swept(allowing(parameter("interleave", "n of n x n pixels that share out the VPLs: time falls with n^2, noise at edges grows",
+                                 LW_PARAMETER_UINT, offsetof(LWRsmDesc, interleave), 1, 8, 4),
+                       kInterleaveValues),
+              kInterleaveSweep),
+        parameter("filter", "edge-aware n x n filter after an interleaved gather", LW_PARAMETER_BOOL,
+                  offsetof(LWRsmDesc, filter), 0, 1, 1),
+        swept(choosing(parameter("resolution", "pixels that are gathered; half: every second column and row, up-sampled after",
+                                 LW_PARAMETER_ENUM, offsetof(LWRsmDesc, resolution), 0, 1, LW_RESOLUTION_FULL),
+                       kResolutionNames),
+              kResolutionSweep),
+        parameter("seed", "shift of the sample set; 0: unshifted", LW_PARAMETER_UINT, offsetof(LWRsmDesc, seed), 0,
+                  4294967295.0, 0)};
     return table;
 }
 

@@ -65,8 +65,10 @@ private:
 
 class TestTechnique {
 public:
-    TestTechnique(LWDevice device, const LWRsmDesc& desc) : device_(device) {
-        const LWStatus status = lwCreateRsm(device, &desc, &technique_);
+    TestTechnique(LWDevice device, const LWRsmDesc& desc) : TestTechnique(device, "rsm", &desc) {}
+    TestTechnique(LWDevice device, const LWSsvpDesc& desc) : TestTechnique(device, "ssvp", &desc) {}
+    TestTechnique(LWDevice device, const char* name, const void* desc) : device_(device) {
+        const LWStatus status = lwCreateTechnique(device, name, desc, &technique_);
         INFO(lastError(device));
         REQUIRE(status == LW_SUCCESS);
     }
@@ -79,6 +81,9 @@ public:
         frame.structSize = sizeof frame;
         frame.lightCount = std::uint32_t(lights.size());
         frame.lights = lights.data();
+        update(frame);
+    }
+    void update(const LWFrame& frame) {
         const LWStatus status = lwUpdate(technique_, &frame);
         INFO(lastError(device_));
         REQUIRE(status == LW_SUCCESS);

@@ -1,0 +1,119 @@
+// The interleaved gather with visibility by clusters (Dong et al. 2009; Aranha et al. 2020): a VPL lights a pixel as
+// far as its cluster's paraboloid map sees the pixel. VPLs come sorted by cluster, so that each pixel looks up
+// a cluster once.
+#ifndef LW_INTERLEAVE
+#define LW_INTERLEAVE 4  // 1, 2, 4, 8
+#endif
+#ifndef LW_VISIBILITY
+#define LW_VISIBILITY 1  // 0: none, 1: hard, 2: soft (percentage-closer)
+#endif
+#include "shared/paraboloid.h"
+#include "shared/vpl_light.h"
+#include "shared/vpl_tiles.h"
+
+// What the gather knows of the maps.
+typedef struct {
+    __global const lw_paraboloid* frames;
+    __global const float* records;
+    int size;
+} lw_maps;
+
+// 1 where the cluster's map sees the surface, or the share of it that does. Cluster -1 is seen everywhere.
+LW_FN real cluster_visibility(lw_maps maps, int cluster, const lw_surface s) {
+    if (cluster < 0) return (real)1.0f;
+#if LW_VISIBILITY == 0
+    return (real)1.0f;
+#else
+    const lw_map_receiver receiver =
+        paraboloid_receiver(maps.frames[cluster], maps.size, s.px, s.py, s.pz, s.nx, s.ny, s.nz);
+    const int first = cluster * maps.size * maps.size;
+#if LW_VISIBILITY == 1
+    return ones_(paraboloid_sees(maps.records, first, maps.size, receiver));
+#else
+    return paraboloid_visibility(maps.records, first, maps.size, receiver);
+#endif
+#endif
+}
+
+// The cluster whose visibility is at hand.
+typedef struct {
+    int cluster;
+    real seen;
+} lw_current;
+
+LW_FN real visibility_of(lw_current* current, lw_maps maps, __global const float* vpl, const lw_surface s) {
+    const int cluster = (int)vpl[11];
+    if (cluster != current->cluster) {
+        current->cluster = cluster;
+        current->seen = cluster_visibility(maps, cluster, s);
+    }
+    return current->seen;
+}
+
+LW_FN void add_two_seen(rgb* e, const lw_surface s, const lw_surface away, __global const float* first,
+                        __global const float* second, lw_maps maps, lw_current* current) {
+    __global const float* const vpl[2] = {first, second};
+    real w[2];
+    weigh_two_vpls(w, away, vpl);
+    LW_UNROLL for (int u = 0; u < 2; ++u) add_light(e, w[u] * visibility_of(current, maps, vpl[u], s), vpl[u]);
+}
+
+// All VPLs of a subset that the tile has not skipped, in the order of their slots.
+LW_FN rgb gather_subset(const lw_surface s, __global const float* vpls, lw_subset_order order, int subset,
+                        __global const uint* masks, lw_vpl_tiles tiles, int tile, lw_maps maps) {
+    rgb e = {(real)0.0f, (real)0.0f, (real)0.0f};
+    const lw_surface away = turned_away(s);
+    lw_current current = {-1, (real)1.0f};
+    vpls += 12 * subset * order.capacity;
+    if (tiles.words == 0) {
+        for (int k = 0; k < order.capacity; k += 2)
+            add_two_seen(&e, s, away, vpls + 12 * k, vpls + 12 * k + 12, maps, &current);
+        return e;
+    }
+    for (int word = 0; word < tiles.words; ++word, vpls += 12 * 32) {
+        uint bits = masks[(subset * tiles.words + word) * lw_tile_stride(tiles) + tile];
+        while (bits) {
+            const int first = take_lowest(&bits), second = take_lowest(&bits);
+            add_two_seen(&e, s, away, vpls + 12 * first, vpls + 12 * second, maps, &current);
+        }
+    }
+    return e;
+}
+
+// One work-item = LW_WIDTH * LW_INTERLEAVE adjacent pixels of one row, of a width x height image.
+// vpls: float[12] each as clustered_gather_order wrote them. frames, records: the maps of all clusters, of `size`
+// texels a side. masks, irradiance, counts: as in interleaved_gather_gather.
+__kernel void clustered_gather_gather(__global const float* position, int4 positionLayout,
+                                      __global const float* normal, int4 normalLayout, int width, int height,
+                                      __global const float* vpls, lw_subset_order order,
+                                      __global const uint* masks, lw_vpl_tiles tiles,
+                                      __global const lw_paraboloid* frames, __global const float* records, int size,
+                                      __global float* irradiance, int4 irradianceLayout, __global int* counts) {
+    const int x = (int)get_global_id(0) * LW_WIDTH * LW_INTERLEAVE, y = (int)get_global_id(1);
+    if (x >= width || y >= height) return;
+    const int tile = (y / LW_TILE_ROWS) * tiles.columns + x / tiles.tileWidth;
+    const int positionRow = positionLayout.x + y * positionLayout.y, normalRow = normalLayout.x + y * normalLayout.y;
+    const lw_maps maps = {frames, records, size};
+    real p[3][LW_INTERLEAVE], n[3][LW_INTERLEAVE], e[3][LW_INTERLEAVE];
+    LW_UNROLL for (int a = 0; a < 3; ++a) {
+        load_dealt(p[a], position, positionRow + a * positionLayout.z, x, width);
+        load_dealt(n[a], normal, normalRow + a * normalLayout.z, x, width);
+    }
+
+    int rejectedHere = 0, saturatedHere = 0;
+    for (int j = 0; j < LW_INTERLEAVE; ++j) {  // not unrolled: seconds of compilation
+        const lw_surface s = make_surface(p[0][j], p[1][j], p[2][j], n[0][j], n[1][j], n[2][j]);
+        rgb sum = {(real)0.0f, (real)0.0f, (real)0.0f};
+        if (any_(s.valid)) {
+            const int subset = (y & (LW_INTERLEAVE - 1)) * LW_INTERLEAVE + j;
+            sum = gather_subset(s, vpls, order, subset, masks, tiles, tile, maps);
+        }
+        const mask saturated = finish_irradiance(sum, s.valid, &e[0][j], &e[1][j], &e[2][j]);
+        if (any_(s.rejected)) rejectedHere += count_(s.rejected);
+        if (any_(saturated)) saturatedHere += count_(saturated);
+    }
+    LW_UNROLL for (int a = 0; a < 3; ++a)
+        store_dealt(e[a], irradiance, irradianceLayout.x + a * irradianceLayout.z + y * irradianceLayout.y, x, width);
+    if (rejectedHere) atomic_add(counts, rejectedHere);
+    if (saturatedHere) atomic_add(counts + 2, saturatedHere);
+}

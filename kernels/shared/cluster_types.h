@@ -1,0 +1,18 @@
+// A cluster of virtual point lights as kernels and host share it.
+#ifndef LW_CLUSTER_TYPES_H
+#define LW_CLUSTER_TYPES_H
+
+#include "portable.h"
+
+// Visibility is looked up from the medoid, which lies on a surface; the mean may float in the air or lie
+// inside a wall, and leaks from there.
+typedef struct {
+    lw_float4 position;        // m: mean of the members' positions; w: number of members, 0 for an empty cluster
+    lw_float4 normal;          // unit: normalised sum of the members' normals; w: the members' squared distances summed
+    lw_float4 flux;            // W: sum of the members' flux; w unused
+    lw_float4 medoidPosition;  // m: of the member nearest to the mean; w: its index in the list, exact below 2^24
+    lw_float4 medoidNormal;    // unit; w unused
+} lw_cluster;
+LW_SIZE_CHECK(lw_cluster, 80);
+
+#endif

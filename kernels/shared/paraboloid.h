@@ -1,0 +1,155 @@
+// Paraboloid maps on lanes: directions to texels and back (Heidrich & Seidel 1998), and what a receiver asks of a
+// cluster's map: whether its light arrives (as imperfect shadow maps do, Ritschel et al. 2008; one map for a
+// cluster of VPLs, Dong et al. 2009). The paraboloid's parallel projection is the stereographic one,
+// (u, v) = d.xy / (1 + d.z), whose disc reaches here beyond the unit circle of the hemisphere.
+//
+// A depth test needs a bias against a surface's shadow upon itself that grows with the texel and the slope, and is
+// then as thick as a wall. The test here asks instead whether the receiver lies in the tangent plane of
+// what the texel saw: a plane has no slope, and both limits can be tight.
+#ifndef LW_PARABOLOID_H
+#define LW_PARABOLOID_H
+
+#include "paraboloid_types.h"
+#include "wide.h"
+
+// Share of the ray's length within which a receiver counts as the surface that the texel saw, along the ray and
+// off its plane. Raised, thin walls leak; lowered, normals of 10 bits and curved surfaces give acne.
+#define LW_PARABOLOID_BIAS 2e-3f
+// Cosine between the receiver's normal and the stored one above which it can be the same surface; lax, as
+// normals of a G-buffer are bent by normal maps. At 0 the wall behind an edge would count as the one before it.
+#define LW_PARABOLOID_AGREES 0.5f
+
+// ---- texels and directions
+
+// Distance of neighbouring texel centres on the disc.
+LW_FN float paraboloid_step(int size) { return 2.0f * LW_PARABOLOID_RIM / (float)size; }
+// Coordinate on the disc of texel column or row x, and the inverse: its whole numbers are texel centres.
+LW_FN real paraboloid_uv(real x, float step) { return (x + 0.5f) * step - LW_PARABOLOID_RIM; }
+LW_FN real paraboloid_texel(real uv, float step) { return (uv + LW_PARABOLOID_RIM) / step - 0.5f; }
+
+typedef struct {
+    real x, y, z;
+} lw_direction;
+
+// Along (u, v) in the map's frame, of length 1 + u^2 + v^2: tests against planes need no unit length.
+LW_FN lw_direction paraboloid_ray(real u, real v) {
+    const lw_direction ray = {2.0f * u, 2.0f * v, 1.0f - u * u - v * v};
+    return ray;
+}
+LW_FN lw_direction paraboloid_direction(real u, real v) {
+    const real scale = 1.0f / (1.0f + u * u + v * v);
+    lw_direction d = paraboloid_ray(u, v);
+    d.x = d.x * scale;
+    d.y = d.y * scale;
+    d.z = d.z * scale;
+    return d;
+}
+
+// Frame around a unit z without a branch, one frame for one z (Duff et al. 2017).
+LW_FN void paraboloid_axes(float4 z, float4* axisX, float4* axisY) {
+    const float s = copysign(1.0f, z.z), a = -1.0f / (s + z.z), b = z.x * z.y * a;
+    *axisX = (float4)(1.0f + s * z.x * z.x * a, s * b, -s * z.x, 0.0f);
+    *axisY = (float4)(b, s + z.y * z.y * a, -z.y, 0.0f);
+}
+
+// ---- records
+
+LW_FN laneu pack_normal(real x, real y, real z) {
+    const laneu px = to_laneu(x * 511.0f + 512.5f), py = to_laneu(y * 511.0f + 512.5f),
+                pz = to_laneu(z * 511.0f + 512.5f);
+    return px | (py << 10) | (pz << 20) | LW_PARABOLOID_HIT;
+}
+// Component 0, 1 or 2, within 1/1022.
+LW_FN real packed_normal(lanei bits, int component) {
+    return to_real(((bits >> (10 * component)) & 1023) - 512) * (1.0f / 511.0f);
+}
+// Albedo in [0,1], 10 bits a channel from the lowest; and back.
+LW_FN laneu pack_albedo(real r, real g, real b) {
+    const real most = 1023.0f;
+    return to_laneu(fmin(r * 1023.0f + 0.5f, most)) | (to_laneu(fmin(g * 1023.0f + 0.5f, most)) << 10) |
+           (to_laneu(fmin(b * 1023.0f + 0.5f, most)) << 20);
+}
+LW_FN real packed_albedo(lanei bits, int channel) {
+    return to_real((bits >> (10 * channel)) & 1023) * (1.0f / 1023.0f);
+}
+
+// ---- receivers
+
+// A receiver as one map sees it: prepared once, then looked up in as many texels as wanted.
+typedef struct {
+    real qx, qy, qz;  // from the origin, in the map's frame
+    real nx, ny, nz;  // its normal there
+    real distance;    // |q|
+    real x, y;        // in texels; whole numbers are texel centres
+    mask inside;      // before the rim
+} lw_map_receiver;
+
+LW_FN real along_axis(float4 axis, real x, real y, real z) {
+    return fma_(axis.x, x, fma_(axis.y, y, axis.z * z));
+}
+
+LW_FN lw_map_receiver paraboloid_receiver(lw_paraboloid map, int size, real px, real py, real pz, real nx,
+                                          real ny, real nz) {
+    lw_map_receiver r;
+    const real wx = px - map.origin.x, wy = py - map.origin.y, wz = pz - map.origin.z;
+    r.qx = along_axis(map.axisX, wx, wy, wz);
+    r.qy = along_axis(map.axisY, wx, wy, wz);
+    r.qz = along_axis(map.axisZ, wx, wy, wz);
+    r.nx = along_axis(map.axisX, nx, ny, nz);
+    r.ny = along_axis(map.axisY, nx, ny, nz);
+    r.nz = along_axis(map.axisZ, nx, ny, nz);
+    r.distance = sqrt(fma_(r.qx, r.qx, fma_(r.qy, r.qy, r.qz * r.qz)));
+    // Strict: also false at the origin, where there is no direction, and for what is not a number.
+    r.inside = r.qz > LW_PARABOLOID_RIM_COSINE * r.distance;
+    const real denominator = select_((real)(1.0f), (r.distance + r.qz) * paraboloid_step(size), r.inside);
+    const real scale = 1.0f / denominator, centre = 0.5f * (float)size - 0.5f;
+    // Beyond the rim: the map's middle, so that every index is one.
+    r.x = select_(centre, fma_(r.qx, scale, centre), r.inside);
+    r.y = select_(centre, fma_(r.qy, scale, centre), r.inside);
+    return r;
+}
+
+// Whether the surface that texel (x, y) saw leaves the receiver lit. Two gathers.
+// Plane of the hit: n.(p - h w/m) = 0 with the texel's ray w of length m; multiplied by m, it takes no division.
+LW_FN mask paraboloid_texel_lit(__global const float* records, int firstRecord, int size, lanei x, lanei y,
+                                lw_map_receiver r) {
+    const lanei at = 2 * (firstRecord + y * size + x);
+    const real hit = gather(records, at);
+    const lanei bits = gatheri((__global const int*)records, at + 1);
+    const float step = paraboloid_step(size);
+    const real u = paraboloid_uv(to_real(x), step), v = paraboloid_uv(to_real(y), step);
+    const real r2 = fma_(u, u, v * v), length = 1.0f + r2;
+    const real nx = packed_normal(bits, 0), ny = packed_normal(bits, 1), nz = packed_normal(bits, 2);
+    const real receiverSide = fma_(nx, r.qx, fma_(ny, r.qy, nz * r.qz)) * length;
+    const real hitSide = hit * fma_(2.0f * u, nx, fma_(2.0f * v, ny, (1.0f - r2) * nz));
+    const mask before = r.distance <= hit * (1.0f + LW_PARABOLOID_BIAS);
+    const mask onPlane = fabs(receiverSide - hitSide) <= LW_PARABOLOID_BIAS * r.distance * length;
+    const mask agrees = fma_(nx, r.nx, fma_(ny, r.ny, nz * r.nz)) >= LW_PARABOLOID_AGREES;
+    return or_(before, and_(onPlane, agrees));
+}
+
+// Hard: the nearest texel decides. Beyond the rim and where the map saw nothing: lit. `firstRecord`: of the map.
+LW_FN mask paraboloid_sees(__global const float* records, int firstRecord, int size, lw_map_receiver r) {
+    const real last = (float)(size - 1);
+    const lanei x = to_lanei(fmin(fmax(r.x + 0.5f, 0.0f), last));
+    const lanei y = to_lanei(fmin(fmax(r.y + 0.5f, 0.0f), last));
+    return or_(not_(r.inside), paraboloid_texel_lit(records, firstRecord, size, x, y, r));
+}
+
+// Soft, in [0,1]: the share of the four nearest texels that are lit, weighted bilinearly (percentage-closer
+// filtering, Reeves et al. 1987). Eight gathers.
+LW_FN real paraboloid_visibility(__global const float* records, int firstRecord, int size, lw_map_receiver r) {
+    const real last = (float)(size - 1);
+    const real x = fmin(fmax(r.x, 0.0f), last), y = fmin(fmax(r.y, 0.0f), last);
+    const lanei x0 = to_lanei(x), y0 = to_lanei(y);
+    const lanei x1 = min(x0 + 1, (lanei)(size - 1)), y1 = min(y0 + 1, (lanei)(size - 1));
+    const real fx = x - to_real(x0), fy = y - to_real(y0);
+    const real a = ones_(paraboloid_texel_lit(records, firstRecord, size, x0, y0, r));
+    const real b = ones_(paraboloid_texel_lit(records, firstRecord, size, x1, y0, r));
+    const real c = ones_(paraboloid_texel_lit(records, firstRecord, size, x0, y1, r));
+    const real d = ones_(paraboloid_texel_lit(records, firstRecord, size, x1, y1, r));
+    const real upper = fma_(fx, b - a, a), lower = fma_(fx, d - c, c);
+    return select_((real)(1.0f), fma_(fy, lower - upper, upper), r.inside);
+}
+
+#endif

@@ -1,0 +1,63 @@
+// The host's triangles on the device, ordered and grouped for kernels that draw them into maps.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "compute/buffer.h"
+#include "compute/executor.h"
+#include "compute/report.h"
+#include "lightwell/lightwell.h"
+#include "shared/geometry_types.h"
+
+namespace lightwell {
+
+class GeometryInput {
+public:
+    // Planes of `triangles`: the vertices a, b, c of each, and its albedo.
+    enum Plane {
+        kVertexA = LW_TRIANGLE_A,
+        kVertexB = LW_TRIANGLE_B,
+        kVertexC = LW_TRIANGLE_C,
+        kAlbedo = LW_TRIANGLE_ALBEDO,
+        kPlaneCount = LW_TRIANGLE_PLANES
+    };
+
+    // Throws what import() would say of this geometry (null: none) when it is new.
+    static void check(const LWGeometry* geometry);
+
+    // Brings the geometry to the device (pass "geometry_input.upload") when its version, a pointer or a count
+    // differs from the last; host memory is read during the call only. Triangles are ordered by size and place, by
+    // their own values alone: their order in the host's arrays does not matter. Those with a vertex that is not
+    // finite or beyond LW_LARGEST_DISTANCE are left out and counted, those without area left out. Refused
+    // geometry leaves the last one in force.
+    void import(Executor& executor, const LWGeometry* geometry);
+
+    Planes triangles;  // kPlaneCount planes, height 1, width = triangles padded; none without triangles
+    Buffer groups;     // planes of centre xyz and radius per group of LW_TRIANGLE_GROUP triangles; radius -1: empty
+    std::uint32_t triangleCount = 0;  // drawn
+    std::uint32_t groupCount = 0;     // padded to 16: floats per plane of `groups`
+    float diagonal = 0.0f;            // of the bounding box of what is drawn, m
+    std::uint64_t revision = 0;       // differs whenever the triangles do
+    std::vector<std::uint32_t> hostIndices;  // of each drawn triangle: its number among the host's
+
+    void report(Report& report) const;  // triangles, rejected_triangles
+    std::uint64_t bytes() const { return memory_.bytes() + groups.bytes(); }
+    // The most that bytes() becomes for so many triangles, and the refusal of more than kernels can index.
+    static std::uint64_t estimateBytes(std::uint32_t triangleCount);
+
+private:
+    struct Key {
+        const void *vertices = nullptr, *indices = nullptr, *albedo = nullptr;
+        std::uint32_t vertexCount = 0, triangleCount = 0;
+        std::uint64_t version = 0;
+        bool operator==(const Key& other) const;
+    };
+    static Key keyOf(const LWGeometry* geometry);
+
+    Buffer memory_;
+    Key key_;
+    std::uint32_t rejected_ = 0;
+};
+
+}  // namespace lightwell

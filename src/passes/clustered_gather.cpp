@@ -1,0 +1,67 @@
+#include "passes/clustered_gather.h"
+
+#include <string>
+
+#include "compute/device.h"
+#include "passes/vpl_list.h"
+#include "shared/vpl_types.h"
+
+namespace lightwell {
+namespace {
+
+Range groupOf(const Kernel& kernel) { return kernel.width() == 1 ? Range{64, 1} : Range{8, 1}; }
+
+Defines definesOf(std::uint32_t interleave, ClusterVisibility visibility) {
+    return {{"LW_INTERLEAVE", std::to_string(interleave)}, {"LW_VISIBILITY", std::to_string(int(visibility))}};
+}
+
+std::uint64_t listBytes(const lw_subset_order& order) {
+    return std::uint64_t(order.subsets) * std::uint64_t(order.capacity) * sizeof(lw_vpl);
+}
+
+}  // namespace
+
+ClusteredGather::ClusteredGather(Device& device, std::uint32_t interleave, ClusterVisibility visibility)
+    : device_(device),
+      interleave_(interleave),
+      orderList_(device.programs().kernel("clustered_gather/clustered_order", "clustered_gather_order")),
+      gather_(device.programs().kernel("clustered_gather/clustered_gather", "clustered_gather_gather",
+                                       definesOf(interleave, visibility))) {}
+
+// Slots for both lists side by side.
+lw_subset_order ClusteredGather::orderOf(std::uint32_t firstCount, std::uint32_t secondCount, std::uint32_t interleave) {
+    lw_subset_order order = subsetOrder(firstCount, interleave * interleave);
+    order.capacity += subsetOrder(secondCount, interleave * interleave).capacity;
+    order.count = cl_int(firstCount + secondCount);
+    return order;
+}
+
+void ClusteredGather::reserve(std::uint32_t firstCount, std::uint32_t secondCount) {
+    const lw_subset_order order = orderOf(firstCount, secondCount, interleave_);
+    vpls_.reserve(device_, std::size_t(listBytes(order)), "VPLs by cluster");
+    order_ = order;
+}
+
+std::uint64_t ClusteredGather::estimateBytes(std::uint32_t firstCount, std::uint32_t secondCount,
+                                             std::uint32_t interleave) {
+    return listBytes(orderOf(firstCount, secondCount, interleave));
+}
+
+void ClusteredGather::recordOrder(Executor& executor, const VplList& firsts, const Buffer& assignment,
+                                  std::uint32_t clusterCount, const VplList& seconds) {
+    const std::uint32_t subsets = interleave_ * interleave_;
+    executor.run("clustered_gather.order", orderList_, {subsets, 1}, {1, 1}, firsts.vpls, assignment,
+                 subsetOrder(firsts.count, subsets), cl_int(clusterCount), seconds.vpls,
+                 subsetOrder(seconds.count, subsets), order_, vpls_);
+}
+
+void ClusteredGather::recordGather(Executor& executor, const Planes& position, const Planes& normal,
+                                   const Buffer& masks, const lw_vpl_tiles& tiles, const ClusterMaps& maps,
+                                   const Planes& irradiance, const Buffer& counts) {
+    const std::uint32_t pixels = gather_.width() * interleave_;
+    executor.run("clustered_gather.gather", gather_, {(position.width + pixels - 1) / pixels, position.height},
+                 groupOf(gather_), position, normal, cl_int(position.width), cl_int(position.height), vpls_, order_, masks,
+                 tiles, maps.frames, maps.records, cl_int(maps.size), irradiance, counts);
+}
+
+}  // namespace lightwell

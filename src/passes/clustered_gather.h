@@ -1,0 +1,60 @@
+// Irradiance of clustered VPLs at G-buffer pixels, interleaved n x n, with the visibility of each cluster's
+// paraboloid map (Dong et al. 2009; Aranha et al. 2020). The filter is interleaved_gather's.
+#pragma once
+
+#include <cstdint>
+
+#include "compute/buffer.h"
+#include "compute/executor.h"
+#include "shared/subset_order.h"
+#include "shared/vpl_tiles.h"
+
+namespace lightwell {
+
+enum class ClusterVisibility { none, hard, soft };
+
+// A list of VPLs by index.
+struct VplList {
+    const Buffer& vpls;
+    std::uint32_t count;
+};
+
+// The clusters' maps, as ParaboloidMap leaves them.
+struct ClusterMaps {
+    const Buffer& frames;
+    const Buffer& records;
+    std::uint32_t size;
+};
+
+class ClusteredGather {
+public:
+    // interleave: 1, 2, 4 or 8.
+    ClusteredGather(Device& device, std::uint32_t interleave, ClusterVisibility visibility);
+
+    // Makes room for the sorted list of so many VPLs; allocates only where it has grown.
+    void reserve(std::uint32_t firstCount, std::uint32_t secondCount);
+    static lw_subset_order orderOf(std::uint32_t firstCount, std::uint32_t secondCount, std::uint32_t interleave);
+    static std::uint64_t estimateBytes(std::uint32_t firstCount, std::uint32_t secondCount, std::uint32_t interleave);
+
+    // Pass "clustered_gather.order": sorts each subset's share of `firsts` by cluster (`assignment`, an int each, -1: left
+    // out) and appends its share of `seconds`, which are seen everywhere.
+    void recordOrder(Executor& executor, const VplList& firsts, const Buffer& assignment, std::uint32_t clusterCount,
+                     const VplList& seconds);
+    // Pass "clustered_gather.gather"; masks (of `vpls`, by InterleavedGather::recordCull), irradiance and counts as in
+    // InterleavedGather::recordGather.
+    void recordGather(Executor& executor, const Planes& position, const Planes& normal, const Buffer& masks,
+                      const lw_vpl_tiles& tiles, const ClusterMaps& maps, const Planes& irradiance, const Buffer& counts);
+
+    const Buffer& vpls() const { return vpls_; }       // lw_vpl by slot; flux.w: cluster or -1
+    lw_subset_order order() const { return order_; }  // its subsets and capacity
+    std::uint64_t bytes() const { return vpls_.bytes(); }
+
+private:
+    Device& device_;
+    std::uint32_t interleave_;
+    Kernel &orderList_, &gather_;
+    Buffer vpls_;
+    lw_subset_order order_{};
+};
+
+}  // namespace lightwell

@@ -1,0 +1,58 @@
+// Clusters of virtual point lights that share one look at the scene: k-means by position and normal (Lloyd 1982), warm
+// started from the previous frame so that a cluster keeps its place in the list.
+#pragma once
+
+#include <cstdint>
+
+#include "compute/buffer.h"
+#include "compute/executor.h"
+#include "shared/cluster_types.h"
+#include "shared/kmeans_types.h"
+#include "shared/vpl_types.h"
+
+namespace lightwell {
+
+struct KMeansOptions {
+    std::uint32_t clusters = 8;    // 1 to 64; 0: every VPL is a cluster of its own
+    std::uint32_t iterations = 3;  // a frame; more settle faster after a cut
+    // Squared distance: positionWeight |V - C|^2 / D^2 + normalWeight (1 - n_i . n), D the diagonal of the box around the
+    // VPLs; 0 to 1e6 each. Only their ratio decides. More on normals: clusters reach farther along their walls; on
+    // positions: one cluster may hold both sides of a thin wall.
+    float positionWeight = 0.6f, normalWeight = 0.4f;
+    bool warmStart = true;  // seeds are the previous frame's means; otherwise every frame begins with k-means++
+};
+
+class KMeans {
+public:
+    // Throws INVALID_ARGUMENT for options out of range.
+    KMeans(Device& device, const KMeansOptions& options);
+
+    // Records passes "kmeans.*". `vpls`: lw_vpl by slot, `count` of them (at most 2^24); a slot without flux belongs to no
+    // cluster. `restart`: forgets the previous frame (a cut).
+    void record(Executor& executor, const Buffer& vpls, std::uint32_t count, bool restart);
+
+    // lw_cluster each, normal.w being the sum of the members' squared distances as above. Empty ones, as there are when
+    // fewer places are lit than there are clusters: position.w = 0, flux 0, medoidPosition.w = -1, everything finite.
+    const Buffer& clusters() const { return clusters_; }
+    const Buffer& assignment() const { return assignment_; }  // int by slot: cluster, or -1
+    std::uint32_t clusterCount() const { return clusterCount_; }
+    // Planes without memory, of the clusters: position, normal, flux, members, the medoid's position and normal.
+    Planes debugShape() const;
+    static const char* debugDescription();
+    void recordPlanes(Executor& executor, const Planes& planes);  // fills them
+    std::uint64_t bytes() const;
+    static std::uint64_t estimateBytes(const KMeansOptions& options, std::uint32_t count);
+
+private:
+    void reserve(std::uint32_t count);
+    void iterate(Executor& executor, std::uint32_t stride, bool seeding);
+
+    Device& device_;
+    KMeansOptions options_;
+    Kernel &unpack_, &frame_, &assign_, &seed_, &sums_, &update_, &members_, &finish_, &identity_, &planes_;
+    Buffer sites_, partials_, means_, frameBuffer_, clusters_, assignment_;
+    std::uint32_t clusterCount_ = 0;
+    bool warm_ = false;
+};
+
+}  // namespace lightwell

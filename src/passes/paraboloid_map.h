@@ -1,0 +1,56 @@
+// One paraboloid map per cluster of VPLs: what the cluster's medoid sees, triangles drawn exactly.
+#pragma once
+
+#include <cstdint>
+
+#include "compute/buffer.h"
+#include "compute/executor.h"
+#include "compute/report.h"
+#include "inputs/geometry_input.h"
+#include "shared/cluster_types.h"
+#include "shared/paraboloid_types.h"
+
+namespace lightwell {
+
+class ParaboloidMap {
+public:
+    // `size`: texels a side of every map; 64 .. 512, a multiple of 16.
+    ParaboloidMap(Device& device, std::uint32_t size);
+
+    // Records passes "paraboloid_map.*". `clusters`: lw_cluster each, `clusterCount` of them. A map is redrawn
+    // only when its cluster's medoid or normal moved or the geometry changed; that is found out on the device.
+    void record(Executor& executor, const Buffer& clusters, std::uint32_t clusterCount,
+                const GeometryInput& geometry);
+    void redrawAll() { drawnCount_ = 0; }  // in the next record(), whatever moved
+
+    std::uint32_t size() const { return size_; }
+    std::uint32_t mapCount() const { return mapCount_; }
+    const Buffer& frames() const { return frames_; }    // lw_paraboloid per map
+    const Buffer& records() const { return records_; }  // two words per texel, see paraboloid_types.h
+    const Buffer& albedo() const { return albedo_; }    // a word per texel, see pack_albedo in paraboloid.h
+    // The first record of map k.
+    std::int32_t firstRecord(std::uint32_t k) const { return std::int32_t(k * size_ * size_); }
+
+    // Planes without memory: distance (m), normal in the world, albedo; 0 where a texel met nothing; maps one below
+    // the other.
+    Planes debugShape() const;
+    void recordPlanes(Executor& executor, const Planes& planes);  // fills them
+
+    void report(Report& report) const;  // maps_redrawn, inline_triangles
+    std::uint64_t bytes() const;
+    static std::uint64_t estimateBytes(std::uint32_t size, std::uint32_t clusterCount, std::uint32_t triangleCount);
+
+private:
+    void reserve(std::uint32_t clusterCount, const GeometryInput& geometry);
+    void draw(Executor& executor, const GeometryInput& geometry);
+
+    Device& device_;
+    std::uint32_t size_;
+    Kernel &place_, &clear_, &depth_, &depthLarge_, &identity_, &identityLarge_, &resolve_, &planes_;
+    Buffer frames_, state_, records_, albedo_, candidates_, large_, counters_;
+    std::uint32_t mapCount_ = 0;
+    std::uint32_t drawnCount_ = 0;  // maps that hold what `drawnRevision_` showed
+    std::uint64_t drawnRevision_ = 0;
+};
+
+}  // namespace lightwell

@@ -1,0 +1,130 @@
+#include "techniques/interleaved_view.h"
+
+#include <utility>
+
+#include "compute/device.h"
+#include "compute/error.h"
+#include "compute/raw_enum.h"
+
+namespace lightwell {
+namespace {
+
+constexpr std::size_t kCountBytes = 3 * sizeof(cl_int);
+
+constexpr const char* kSkips = "VPLs that cannot light a tile of pixels are skipped there";
+constexpr const char* kSkipsNone = "none: a list of more than 16384 slots, of which every pixel takes its whole share";
+static_assert(VplTiles::kMostSlots == 16384, "kSkipsNone names it");
+
+}  // namespace
+
+void checkInterleavedOutputs(Device& device, const View& view, const LWOutput& output, const char* technique) {
+    const std::pair<const LWImage*, const char*> unsupported[] = {{&output.ambientOcclusion, "ambientOcclusion"},
+                                                                  {&output.specularRadiance, "specularRadiance"},
+                                                                  {&output.shadow, "shadow"}};
+    for (const auto& [image, name] : unsupported)
+        if (rawEnum(image->format) != LW_FORMAT_NONE)
+            fail(LW_ERROR_UNSUPPORTED, "output.", name, ": technique ", technique, " makes irradiance and validity only");
+    if (rawEnum(output.irradiance.format) == LW_FORMAT_NONE && rawEnum(output.validity.format) == LW_FORMAT_NONE)
+        fail(LW_ERROR_INVALID_ARGUMENT, "output: expected irradiance or validity, got neither");
+    OutputTarget::check(device, view, output.irradiance, 3, "output.irradiance");
+    OutputTarget::check(device, view, output.validity, 1, "output.validity");
+}
+
+InterleavedView::InterleavedView(Device& device, const InterleavedOptions& options, const View& view)
+    : device_(device),
+      options_(options),
+      gatheredWidth_(options.gathered(view.maxWidth)),
+      gatheredHeight_(options.gathered(view.maxHeight)),
+      counts_(device, kCountBytes, "counts of a view") {
+    const std::uint32_t width = gatheredWidth_, height = gatheredHeight_;
+    if (options.half || options.filters()) gathered_ = PlanarImage(device, width, height, 3, "gathered irradiance");
+    if (options.half && options.filters()) filtered_ = PlanarImage(device, width, height, 3, "filtered irradiance");
+    if (options.half) {
+        halfPosition_ = PlanarImage(device, width, height, 3, "half-resolution positions");
+        halfNormal_ = PlanarImage(device, width, height, 3, "half-resolution normals");
+    }
+}
+
+void InterleavedView::render(Executor& executor, const View& view, const LWGBuffer& gbuffer, const LWOutput& output,
+                             InterleavedGather& passes, JointBilateral* bilateral, const Gather& gather) {
+    gbuffer_.import(executor, view, gbuffer, 0, "gbuffer");
+    // Should a later step fail, the images of the frame before are gone.
+    lastGathered_ = lastFiltered_ = Planes{};
+    isRendered_ = true;
+    const Planes irradiance = irradiance_.begin(executor, view, output.irradiance, 3, "output.irradiance");
+    const Planes validity = validity_.begin(executor, view, output.validity, 1, "output.validity");
+    if (irradiance) light(executor, passes, bilateral, irradiance, gather);
+    if (validity) passes.recordValidity(executor, gbuffer_.position, gbuffer_.normal, validity);
+    irradiance_.end(executor);
+    validity_.end(executor);
+}
+
+void InterleavedView::light(Executor& executor, InterleavedGather& passes, JointBilateral* bilateral,
+                            const Planes& irradiance, const Gather& gather) {
+    Planes position = gbuffer_.position, normal = gbuffer_.normal;
+    const bool half = options_.half, filter = options_.filters();
+    executor.fill("interleaved_gather.counts", counts_, 0, 0, counts_.bytes());
+    if (half) {
+        const std::uint32_t w = JointBilateral::halved(position.width), h = JointBilateral::halved(position.height);
+        const Planes halfPosition = halfPosition_.planes(w, h), halfNormal = halfNormal_.planes(w, h);
+        bilateral->recordDownsample(executor, position, normal, halfPosition, halfNormal);
+        position = halfPosition;
+        normal = halfNormal;
+    }
+    const Planes gathered = half || filter ? gathered_.planes(position.width, position.height) : irradiance;
+    gather(position, normal, gathered);
+    Planes lit = gathered;
+    if (filter) {
+        lit = half ? filtered_.planes(position.width, position.height) : irradiance;
+        passes.recordFilter(executor, position, normal, gathered, lit);
+    }
+    if (half)
+        bilateral->recordUpsample(executor, gbuffer_.position, gbuffer_.normal, position, normal, lit, irradiance, counts_);
+    lastGathered_ = gathered;
+    lastFiltered_ = lit;
+}
+
+const Buffer& InterleavedView::cull(Executor& executor, InterleavedGather& passes, const Planes& position,
+                                    const Planes& normal, const Buffer& vpls, lw_subset_order order) {
+    tiles_.reserve(device_, gatheredWidth_, gatheredHeight_, order, options_.interleave);
+    passes.recordCull(executor, position, normal, vpls, order, tiles_);
+    return tiles_.masks();
+}
+
+void InterleavedView::report(Device& device, Report& report, lw_subset_order order) const {
+    if (!isRendered_) return;
+    gbuffer_.report(report);
+    irradiance_.report(report);
+    validity_.report(report);
+    if (!lastGathered_) return;
+    report.choose("tiles", VplTiles::skips(order) ? kSkips : kSkipsNone);
+    report.read(device, "rejected_pixels", counts_, 0);
+    report.read(device, "upsample_fallbacks", counts_, sizeof(cl_int));
+    report.read(device, "saturated_pixels", counts_, 2 * sizeof(cl_int));
+}
+
+void InterleavedView::addDebugViews(std::vector<DebugView>& views) const {
+    if (!lastGathered_) return;
+    views.push_back({"position", "world position (m)", gbuffer_.position, {}});
+    views.push_back({"normal", "world normal as the host gave it", gbuffer_.normal, {}});
+    views.push_back({"gathered", "irradiance before the filter (W/m^2)", lastGathered_, {}});
+    if (options_.filters()) views.push_back({"filtered", "irradiance after the filter (W/m^2)", lastFiltered_, {}});
+}
+
+std::uint64_t InterleavedView::bytes() const {
+    return gbuffer_.bytes() + irradiance_.bytes() + validity_.bytes() + gathered_.bytes() + filtered_.bytes() +
+           halfPosition_.bytes() + halfNormal_.bytes() + tiles_.bytes() + counts_.bytes();
+}
+
+std::uint64_t InterleavedView::estimateBytes(const InterleavedOptions& options, const LWViewDesc& view, bool uploads,
+                                             lw_subset_order order) {
+    const std::uint32_t width = options.gathered(view.maxWidth), height = options.gathered(view.maxHeight);
+    const std::uint64_t images = (options.half || options.filters() ? 1u : 0u) +
+                                 (options.half && options.filters() ? 1u : 0u) + (options.half ? 2u : 0u);
+    return GBufferInput::estimateBytes(view, 0, uploads) + OutputTarget::estimateBytes(view, 3, uploads) +
+           OutputTarget::estimateBytes(view, 1, uploads) + kCountBytes +
+           images * 3 * paddedWidth(width) * height * sizeof(float) +
+           VplTiles::estimateBytes(width, height, order, options.interleave);
+}
+
+}  // namespace lightwell

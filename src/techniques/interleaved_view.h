@@ -1,0 +1,69 @@
+// One view's part of a technique that gathers VPLs interleaved: the passes around the gather, and the images that lie
+// between them. A part of the techniques' frame: `rsm` and `ssvp` differ in what they gather.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "compute/report.h"
+#include "inputs/gbuffer_input.h"
+#include "inputs/output_target.h"
+#include "inputs/view.h"
+#include "passes/interleaved_gather.h"
+#include "passes/joint_bilateral.h"
+#include "techniques/technique.h"
+
+namespace lightwell {
+
+struct InterleavedOptions {
+    std::uint32_t interleave = 4;
+    bool filter = true;  // has an effect with interleave > 1
+    bool half = false;   // gathers every second pixel and row
+
+    bool filters() const { return filter && interleave > 1; }
+    std::uint32_t gathered(std::uint32_t along) const { return half ? JointBilateral::halved(along) : along; }
+};
+
+// Outputs that such a technique makes: irradiance, validity. Throws what lwRender says of others.
+void checkInterleavedOutputs(Device& device, const View& view, const LWOutput& output, const char* technique);
+
+class InterleavedView {
+public:
+    InterleavedView(Device& device, const InterleavedOptions& options, const View& view);
+
+    // Records what gathers the surfaces `position`, `normal` into `irradiance`.
+    using Gather = std::function<void(const Planes& position, const Planes& normal, const Planes& irradiance)>;
+    // A view's frame, from the host's images to the host's images. `bilateral`: for half resolution, else null.
+    void render(Executor& executor, const View& view, const LWGBuffer& gbuffer, const LWOutput& output,
+                InterleavedGather& passes, JointBilateral* bilateral, const Gather& gather);
+    // Recorded by `gather`: which VPLs (lw_vpl by slot) the tiles of this image can skip.
+    const Buffer& cull(Executor& executor, InterleavedGather& passes, const Planes& position, const Planes& normal,
+                       const Buffer& vpls, lw_subset_order order);
+
+    const Buffer& counts() const { return counts_; }  // as InterleavedGather and JointBilateral count
+    void startFrame() { isRendered_ = false; }
+    // Counts and choices of the views that this frame has rendered; `order` as the last cull had it.
+    void report(Device& device, Report& report, lw_subset_order order) const;
+    void addDebugViews(std::vector<DebugView>& views) const;
+    std::uint64_t bytes() const;
+    // Of the images, inputs, outputs and tiles for a view of this size; `order` of the longest list.
+    static std::uint64_t estimateBytes(const InterleavedOptions& options, const LWViewDesc& view, bool uploads,
+                                       lw_subset_order order);
+
+private:
+    void light(Executor& executor, InterleavedGather& passes, JointBilateral* bilateral, const Planes& irradiance,
+               const Gather& gather);
+
+    Device& device_;
+    InterleavedOptions options_;
+    GBufferInput gbuffer_;
+    OutputTarget irradiance_, validity_;
+    PlanarImage gathered_, filtered_, halfPosition_, halfNormal_;
+    std::uint32_t gatheredWidth_, gatheredHeight_;  // at most
+    VplTiles tiles_;
+    Buffer counts_;  // rejected pixels, up-sampling fallbacks, saturated pixels
+    Planes lastGathered_, lastFiltered_;  // empty where the last frame had no irradiance
+    bool isRendered_ = false;             // since the last update
+};
+
+}  // namespace lightwell

@@ -1,0 +1,242 @@
+// Frame part, report and registration; the table of parameters is ssvp_parameters.cpp's.
+#include "techniques/ssvp.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "compute/device.h"
+#include "inputs/geometry_input.h"
+#include "inputs/rsm_input.h"
+#include "passes/clustered_gather.h"
+#include "passes/kmeans.h"
+#include "passes/paraboloid_map.h"
+#include "passes/second_bounce.h"
+#include "passes/vpl_sampling.h"
+#include "techniques/interleaved_view.h"
+#include "techniques/prewarm.h"
+#include "techniques/ssvp_parameters.h"
+
+namespace lightwell {
+namespace {
+
+VplSamplingOptions samplingOptions(const LWSsvpDesc& desc) {
+    VplSamplingOptions options;
+    options.count = desc.vpls;
+    options.uniform = desc.sampling == LW_SAMPLING_UNIFORM;
+    options.subsets = 1;  // in their own order: clusters are dealt out, not this list
+    options.seed = desc.seed;
+    return options;
+}
+
+KMeansOptions clusterOptions(const LWSsvpDesc& desc) {
+    KMeansOptions options;
+    options.clusters = desc.clusters;
+    options.warmStart = desc.warmStart != 0;
+    return options;
+}
+
+SecondBounceOptions secondOptions(const LWSsvpDesc& desc) {
+    SecondBounceOptions options;
+    options.perCluster = desc.secondVpls;
+    options.directions = std::uint32_t(desc.directions);
+    options.seed = desc.seed;
+    return options;
+}
+
+InterleavedOptions interleavedOptions(const LWSsvpDesc& desc) {
+    return {desc.interleave, desc.filter != 0, desc.resolution == LW_RESOLUTION_HALF};
+}
+
+ClusterVisibility visibilityOf(const LWSsvpDesc& desc) {
+    switch (desc.visibility) {
+        case LW_VISIBILITY_NONE:
+            return ClusterVisibility::none;
+        case LW_VISIBILITY_SOFT:
+            return ClusterVisibility::soft;
+        default:
+            return ClusterVisibility::hard;
+    }
+}
+
+// Maps serve the visibility and the second bounce.
+bool needsMaps(const LWSsvpDesc& desc) { return desc.visibility != LW_VISIBILITY_NONE || desc.bounces > 1; }
+
+// What the host gave and this technique does not read, or lacks: said in the stats.
+std::vector<LWChoice> inputChoices(const LWSsvpDesc& desc, const LWFrame& frame) {
+    constexpr const char* kReason = "not used: technique ssvp takes light from RSMs and authored VPLs only";
+    std::vector<LWChoice> choices;
+    if (frame.sourceViewCount) choices.push_back({"frame.sourceViews", kReason});
+    if (frame.blockerCount) choices.push_back({"frame.blockers", kReason});
+    if (frame.environment[0] > 0.0f || frame.environment[1] > 0.0f || frame.environment[2] > 0.0f)
+        choices.push_back({"frame.environment", kReason});
+    if (std::any_of(frame.lights, frame.lights + frame.lightCount, [](const LWLight& light) { return light.rsmCount == 0; }))
+        choices.push_back({"frame.lights", "some have no RSM: technique ssvp makes no indirect light of those"});
+    if (needsMaps(desc) && (!frame.geometry || frame.geometry->triangleCount == 0))
+        choices.push_back({"frame.geometry", "no triangles: nothing blocks, and there is no second bounce"});
+    if (frame.geometry && frame.geometry->surfelCount)
+        choices.push_back({"frame.geometry.surfels", "not used: technique ssvp draws its maps from triangles"});
+    return choices;
+}
+
+class SsvpTechnique final : public Technique {
+public:
+    SsvpTechnique(Device& device, const LWSsvpDesc& desc)
+        : device_(device),
+          desc_(desc),
+          sampling_(device, samplingOptions(desc)),
+          clusters_(device, clusterOptions(desc)),
+          maps_(device, desc.mapSize),
+          second_(device, secondOptions(desc)),
+          passes_(device, desc.interleave),
+          gather_(device, desc.interleave, visibilityOf(desc)) {
+        if (interleavedOptions(desc).half) bilateral_.emplace(device);
+    }
+
+    void update(Executor& executor, const LWFrame& frame) override {
+        GeometryInput::check(frame.geometry);
+        rsms_.import(executor, frame);
+        geometry_.import(executor, frame.geometry);
+        sampling_.record(executor, rsms_, frame.vpls, frame.vplCount);
+
+        const VplList firsts{sampling_.vpls(), sampling_.vplCount()};
+        clusters_.record(executor, firsts.vpls, firsts.count, frame.reset != 0);
+        const std::uint32_t clusterCount = clusters_.clusterCount();
+        maps_.record(executor, clusters_.clusters(), clusterCount, geometry_);
+        second_.reserve(desc_.bounces > 1 ? clusterCount : 0);
+        if (second_.vplCount())
+            second_.record(executor, clusters_.clusters(), clusterCount, maps_.frames(), maps_.records(), maps_.albedo(),
+                           maps_.size());
+        gather_.reserve(firsts.count, second_.vplCount());
+        gather_.recordOrder(executor, firsts, clusters_.assignment(), clusterCount,
+                            {second_.vplCount() ? second_.vpls() : firsts.vpls, second_.vplCount()});
+
+        choices_ = inputChoices(desc_, frame);
+        states_.purge();
+        states_.each([](InterleavedView& state) { state.startFrame(); });
+    }
+
+    void render(Executor& executor, const std::shared_ptr<View>& view, const LWGBuffer& gbuffer,
+                const LWOutput& output) override {
+        checkInterleavedOutputs(device_, *view, output, "ssvp");
+        InterleavedView& state = states_.get(
+            view, [&] { return std::make_unique<InterleavedView>(device_, interleavedOptions(desc_), *view); });
+        const ClusterMaps maps{maps_.frames(), maps_.records(), maps_.size()};
+        state.render(executor, *view, gbuffer, output, passes_, bilateral_ ? &*bilateral_ : nullptr,
+                     [&](const Planes& position, const Planes& normal, const Planes& irradiance) {
+                         const Buffer& masks = state.cull(executor, passes_, position, normal, gather_.vpls(), gather_.order());
+                         const lw_vpl_tiles tiles =
+                             VplTiles::layout(position.width, position.height, gather_.order(), desc_.interleave);
+                         gather_.recordGather(executor, position, normal, masks, tiles, maps, irradiance, state.counts());
+                     });
+    }
+
+    void prewarm(Executor& executor, const std::shared_ptr<View>&) override {
+        SsvpTechnique twin(device_, desc_);  // so that this technique's frame stays as it is
+        exerciseTechnique(executor, twin);
+    }
+
+    Report report() override;
+    std::vector<DebugView> debugViews(const View* view) override;
+    std::uint64_t bytes() const override;
+
+private:
+    Device& device_;
+    LWSsvpDesc desc_;
+    RsmInput rsms_;
+    GeometryInput geometry_;
+    VplSampling sampling_;
+    KMeans clusters_;
+    ParaboloidMap maps_;
+    SecondBounce second_;
+    InterleavedGather passes_;
+    ClusteredGather gather_;
+    std::optional<JointBilateral> bilateral_;  // half resolution only
+    PerView<InterleavedView> states_;
+    std::vector<LWChoice> choices_;  // of the last update
+};
+
+Report SsvpTechnique::report() {
+    Report report;
+    rsms_.report(report);
+    geometry_.report(report);
+    maps_.report(report);
+    report.counts.push_back({"vpls", sampling_.vplCount()});
+    report.counts.push_back({"clusters", clusters_.clusterCount()});
+    report.counts.push_back({"second_vpls", second_.vplCount()});
+    for (const LWChoice& choice : choices_) report.choose(choice.name, choice.reason);
+    report.counts.push_back({"rejected_pixels", 0});
+    report.counts.push_back({"upsample_fallbacks", 0});
+    report.counts.push_back({"saturated_pixels", 0});
+    states_.each([&](const InterleavedView& state) { state.report(device_, report, gather_.order()); });
+    return report;
+}
+
+std::vector<DebugView> SsvpTechnique::debugViews(const View* view) {
+    std::vector<DebugView> views;
+    if (gather_.vpls()) {
+        views.push_back({"vpls", "one column per first-bounce VPL: position xyz (m), unit normal xyz, flux rgb (W), area (m^2)",
+                         sampling_.debugShape(),
+                         [this](Executor& executor, const Planes& planes) { sampling_.recordPlanes(executor, planes); }});
+        views.push_back({"clusters", clusters_.debugDescription(), clusters_.debugShape(),
+                         [this](Executor& executor, const Planes& planes) { clusters_.recordPlanes(executor, planes); }});
+        views.push_back({"maps", "maps one below the other: distance (m), world normal xyz, albedo rgb", maps_.debugShape(),
+                         [this](Executor& executor, const Planes& planes) { maps_.recordPlanes(executor, planes); }});
+    }
+    if (const InterleavedView* state = states_.find(view)) state->addDebugViews(views);
+    return views;
+}
+
+std::uint64_t SsvpTechnique::bytes() const {
+    std::uint64_t total = rsms_.bytes() + geometry_.bytes() + sampling_.bytes() + clusters_.bytes() + maps_.bytes() +
+                          second_.bytes() + gather_.bytes();
+    states_.each([&](const InterleavedView& state) { total += state.bytes(); });
+    return total;
+}
+
+// ------------------------------------------------------------------------------------- registration
+
+void setDefaults(void* desc) { lwDefaultSsvp(static_cast<LWSsvpDesc*>(desc)); }
+
+std::unique_ptr<Technique> create(Device& device, const void* desc) {
+    return std::make_unique<SsvpTechnique>(device, *static_cast<const LWSsvpDesc*>(desc));
+}
+
+std::uint64_t estimateBytes(const void* desc, const LWViewDesc& view, const FrameShape& shape) {
+    const LWSsvpDesc& ssvp = *static_cast<const LWSsvpDesc*>(desc);
+    const lw_subset_order firsts = VplSampling::orderOf(samplingOptions(ssvp), shape);
+    const std::uint32_t count = std::uint32_t(firsts.count), clusters = ssvp.clusters ? ssvp.clusters : count;
+    const std::uint32_t seconds = ssvp.bounces > 1 ? clusters * ssvp.secondVpls : 0;
+    return RsmInput::estimateBytes(shape) + GeometryInput::estimateBytes(shape.triangles) +
+           VplSampling::estimateBytes(samplingOptions(ssvp), shape) + KMeans::estimateBytes(clusterOptions(ssvp), count) +
+           ParaboloidMap::estimateBytes(ssvp.mapSize, clusters, shape.triangles) +
+           SecondBounce::estimateBytes(secondOptions(ssvp), ssvp.bounces > 1 ? clusters : 0) +
+           ClusteredGather::estimateBytes(count, seconds, ssvp.interleave) +
+           InterleavedView::estimateBytes(interleavedOptions(ssvp), view, shape.uploads,
+                                          ClusteredGather::orderOf(count, seconds, ssvp.interleave));
+}
+
+TechniqueEntry makeEntry() {
+    TechniqueEntry entry{};
+    entry.info.structSize = sizeof(LWTechniqueInfo);
+    entry.info.descSize = sizeof(LWSsvpDesc);
+    entry.info.name = "ssvp";
+    entry.info.summary = "clustered virtual point lights with visibility from paraboloid maps, and a second bounce";
+    entry.info.parameters = ssvpParameters().data();
+    entry.info.parameterCount = std::uint32_t(ssvpParameters().size());
+    entry.info.setDefaults = setDefaults;
+    entry.info.bounces = 2;
+    entry.info.settings = ssvpSettings().data();
+    entry.info.settingCount = std::uint32_t(ssvpSettings().size());
+    entry.create = create;
+    entry.estimateBytes = estimateBytes;
+    return entry;
+}
+
+}  // namespace
+
+const TechniqueEntry& ssvpEntry() {
+    static const TechniqueEntry entry = makeEntry();
+    return entry;
+}
+
+}  // namespace lightwell

@@ -1,0 +1,97 @@
+// Ranges, defaults and sweeps of technique ssvp's parameters.
+#include "techniques/ssvp_parameters.h"
+
+#include <cstddef>
+
+#include "techniques/parameter_table.h"
+
+namespace lightwell {
+namespace {
+
+constexpr const char* kSamplingNames[] = {"flux", "uniform", nullptr};
+constexpr const char* kResolutionNames[] = {"full", "half", nullptr};
+constexpr const char* kVisibilityNames[] = {"none", "hard", "soft", nullptr};
+constexpr const char* kDirectionsNames[] = {"cosine", "disc", "square", nullptr};
+constexpr double kInterleaveValues[] = {1, 2, 4, 8};
+constexpr double kMapSizeValues[] = {64, 96, 128, 192, 256, 384, 512};
+constexpr double kVplSweep[] = {256, 1024};
+constexpr double kClusterSweep[] = {4, 8, 16, 32};
+constexpr double kVisibilitySweep[] = {LW_VISIBILITY_HARD, LW_VISIBILITY_SOFT};
+constexpr double kBouncesSweep[] = {1, 2};
+constexpr double kResolutionSweep[] = {LW_RESOLUTION_FULL, LW_RESOLUTION_HALF};
+
+std::vector<LWParameter> makeTable() {
+    const auto uint = [](const char* name, const char* description, std::size_t offset, double least, double most,
+                         double standard) {
+        return parameter(name, description, LW_PARAMETER_UINT, offset, least, most, standard);
+    };
+    const auto oneOf = [](const char* name, const char* description, std::size_t offset, const char* const* names,
+                          double most, double standard) {
+        return choosing(parameter(name, description, LW_PARAMETER_ENUM, offset, 0, most, standard), names);
+    };
+    const auto flag = [](const char* name, const char* description, std::size_t offset) {
+        return parameter(name, description, LW_PARAMETER_BOOL, offset, 0, 1, 1);
+    };
+    return {
+        swept(uint("vpls", "first-bounce virtual point lights, drawn from all RSMs together; error falls and time grows with it",
+                   offsetof(LWSsvpDesc, vpls), 1, 1u << 16, 256),
+              kVplSweep),
+        oneOf("sampling", "what VPLs are drawn by: reflected flux, or every texel alike", offsetof(LWSsvpDesc, sampling),
+              kSamplingNames, 1, LW_SAMPLING_FLUX),
+        swept(uint("clusters", "of VPLs that share a visibility map: fewer false shadows and leaks, and time, with more; 0: every VPL its own",
+                   offsetof(LWSsvpDesc, clusters), 0, 64, 8),
+              kClusterSweep),
+        allowing(uint("map_size", "texels a side of a cluster's map: finer occluders, memory and drawing time with its square",
+                      offsetof(LWSsvpDesc, mapSize), 64, 512, 128),
+                 kMapSizeValues),
+        swept(oneOf("visibility", "of first-bounce VPLs: none, the map's nearest texel, or its four nearest",
+                    offsetof(LWSsvpDesc, visibility), kVisibilityNames, 2, LW_VISIBILITY_HARD),
+              kVisibilitySweep),
+        swept(uint("bounces", "indirect bounces: 1, or 2 with VPLs drawn from the clusters' maps", offsetof(LWSsvpDesc, bounces), 1, 2, 2),
+              kBouncesSweep),
+        uint("second_vpls", "second-bounce VPLs for each cluster, unshadowed", offsetof(LWSsvpDesc, secondVpls), 1, 1024, 32),
+        oneOf("directions", "in which second-bounce VPLs are drawn: by cosine, evenly on the map's disc, or on its square",
+              offsetof(LWSsvpDesc, directions), kDirectionsNames, 2, LW_DIRECTIONS_COSINE),
+        flag("warm_start", "clusters start where they were in the frame before", offsetof(LWSsvpDesc, warmStart)),
+        allowing(uint("interleave", "n of n x n pixels that share out the VPLs: time falls with n^2, noise at edges grows",
+                      offsetof(LWSsvpDesc, interleave), 1, 8, 4),
+                 kInterleaveValues),
+        flag("filter", "edge-aware n x n filter after an interleaved gather", offsetof(LWSsvpDesc, filter)),
+        swept(oneOf("resolution", "pixels that are gathered; half: every second column and row, up-sampled after",
+                    offsetof(LWSsvpDesc, resolution), kResolutionNames, 1, LW_RESOLUTION_FULL),
+              kResolutionSweep),
+        uint("seed", "shift of the sample sets; 0: unshifted", offsetof(LWSsvpDesc, seed), 0, 4294967295.0, 0)};
+}
+
+}  // namespace
+
+const std::vector<LWParameter>& ssvpParameters() {
+    static const std::vector<LWParameter> table = makeTable();
+    return table;
+}
+
+// Aranha et al. 2020: 256 VPLs of each bounce, 8 clusters, second-bounce samples evenly on the map's disc.
+const std::vector<LWSetting>& ssvpSettings() {
+    static const std::vector<LWSetting> settings = {{"Aranha 2020", "sampling=uniform directions=disc"}};
+    return settings;
+}
+
+}  // namespace lightwell
+
+extern "C" void lwDefaultSsvp(LWSsvpDesc* desc) {
+    if (!desc) return;
+    *desc = LWSsvpDesc{};
+    desc->structSize = sizeof *desc;
+    desc->vpls = 256;
+    desc->sampling = LW_SAMPLING_FLUX;
+    desc->clusters = 8;
+    desc->mapSize = 128;
+    desc->visibility = LW_VISIBILITY_HARD;
+    desc->bounces = 2;
+    desc->secondVpls = 32;
+    desc->directions = LW_DIRECTIONS_COSINE;
+    desc->warmStart = 1;
+    desc->interleave = 4;
+    desc->filter = 1;
+    desc->resolution = LW_RESOLUTION_FULL;
+}
