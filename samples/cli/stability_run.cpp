@@ -32,6 +32,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using studio::FailureSequence;
 using studio::SequenceFrame;
+using Truths = std::map<int, std::shared_ptr<const FrameTruth>>;  // by bounces; 0: all
 
 constexpr const char* kProtocol = "1";  // part of every key: raise it when the way of measuring changes
 
@@ -59,11 +60,8 @@ private:
     void runSequence(const FailureSequence& sequence);
     void runFrame(const FailureSequence& sequence, const FrameScene& now, const FrameScene* before);
     void renderFrame(const FailureSequence& sequence, const FrameScene& now, const FrameScene* before,
-                     const studio::StabilityFrame& judged,
-                     const std::map<int, std::shared_ptr<const FrameTruth>>& truths);
-    std::map<int, std::shared_ptr<const FrameTruth>> truthsOf(const FailureSequence& sequence,
-                                                              const FrameScene& now,
-                                                              const studio::GBuffer& view);
+                     const studio::StabilityFrame& judged, const Truths& truths);
+    Truths truthsOf(const FailureSequence& sequence, const FrameScene& now, const studio::GBuffer& view);
     void judge(const FailureSequence& sequence, Runner& runner);
     int samplesOf(const FailureSequence& sequence) const;
     void report(double ofFrame, const std::string& note = "");
@@ -182,7 +180,6 @@ void Stability::runSequence(const FailureSequence& sequence) {
         runner->renderer.reset();
     }
     if (sequence.truth == studio::SequenceTruth::Traced) guide_.emplace(sequence);
-
     std::unique_ptr<FrameScene> before;
     for (const SequenceFrame& frame : sequence.frames) {
         report(0.0, fmt::format("{}, frame {} of {}", sequence.name,
@@ -199,22 +196,21 @@ void Stability::runSequence(const FailureSequence& sequence) {
     results_.save();
 }
 
-std::map<int, std::shared_ptr<const FrameTruth>> Stability::truthsOf(const FailureSequence& sequence,
-                                                                     const FrameScene& now,
-                                                                     const studio::GBuffer& view) {
-    std::map<int, std::shared_ptr<const FrameTruth>> truths;
+Truths Stability::truthsOf(const FailureSequence& sequence, const FrameScene& now,
+                           const studio::GBuffer& view) {
+    Truths truths;
     for (const Runner* runner : due_) {
-        if (truths.count(runner->bounces) != 0) continue;
-        if (sequence.truth == studio::SequenceTruth::Dark) {
-            truths[runner->bounces] = darkTruth(now.frame.width, now.frame.height);
-            continue;
-        }
+        std::shared_ptr<const FrameTruth>& truth = truths[runner->bounces];
+        if (truth != nullptr) continue;
         SequenceTruths::Request request;
         request.bounces = runner->bounces;
         request.samples = samplesOf(sequence);
-        request.guide = guide_->points.get();
+        request.sharesPoints = sequence.truthSharesPoints;
+        request.guide = guide_ ? guide_->points.get() : nullptr;
         request.progress = [&](double fraction) { report(fraction); };
-        truths[runner->bounces] = truths_.obtain(*now.scene, view, request);
+        truth = sequence.truth == studio::SequenceTruth::Dark
+                    ? darkTruth(now.frame.width, now.frame.height)
+                    : truths_.obtain(*now.scene, view, request);
     }
     return truths;
 }
@@ -233,7 +229,7 @@ void Stability::runFrame(const FailureSequence& sequence, const FrameScene& now,
 
 void Stability::renderFrame(const FailureSequence& sequence, const FrameScene& now,
                             const FrameScene* before, const studio::StabilityFrame& frame,
-                            const std::map<int, std::shared_ptr<const FrameTruth>>& truths) {
+                            const Truths& truths) {
     ScaledFrame scaled(*now.scene, now.frame, sequence.scale);
     InputOptions options;
     options.width = now.frame.width;

@@ -26,7 +26,10 @@ FailureSequence makeQuickSweep(const SequenceSize& size) {
             glm::vec3(level * std::cos(angle), lamp.direction.y, level * std::sin(angle)));
         return light;
     });
-    return makeFlight(size, scene, [&](int) { return cameraOf(*scene, "lit_room"); });
+    FailureSequence sequence =
+        withSamples(128, makeFlight(size, scene, [&](int) { return cameraOf(*scene, "lit_room"); }));
+    sequence.truthSharesPoints = false;
+    return sequence;
 }
 
 FailureSequence makeMovingObject(const SequenceSize& size) {
@@ -73,7 +76,8 @@ FailureSequence makeGridCrossing(const SequenceSize& size) {
         return makeSpot(at, at + glm::vec3(2.2f, -1.2f, 0.4f), 25.0f, 32.0f);
     });
     const Camera start = makeCamera({0.8f, 1.2f, -0.5f}, {3.8f, 0.9f, 0.1f}, 60.0f);
-    return makeFlight(size, scene, [&](int f) { return moved(start, step * float(f)); });
+    return withSamples(128,
+                       makeFlight(size, scene, [&](int f) { return moved(start, step * float(f)); }));
 }
 
 // A patch of 1.5 cm, as bright as the whole floor under the usual lamp, wanders over the floor and the
@@ -107,6 +111,8 @@ FailureSequence makeOpeningDoor(const SequenceSize& size) {
     FailureSequence sequence =
         makeFlight(size, scene, [&](int) { return cameraOf(*scene, "dark_room"); });
     sequence.sweeps = "door's opening, degrees";
+    sequence.truthSamples = 128;  // all of its light comes through a gap
+    sequence.truthSharesPoints = false;
     for (int f = 0; f < size.frames; ++f) {
         sequence.frames[std::size_t(f)].time = float(4.0 + 4.0 * shareOf(f, size));
         sequence.frames[std::size_t(f)].value = 100.0 * shareOf(f, size);
