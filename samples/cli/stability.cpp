@@ -29,6 +29,22 @@ std::vector<std::string> sequenceNames(bool quickOnly) {
     return names;
 }
 
+// More would overflow the number of paths long after the time of anybody who waits for them.
+void requireEffort(double effort) {
+    constexpr double kLeast = 1e-3, kMost = 1e4;
+    if (!(effort >= kLeast && effort <= kMost))  // NaN is neither
+        throw UsageError(fmt::format("--truth-effort {}: expected {} to {}", effort, kLeast, kMost));
+}
+
+// What is held of a sequence until it is judged, and the copies that the judges make.
+void requireMemoryFor(const StabilityOptions& options) {
+    constexpr double kOfTruth = 40.0, kOfTechnique = 25.0, kOfJudges = 120.0;  // bytes per pixel
+    const double pixels = double(options.size.frames) * options.size.width * options.size.height;
+    requireMemory("--size, --frames",
+                  fmt::format("{}x{}, {}", options.size.width, options.size.height, options.size.frames),
+                  pixels * (kOfTruth + kOfTechnique * double(options.techniques.size()) + kOfJudges));
+}
+
 void complete(Arguments& arguments) {
     StabilityOptions& options = arguments.stability;
     if (options.techniques.empty()) options.techniques = techniqueNames();
@@ -37,6 +53,7 @@ void complete(Arguments& arguments) {
     if (options.sequences.empty()) options.sequences = sequenceNames(options.quick);
     for (const std::string& sequence : options.sequences)
         requireOneOf("sequence", sequence, sequenceNames(false));
+    requireEffort(options.truthEffort);
     if (options.deviceWidth != 0)
         requireOneOf("--width", std::to_string(options.deviceWidth), {"1", "4", "8", "16"});
     const Size size = parseSize(!arguments.size.empty() ? arguments.size
@@ -46,6 +63,7 @@ void complete(Arguments& arguments) {
                     : options.quick       ? 8
                                           : 32,
                     size.width, size.height};
+    requireMemoryFor(options);
 }
 
 // Throws when anything has become worse, so that the command's exit code says so.
@@ -67,7 +85,11 @@ void stability(Arguments& arguments) {
     complete(arguments);
     const StabilityOptions& options = arguments.stability;
     nlohmann::ordered_json before;
-    if (!arguments.compare.empty()) before = readStability(arguments.compare);
+    if (!arguments.compare.empty()) {
+        before = readStability(arguments.compare);
+        // Before an hour of measuring, not after it.
+        if (!arguments.onlyReport) requireComparable(before, options.size);
+    }
     const std::filesystem::path folder(options.folder);
     asUsage([&] { std::filesystem::create_directories(folder / "images"); });
     if (!arguments.onlyReport) {
@@ -100,24 +122,26 @@ void addStability(CLI::App& app) {
     command->add_option("--frames", arguments->frames, "Frames of each sequence; default: 32")
         ->check(CLI::Range(2, 10000));
     command->add_option("--size", arguments->size, "Picture size, WIDTHxHEIGHT; default: 320x180");
-    command->add_option(
+    CLI::Option* compare = command->add_option(
         "--compare", arguments->compare,
         "stability.json of an earlier run: says what is worse beyond the noise of both; exit "
         "code 1 when anything is");
     command
         ->add_option("--truth-effort", options.truthEffort,
                      "Times the paths per pixel that each sequence's truth is traced with")
-        ->check(CLI::PositiveNumber)
         ->capture_default_str();
-    command->add_flag("--only-truths", options.onlyTruths,
-                      "Trace the truths into the cache, measure nothing");
+    CLI::Option* onlyTruths = command->add_flag("--only-truths", options.onlyTruths,
+                                                "Trace the truths into the cache, measure nothing");
     command->add_option(
         "--truth-cache", options.truthDirectory,
         "Folder of the truths; default: references/ in LIGHTWELL_CACHE_DIR or the user's cache");
     command->add_flag("--no-report", arguments->skipsReport,
                       "Without the report; stability.json is written");
-    command->add_flag("--report-only", arguments->onlyReport,
-                      "Table, comparison and report of the results in DIR; nothing is measured");
+    command
+        ->add_flag("--report-only", arguments->onlyReport,
+                   "Table, comparison and report of the results in DIR; nothing is measured")
+        ->excludes(onlyTruths);
+    onlyTruths->excludes(compare);
     command->add_option("--device", options.device, "As for render");
     command->add_option("--width", options.deviceWidth,
                         "Lanes per work-item: 1, 4, 8 or 16; default: by probe");

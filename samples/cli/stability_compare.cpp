@@ -25,11 +25,16 @@ double valueOf(const Json& figures, const char* name, double otherwise) {
                                                                   : otherwise;
 }
 
+// 0 is best, and a bias as bad on either side; but a ghost below 0 is none.
+double badness(const std::string& name, double value) {
+    return name == "ghost" && value < 0.0 ? 0.0 : std::abs(value);
+}
+
 void compareFigure(const std::string& id, const char* name, const char* figures, const char* floors,
                    const Json& before, const Json& now, StabilityComparison& comparison) {
     const double nothing = std::nan("");
-    const double was = std::abs(valueOf(before.at(figures), name, nothing)),
-                 is = std::abs(valueOf(now.at(figures), name, nothing));
+    const double was = badness(name, valueOf(before.at(figures), name, nothing)),
+                 is = badness(name, valueOf(now.at(figures), name, nothing));
     if (std::isnan(was) && std::isnan(is)) return;
     if (std::isnan(was) != std::isnan(is)) {
         comparison.notes.push_back(fmt::format("{}: {} has no value in {} results", id, name,
@@ -46,12 +51,19 @@ void compareFigure(const std::string& id, const char* name, const char* figures,
     if (is < was - slack) comparison.improvements.push_back(text);
 }
 
-void requireAlike(const Json& before, const Json& now) {
+void requireAlike(const Json& before, const Json& header) {
     for (const char* field : {"size", "frames"})
-        if (before.at("header").at(field) != now.at("header").at(field))
+        if (before.at("header").at(field) != header.at(field))
             throw UsageError(fmt::format("--compare: {} is {} there and {} here; expected the same",
                                          field, before.at("header").at(field).dump(),
-                                         now.at("header").at(field).dump()));
+                                         header.at(field).dump()));
+}
+
+// Light or NaN where there must be none; more of NaN than before counts like the first.
+bool failsMore(const Json& before, const Json& now) {
+    if (now.at("passes") != false) return false;
+    return before.at("passes") == true ||
+           valueOf(now, "not_finite", 0.0) > valueOf(before, "not_finite", 0.0);
 }
 
 const Json* find(const Json& list, const Json& id) {
@@ -62,8 +74,12 @@ const Json* find(const Json& list, const Json& id) {
 
 }  // namespace
 
+void requireComparable(const Json& before, const studio::SequenceSize& size) {
+    requireAlike(before, {{"size", {size.width, size.height}}, {"frames", size.frames}});
+}
+
 StabilityComparison compareStability(const Json& before, const Json& now) {
-    requireAlike(before, now);
+    requireAlike(before, now.at("header"));
     StabilityComparison comparison;
     for (const Json& result : now.at("results")) {
         const std::string id = result.at("id");
@@ -74,7 +90,7 @@ StabilityComparison compareStability(const Json& before, const Json& now) {
         }
         if (earlier->at("parameters") != result.at("parameters"))
             comparison.notes.push_back(id + ": its parameters are not the same");
-        if (earlier->at("passes") == true && result.at("passes") == false)
+        if (failsMore(*earlier, result))
             comparison.regressions.push_back(id + ": light or NaN where there must be none");
         for (const char* index : {"flicker", "ghost", "leak", "drift", "spike"})
             compareFigure(id, index, "indices", "floors", *earlier, result, comparison);

@@ -83,7 +83,7 @@ Verdict judgeSequence(const std::vector<JudgedFrame>& frames) {
 
 Json Verdict::toJson(const std::vector<JudgedFrame>& frames) const {
     ErrorMeans means, noiseMeans;
-    double meanNoise = 0.0;
+    double truthNoise = 0.0;
     std::size_t notFinite = 0;
     float largest = 0.0f;
     Json perFrame = Json::array();
@@ -91,7 +91,7 @@ Json Verdict::toJson(const std::vector<JudgedFrame>& frames) const {
         const JudgedFrame& judged = frames[f];
         means.add(errors[f], 1.0);
         noiseMeans.add(noise[f], 0.5);  // the references differ by twice the error of their mean
-        meanNoise += judged.truth->noise / double(frames.size());
+        if (errors[f]) truthNoise += judged.truth->noise;
         notFinite += judged.notFinite;
         largest = std::max(largest, judged.largest);
         Json json = indicesJson(indices.frames[f]);
@@ -109,7 +109,7 @@ Json Verdict::toJson(const std::vector<JudgedFrame>& frames) const {
     json["errors"] = {{"relMSE", means.of(means.sum.relMse)},
                       {"nrmse", means.of(means.sum.nrmse)},
                       {"bias", means.of(means.sum.bias)}};
-    json["error_floors"] = {{"relMSE", means.count > 0 ? Json(meanNoise) : Json()},
+    json["error_floors"] = {{"relMSE", means.of(truthNoise)},
                             {"nrmse", noiseMeans.of(noiseMeans.sum.nrmse)},
                             {"bias", noiseMeans.of(noiseMeans.sizeOfBias)}};
     json["not_finite"] = notFinite;

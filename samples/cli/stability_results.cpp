@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
 #include <nlohmann/json.hpp>
 
 #include "cli.h"
@@ -33,16 +35,39 @@ std::string cell(const Json& figures, const Json& floors, const char* name, cons
     return text;
 }
 
+bool hasAll(const Json& object, std::initializer_list<const char*> fields) {
+    return object.is_object() && std::all_of(fields.begin(), fields.end(),
+                                             [&](const char* field) { return object.contains(field); });
+}
+
+bool isText(const Json& object, const char* field) {
+    return object.contains(field) && object.at(field).is_string();
+}
+
+bool isResult(const Json& item) {
+    return hasAll(item, {"parameters", "passes"}) && isText(item, "id") && isText(item, "key") &&
+           isText(item, "technique") && isText(item, "sequence") &&
+           hasAll(item.value("indices", Json()), {}) && hasAll(item.value("floors", Json()), {}) &&
+           hasAll(item.value("errors", Json()), {}) && hasAll(item.value("error_floors", Json()), {});
+}
+
+bool isStability(const Json& json) {
+    if (!hasAll(json, {"header", "sequences", "results"}) || !isText(json, "format")) return false;
+    const Json &sequences = json.at("sequences"), &results = json.at("results");
+    return json.at("format") == kFormat && hasAll(json.at("header"), {"size", "frames"}) &&
+           sequences.is_array() && results.is_array() &&
+           std::all_of(sequences.begin(), sequences.end(),
+                       [](const Json& item) { return isText(item, "id"); }) &&
+           std::all_of(results.begin(), results.end(), isResult);
+}
+
 }  // namespace
 
 Json readStability(const std::string& path) {
     std::ifstream file(path);
     if (!file) throw UsageError(fmt::format("{}: can't be read", path));
     const Json json = Json::parse(file, nullptr, false);
-    const bool isOurs = json.is_object() && json.value("format", "") == kFormat &&
-                        json.contains("header") && json.contains("sequences") &&
-                        json.contains("results");
-    if (!isOurs)
+    if (!isStability(json))
         throw UsageError(fmt::format("{}: expected the results of `lightwell stability` (format \"{}\")",
                                      path, kFormat));
     return json;

@@ -11,7 +11,7 @@
 
 namespace cli {
 
-// UsageError when the file is something else.
+// UsageError when the file is something else, or lacks what table, comparison and resumption read.
 nlohmann::ordered_json readStability(const std::string& path);
 
 class StabilityResults {
@@ -46,5 +46,8 @@ struct StabilityComparison {
 };
 StabilityComparison compareStability(const nlohmann::ordered_json& before,
                                      const nlohmann::ordered_json& now);
+
+// The same refusal before anything is measured.
+void requireComparable(const nlohmann::ordered_json& before, const studio::SequenceSize& size);
 
 }  // namespace cli

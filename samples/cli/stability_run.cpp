@@ -1,5 +1,4 @@
 // `lightwell stability`: sequence by sequence and frame by frame, truth first, then every technique.
-// A little over 300 lines: one class whose members share the run's state.
 #include "stability_run.h"
 
 #include <fmt/format.h>
@@ -7,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -18,11 +16,10 @@
 #include "indirect_renderer.h"
 #include "interrupt.h"
 #include "layers.h"
-#include "lit_points.h"
 #include "open_device.h"
-#include "path_tracer.h"
 #include "progress.h"
 #include "run_facts.h"
+#include "stability_frame.h"
 #include "stability_judge.h"
 #include "stability_pictures.h"
 #include "stability_results.h"
@@ -35,6 +32,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using studio::FailureSequence;
 using studio::SequenceFrame;
+using Truths = std::map<int, std::shared_ptr<const FrameTruth>>;  // by bounces; 0: all
 
 constexpr const char* kProtocol = "1";  // part of every key: raise it when the way of measuring changes
 
@@ -49,18 +47,6 @@ struct Runner {
         : parameters(technique), bounces(modelledBounces(parameters)) {}
 };
 
-// What two neighbouring frames need of each other.
-struct FrameScene {
-    SequenceFrame frame;
-    std::unique_ptr<studio::RayScene> scene;
-    studio::SeenFrame seen;
-
-    explicit FrameScene(const SequenceFrame& sequenceFrame)
-        : frame(sequenceFrame),
-          scene(std::make_unique<studio::RayScene>(frame.scene, frame.time)),
-          seen(studio::seeFrame(*scene, frame)) {}
-};
-
 class Stability {
 public:
     explicit Stability(const StabilityOptions& options);
@@ -68,16 +54,14 @@ public:
 
 private:
     Json describeRun() const;
-    bool isDone(const FailureSequence& sequence) const;
+    // Techniques whose result is missing or of another key; all where only truths are wanted.
+    std::vector<Runner*> dueIn(const FailureSequence& sequence);
     std::string keyOf(const FailureSequence& sequence, const Runner& runner) const;
     void runSequence(const FailureSequence& sequence);
     void runFrame(const FailureSequence& sequence, const FrameScene& now, const FrameScene* before);
     void renderFrame(const FailureSequence& sequence, const FrameScene& now, const FrameScene* before,
-                     const studio::StabilityFrame& judged,
-                     const std::map<int, std::shared_ptr<const FrameTruth>>& truths);
-    std::map<int, std::shared_ptr<const FrameTruth>> truthsOf(const FailureSequence& sequence,
-                                                              const FrameScene& now,
-                                                              const studio::GBuffer& view);
+                     const studio::StabilityFrame& judged, const Truths& truths);
+    Truths truthsOf(const FailureSequence& sequence, const FrameScene& now, const studio::GBuffer& view);
     void judge(const FailureSequence& sequence, Runner& runner);
     int samplesOf(const FailureSequence& sequence) const;
     void report(double ofFrame, const std::string& note = "");
@@ -94,8 +78,8 @@ private:
     double done_ = 0.0, all_ = 0.0, frameCost_ = 0.0;  // in units of one sample of one frame
 
     // Of the sequence at hand.
-    std::unique_ptr<studio::RayScene> middle_;  // the frame that the guide is of
-    std::unique_ptr<studio::LitPoints> guide_;
+    std::optional<SequenceGuide> guide_;
+    std::vector<Runner*> due_;  // techniques that are measured
     SequencePictures pictures_;
     double load_ = -1.0;
 };
@@ -111,7 +95,7 @@ double costOf(const FailureSequence& sequence, int samples) {
 Stability::Stability(const StabilityOptions& options)
     : options_(options),
       results_((std::filesystem::path(options.folder) / "stability.json").string()),
-      truths_(options.truthDirectory) {
+      truths_(asUsage([&] { return SequenceTruths(options.truthDirectory); })) {
     for (const std::string& name : options.sequences) {
         sequences_.push_back(asUsage([&] { return studio::makeSequence(name, options.size); }));
         all_ += costOf(sequences_.back(), samplesOf(sequences_.back()));
@@ -152,15 +136,15 @@ void Stability::report(double ofFrame, const std::string& note) {
 }
 
 void Stability::run() {
-    results_.setHeader(describeRun());
+    if (!options_.onlyTruths) results_.setHeader(describeRun());
     for (const FailureSequence& sequence : sequences_) {
         const double cost = costOf(sequence, samplesOf(sequence)), before = done_;
         frameCost_ = cost / double(sequence.frames.size());
-        results_.putSequence(describeSequence(sequence, samplesOf(sequence)));
-        if (options_.onlyTruths || !isDone(sequence)) runSequence(sequence);
+        due_ = dueIn(sequence);
+        if (!due_.empty()) runSequence(sequence);
         done_ = before + cost;
     }
-    results_.save();
+    if (!options_.onlyTruths) results_.save();
     line_.finish(fmt::format("{} frames of truth traced", truths_.tracedCount()));
 }
 
@@ -179,28 +163,23 @@ std::string Stability::keyOf(const FailureSequence& sequence, const Runner& runn
     return shortHash(text);
 }
 
-bool Stability::isDone(const FailureSequence& sequence) const {
-    return std::all_of(runners_.begin(), runners_.end(), [&](const Runner& runner) {
-        return results_.isFresh(runner.parameters.technique() + "/" + sequence.name,
-                                keyOf(sequence, runner));
-    });
+std::vector<Runner*> Stability::dueIn(const FailureSequence& sequence) {
+    std::vector<Runner*> due;
+    for (Runner& runner : runners_)
+        if (options_.onlyTruths || !results_.isFresh(runner.parameters.technique() + "/" + sequence.name,
+                                                     keyOf(sequence, runner)))
+            due.push_back(&runner);
+    return due;
 }
 
 void Stability::runSequence(const FailureSequence& sequence) {
     load_ = loadAverage();
     pictures_ = SequencePictures();
-    for (Runner& runner : runners_) {
-        runner.frames.clear();
-        runner.renderer.reset();
+    for (Runner* runner : due_) {
+        runner->frames.clear();
+        runner->renderer.reset();
     }
-    const SequenceFrame& middle = sequence.frames[sequence.frames.size() / 2];
-    if (sequence.truth == studio::SequenceTruth::Traced) {
-        middle_ = std::make_unique<studio::RayScene>(middle.scene, middle.time);
-        guide_ = studio::makeGuide(
-            *middle_, studio::renderGBuffer(*middle_, middle.camera, middle.width, middle.height,
-                                            middle.camera, middle.time));
-    }
-
+    if (sequence.truth == studio::SequenceTruth::Traced) guide_.emplace(sequence);
     std::unique_ptr<FrameScene> before;
     for (const SequenceFrame& frame : sequence.frames) {
         report(0.0, fmt::format("{}, frame {} of {}", sequence.name,
@@ -211,26 +190,27 @@ void Stability::runSequence(const FailureSequence& sequence) {
         done_ += frameCost_;
     }
     if (options_.onlyTruths) return;
-    for (Runner& runner : runners_) judge(sequence, runner);
+    // With the results that it describes: those of an earlier run may have other truths.
+    results_.putSequence(describeSequence(sequence, samplesOf(sequence)));
+    for (Runner* runner : due_) judge(sequence, *runner);
     results_.save();
 }
 
-std::map<int, std::shared_ptr<const FrameTruth>> Stability::truthsOf(const FailureSequence& sequence,
-                                                                     const FrameScene& now,
-                                                                     const studio::GBuffer& view) {
-    std::map<int, std::shared_ptr<const FrameTruth>> truths;
-    for (const Runner& runner : runners_) {
-        if (truths.count(runner.bounces) != 0) continue;
-        if (sequence.truth == studio::SequenceTruth::Dark) {
-            truths[runner.bounces] = darkTruth(now.frame.width, now.frame.height);
-            continue;
-        }
+Truths Stability::truthsOf(const FailureSequence& sequence, const FrameScene& now,
+                           const studio::GBuffer& view) {
+    Truths truths;
+    for (const Runner* runner : due_) {
+        std::shared_ptr<const FrameTruth>& truth = truths[runner->bounces];
+        if (truth != nullptr) continue;
         SequenceTruths::Request request;
-        request.bounces = runner.bounces;
+        request.bounces = runner->bounces;
         request.samples = samplesOf(sequence);
-        request.guide = guide_.get();
+        request.sharesPoints = sequence.truthSharesPoints;
+        request.guide = guide_ ? guide_->points.get() : nullptr;
         request.progress = [&](double fraction) { report(fraction); };
-        truths[runner.bounces] = truths_.obtain(*now.scene, view, request);
+        truth = sequence.truth == studio::SequenceTruth::Dark
+                    ? darkTruth(now.frame.width, now.frame.height)
+                    : truths_.obtain(*now.scene, view, request);
     }
     return truths;
 }
@@ -244,28 +224,12 @@ void Stability::runFrame(const FailureSequence& sequence, const FrameScene& now,
     if (options_.onlyTruths) return;
     pictures_.addFrame(view);
 
-    studio::StabilityFrame judged;
-    judged.width = now.frame.width;
-    judged.height = now.frame.height;
-    judged.surface = now.seen.surface;
-    judged.isCut = now.frame.isCut;
-    const std::size_t count = judged.surface.size();
-    const float nan = std::numeric_limits<float>::quiet_NaN();
-    judged.previous = before == nullptr ? std::vector<glm::vec2>(count, glm::vec2(nan))
-                                        : studio::previousPositions(*now.scene, now.frame, before->frame,
-                                                                    before->seen);
-    if (sequence.region) {
-        judged.region.assign(count, 0);
-        for (std::size_t i = 0; i < count; ++i)
-            if (judged.surface[i] != 0)
-                judged.region[i] = sequence.region(now.frame, now.seen.position[i]);
-    }
-    renderFrame(sequence, now, before, judged, truths);
+    renderFrame(sequence, now, before, frameToJudge(sequence, now, before), truths);
 }
 
 void Stability::renderFrame(const FailureSequence& sequence, const FrameScene& now,
                             const FrameScene* before, const studio::StabilityFrame& frame,
-                            const std::map<int, std::shared_ptr<const FrameTruth>>& truths) {
+                            const Truths& truths) {
     ScaledFrame scaled(*now.scene, now.frame, sequence.scale);
     InputOptions options;
     options.width = now.frame.width;
@@ -278,7 +242,8 @@ void Stability::renderFrame(const FailureSequence& sequence, const FrameScene& n
         options.previousTime = before->frame.time;
     }
     const RenderInputs inputs(scaled.scene(), scaled.camera(now.frame.camera), options);
-    for (Runner& runner : runners_) {
+    for (Runner* const each : due_) {
+        Runner& runner = *each;
         if (runner.renderer == nullptr)
             runner.renderer = makeRenderer(runner.parameters, inputs, device_ ? &*device_ : nullptr);
         JudgedFrame judged;

@@ -12,11 +12,22 @@
 //       id            "<technique>/<sequence>"
 //       key           of everything that the figures depend on; another key is measured again
 //       technique, sequence, settings (what differs from the defaults), parameters, bounces, device,
-//       build load_average  when the sequence began indices       {error, flicker, ghost, leak, drift,
-//       spike} floors        the same of one reference judged by another: what noise alone reads errors
-//       {relMSE, nrmse, bias}: means over the frames error_floors  the same of the truth's own noise
+//       build
+//
+//       load_average  when the sequence began
+//
+//       indices       {error, flicker, ghost, leak, drift, spike}
+//
+//       floors        the same of one reference judged by another: what noise alone reads
+//
+//       errors        {relMSE, nrmse, bias}: means over the frames
+//
+//       error_floors  the same of the truth's own noise
+//
 //       not_finite    values that were NaN or infinite; largest: the greatest absolute irradiance
-//       is_dark_truth, passes   for a truth of exactly 0: whether the technique gave exactly 0
+//
+//       is_dark_truth, passes   whether all is finite and, for a truth of exactly 0, exactly 0
+//
 //       worst_frame, worst_reason
 //       frames        list, per frame: the indices' names, floors {...}, relMSE, nrmse, bias, noise, ms
 //       images        {picture, truth, error, triptych}: PNGs of the worst frame, below the folder

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <stdexcept>
 
 #include "film.h"
 #include "noise.h"
@@ -22,10 +23,10 @@ constexpr std::size_t kRecentMost = 40;  // a little over a sequence of frames
 
 std::string fileName(const studio::RayScene& scene, const studio::GBuffer& view,
                      const SequenceTruths::Request& request) {
-    return fmt::format("{}-{:016x}-{:016x}-{:016x}-b{}-n{}-s{}", scene.scene().name,
+    return fmt::format("{}-{:016x}-{:016x}-{:016x}-b{}-n{}{}-s{}", scene.scene().name,
                        studio::hashScene(scene), studio::hashView(view), request.guide->hash(),
                        request.bounces == 0 ? "all" : std::to_string(request.bounces), request.samples,
-                       kVersion);
+                       request.sharesPoints ? "" : "-own", kVersion);
 }
 
 std::vector<float> planesOf(const studio::Image& image, const std::string& prefix) {
@@ -43,7 +44,7 @@ studio::Image trace(const studio::RayScene& scene, const studio::GBuffer& view,
     studio::PathTracerOptions options;
     options.samplesPerPixel = request.samples;
     options.maxBounces = request.bounces == 0 ? kAllBounces : request.bounces;
-    options.commonPoints = true;
+    options.commonPoints = request.sharesPoints;
     options.guide = request.guide;
     if (request.progress)
         options.progress = [&](double fraction, double) { request.progress(fraction); };
@@ -94,6 +95,15 @@ void save(const std::string& path, const studio::Image& image) {
     fs::rename(unfinished, path);
 }
 
+FrameTruth readKept(const std::string& path, const std::string& name, int samples) {
+    try {
+        return fromImage(studio::readImage(path), name, samples);
+    } catch (const std::exception& error) {
+        throw std::runtime_error(fmt::format(
+            "{}: expected a kept truth: {}; delete it to have it traced anew", path, error.what()));
+    }
+}
+
 }  // namespace
 
 SequenceTruths::SequenceTruths(const std::string& directory)
@@ -108,16 +118,17 @@ std::shared_ptr<const FrameTruth> SequenceTruths::obtain(const studio::RayScene&
     const auto known = recent_.find(name);
     if (known != recent_.end()) return known->second;
     const std::string path = (fs::path(directory_) / (name + ".exr")).string();
-    studio::Image image;
+    FrameTruth truth;
     if (fs::exists(path)) {
-        image = studio::readImage(path);
+        truth = readKept(path, name, request.samples);
     } else {
-        image = trace(scene, view, request);
+        const studio::Image image = trace(scene, view, request);
         save(path, image);
         ++traced_;
+        truth = fromImage(image, name, request.samples);
     }
     if (recent_.size() >= kRecentMost) recent_.clear();
-    return recent_[name] = std::make_shared<FrameTruth>(fromImage(image, name, request.samples));
+    return recent_[name] = std::make_shared<FrameTruth>(std::move(truth));
 }
 
 std::shared_ptr<const FrameTruth> darkTruth(int width, int height) {

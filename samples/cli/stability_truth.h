@@ -5,8 +5,9 @@
 // noise. Each has sqrt(2) of the mean's noise, and both have it, so the floor is twice what the truth's
 // noise alone brings into a technique's figures: a bound from above.
 //
-// Sample points are the same for all pixels and frames (PathTracerOptions::commonPoints, guide), and so
-// is their number, so that a surface on which nothing changes has the same truth wherever it is seen.
+// Sample points are the same for all pixels and frames (PathTracerOptions::commonPoints, guide) unless
+// the sequence wants each pixel's own, and so is their number, so that a surface on which nothing
+// changes has the same truth wherever it is seen.
 #pragma once
 
 #include <functional>
@@ -35,6 +36,7 @@ public:
         int bounces = 1;  // 0: all
         int samples = 64;
         const studio::LitPoints* guide = nullptr;  // one for the whole sequence
+        bool sharesPoints = true;                  // FailureSequence::truthSharesPoints
         // Called now and then; an exception ends the frame's trace, of which nothing is kept.
         std::function<void(double fraction)> progress;
     };

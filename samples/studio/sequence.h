@@ -49,6 +49,10 @@ struct FailureSequence {
     SequenceTruth truth = SequenceTruth::Traced;
     // Paths per pixel of the truth, of both halves together: what keeps its floors low enough here.
     int truthSamples = 32;
+    // Sample points shared by all pixels of the truth, which keep the noise of surfaces at rest still.
+    // Where all light changes from frame to frame nothing is kept, and what pixels share adds up in
+    // means over the picture (drift) and its tiles (spike): there each pixel has its own.
+    bool truthSharesPoints = true;
     // 1 in the sealed room, 2 lit and outside, 0 neither; null: no sealed room. Positions in the
     // frames' own unit.
     std::function<std::uint8_t(const SequenceFrame& frame, const glm::vec3& position)> region;

@@ -12,6 +12,40 @@ struct SequenceMaker {
 // In the catalogue's order.
 const std::vector<SequenceMaker>& sequenceMakers();
 
+// sequence_views.cpp
+FailureSequence makePan(const SequenceSize& size);
+FailureSequence makeDolly(const SequenceSize& size);
+FailureSequence makeCut(const SequenceSize& size);
+FailureSequence makeOffScreen(const SequenceSize& size);
+FailureSequence makeSmallScale(const SequenceSize& size);
+FailureSequence makeLargeScale(const SequenceSize& size);
+FailureSequence makeResolutionChange(const SequenceSize& size);
+FailureSequence makeGrazing(const SequenceSize& size);
+FailureSequence makeEmpty(const SequenceSize& size);
+FailureSequence makeNoLight(const SequenceSize& size);
+// sequence_lights.cpp
+FailureSequence makeSlowSweep(const SequenceSize& size);
+FailureSequence makeQuickSweep(const SequenceSize& size);
+FailureSequence makeMovingObject(const SequenceSize& size);
+FailureSequence makeThinWalls(const SequenceSize& size);
+FailureSequence makeGridCrossing(const SequenceSize& size);
+FailureSequence makeTinyEmitter(const SequenceSize& size);
+FailureSequence makeSphericalRoom(const SequenceSize& size);
+FailureSequence makeOpeningDoor(const SequenceSize& size);
+FailureSequence makeBlockedLight(const SequenceSize& size);
+
+// Frame f of a scene at time f, the scene's keys being one per frame.
+SequenceFrame& addFrame(FailureSequence& sequence, const SequenceSize& size,
+                        std::shared_ptr<const Scene> scene, const Camera& camera);
+// One scene, seen by a camera that moves.
+FailureSequence makeFlight(const SequenceSize& size, const std::shared_ptr<Scene>& scene,
+                           const std::function<Camera(int frame)>& cameraOf);
+// The only light of the scene, keyed frame by frame.
+void sweepLight(Scene& scene, const SequenceSize& size, const std::function<Light(int frame)>& lightOf);
+Camera cameraOf(const Scene& scene, const char* name);
+double shareOf(int frame, const SequenceSize& size);  // 0 in the first frame, 1 in the last
+FailureSequence withSamples(int samples, FailureSequence sequence);
+
 // A shipped scene (scene.h) that a sequence changes.
 std::shared_ptr<Scene> shippedScene(const std::string& name);
 // Scene "rooms" with its door as it stands at a time of its own.

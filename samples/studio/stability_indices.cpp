@@ -86,9 +86,9 @@ void findLeak(const StabilitySequence& sequence, StabilityIndices& result) {
         if (inside[t].count > 0.0) result.frames[t].leak = inside[t].value() / light;
 }
 
-// By how much the relative bias of the pixels that frames t - 1 and t share differs between them; 0
+// By how much the relative bias of the pixels that frames t - 1 and t share differs between them; empty
 // where they share next to none, as at a cut.
-double biasChange(const StabilitySequence& sequence, int t) {
+std::optional<double> biasChange(const StabilitySequence& sequence, int t) {
     constexpr double kLeastShare = 0.1;  // of the pixels: a few at the rim do not speak for the picture
     double errorNow = 0.0, errorBefore = 0.0, truthNow = 0.0, truthBefore = 0.0, count = 0.0;
     for (std::size_t pixel = 0; pixel < sequence.pixels(t); ++pixel) {
@@ -102,7 +102,7 @@ double biasChange(const StabilitySequence& sequence, int t) {
         }
         count += 3.0;
     }
-    if (count < 3.0 * kLeastShare * double(sequence.pixels(t))) return 0.0;
+    if (count < 3.0 * kLeastShare * double(sequence.pixels(t))) return std::nullopt;
     return errorNow / count / sequence.relativeTo(truthNow / count) -
            errorBefore / count / sequence.relativeTo(truthBefore / count);
 }
@@ -112,7 +112,13 @@ void findDrift(const StabilitySequence& sequence, StabilityIndices& result) {
     const int count = sequence.count(), window = std::max(3, count / 4);
     if (count < 2 * window) return;
     std::vector<double> curve{0.0}, medians;
-    for (int t = 1; t < count; ++t) curve.push_back(curve.back() + biasChange(sequence, t));
+    bool isSeen = false;
+    for (int t = 1; t < count; ++t) {
+        const std::optional<double> change = biasChange(sequence, t);
+        isSeen = isSeen || change.has_value();
+        curve.push_back(curve.back() + change.value_or(0.0));
+    }
+    if (!isSeen) return;  // no frame shows anything of the one before
     for (int first = 0; first + window <= count; ++first)
         medians.push_back(median({curve.begin() + first, curve.begin() + first + window}));
     for (int t = 0; t < count; ++t) {

@@ -106,6 +106,22 @@ class Stability(unittest.TestCase):
         self.run_again("--quick", "--no-report")
         self.assertEqual(before, os.stat(picture).st_mtime_ns)
 
+    def test_only_what_is_missing_is_measured(self):
+        folder = os.path.join(self.temporary.name, "missing")
+        arguments = ("--no-report", "--size", "32x18", "--frames", "3", "--sequences", "camera_dolly")
+        path, picture = os.path.join(folder, "stability.json"), os.path.join(folder, "images", "rsm_camera_dolly_picture.png")
+        self.run_again(*arguments, "--techniques", "rsm", folder=folder)
+        before = os.stat(picture).st_mtime_ns
+        self.run_again(*arguments, "--techniques", "rsm", "rival", folder=folder)
+        self.assertEqual(before, os.stat(picture).st_mtime_ns)
+        with open(path, "rb") as file:
+            data = file.read()
+        self.assertEqual({r["id"] for r in json.loads(data)["results"]}, {"rsm/camera_dolly", "rival/camera_dolly"})
+        # Better truths alone change nothing that is known of the results.
+        self.run_again(*arguments, "--only-truths", "--truth-effort", "2", folder=folder)
+        with open(path, "rb") as file:
+            self.assertEqual(data, file.read())
+
     def test_comparison(self):
         path = os.path.join(self.folder, "stability.json")
         output, _ = self.run_again("--quick", "--no-report", "--report-only", "--compare", path)
@@ -160,6 +176,25 @@ class Stability(unittest.TestCase):
         self.assertIn("frames", errors)
         _, errors = self.run_again("--techniques", "magic", code=2)
         self.assertIn("rival", errors)
+        for effort in ("0", "-1", "nan", "inf", "1e300"):
+            _, errors = self.run_again("--truth-effort", effort, code=2)
+            self.assertIn("--truth-effort", errors)
+            self.assertEqual(errors.count("\n"), 1)
+        _, errors = self.run_again("--size", "16384x16384", "--frames", "10000", code=2)
+        self.assertIn("memory", errors)
+        self.run_again("--only-truths", "--report-only", code=2)
+
+    def test_what_is_no_result_is_refused_before_measuring(self):
+        folder, path = os.path.join(self.temporary.name, "refused"), os.path.join(self.temporary.name, "other.json")
+        head = {"format": "lightwell-stability 1", "header": {"size": [8, 8], "frames": 2}, "sequences": [], "results": []}
+        others = [{"format": 5}, {**head, "header": {}}, {**head, "results": [{"id": "rsm/no_light"}]}, {**head, "results": [3]}]
+        for data, named in [(head, "size")] + [(other, "expected the results") for other in others]:
+            with self.subTest(data=data):
+                with open(path, "w", encoding="utf-8") as file:
+                    json.dump(data, file)
+                _, errors = self.run_again("--quick", "--no-report", "--compare", path, code=2, folder=folder)
+                self.assertIn(named, errors)
+                self.assertFalse(os.path.exists(os.path.join(folder, "stability.json")))
 
 
 if __name__ == "__main__":

@@ -70,6 +70,7 @@ std::vector<StabilityFrame> noiseFrames(const FailureSequence& sequence, int sam
         const RayScene scene(frame.scene, frame.time);
         cli::SequenceTruths::Request request;
         request.samples = samples;
+        request.sharesPoints = sequence.truthSharesPoints;
         request.guide = guide.get();
         const auto truth = truths.obtain(scene, viewOf(scene, frame), request);
         const SeenFrame seen = seeFrame(scene, frame);
@@ -210,6 +211,28 @@ TEST_CASE("a truth keeps its noise where nothing changes") {
     // Traced once: the second run takes all from the cache, bit for bit.
     const auto again = noiseFrames(dolly, 16, cache.path.string());
     for (std::size_t f = 0; f < frames.size(); ++f) CHECK(frames[f].image == again[f].image);
+}
+
+TEST_CASE("where all light changes pixels' own points keep the truth's drift low") {
+    const CacheFolder cache;
+    FailureSequence sweep = makeSequence("light_sweep_quick", {32, 48, 27});
+    REQUIRE_FALSE(sweep.truthSharesPoints);
+    const double own = *stabilityIndices(noiseFrames(sweep, 32, cache.path.string())).drift;
+    sweep.truthSharesPoints = true;
+    const double shared = *stabilityIndices(noiseFrames(sweep, 32, cache.path.string())).drift;
+    INFO("drift of the noise " << own << ", with shared points " << shared);
+    CHECK(own < 0.025);  // a quarter of what is noticed
+    CHECK(shared > 2.0 * own);
+}
+
+TEST_CASE("a kept truth that is damaged is named, with what to do") {
+    const CacheFolder cache;
+    const FailureSequence dolly = makeSequence("camera_dolly", {2, 16, 9});
+    noiseFrames(dolly, 2, cache.path.string());
+    for (const auto& file : std::filesystem::directory_iterator(cache.path))
+        std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
+    CHECK_THROWS_WITH(noiseFrames(dolly, 2, cache.path.string()),
+                      Catch::Contains("cornell") && Catch::Contains("delete it"));
 }
 
 TEST_CASE("one truth serves all scales") {

@@ -58,6 +58,27 @@ TEST_CASE("a bias is worse when it is larger, whatever its sign") {
     CHECK(cli::compareStability(before, resultsWith(result(0.05, 0.004, -0.2))).regressions.size() == 1);
 }
 
+TEST_CASE("a ghost is worse when it rises above 0, whatever it was below") {
+    Json before = resultsWith(result(0.05, 0.004)), now = before;
+    before["results"][0]["indices"]["ghost"] = -0.6;
+    now["results"][0]["indices"]["ghost"] = 0.4;
+    CHECK(cli::compareStability(before, now).regressions.size() == 1);
+    CHECK(cli::compareStability(now, before).regressions.empty());
+    now["results"][0]["indices"]["ghost"] = -0.9;
+    CHECK(cli::compareStability(before, now).regressions.empty());
+}
+
+TEST_CASE("more values that are not finite are a regression of what failed before") {
+    Json before = resultsWith(result(0.05, 0.004));
+    before["results"][0]["passes"] = false;
+    before["results"][0]["not_finite"] = 3;
+    CHECK(cli::compareStability(before, before).regressions.empty());
+    Json now = before;
+    now["results"][0]["not_finite"] = 4;
+    CHECK(cli::compareStability(before, now).regressions.size() == 1);
+    CHECK(cli::compareStability(now, before).regressions.empty());
+}
+
 TEST_CASE("light where there must be none is a regression; missing results are noted") {
     const Json before = resultsWith(result(0.05, 0.004));
     Json now = before;
@@ -74,4 +95,7 @@ TEST_CASE("runs of another size or length are not compared") {
     Json now = before;
     now["header"]["frames"] = 8;
     CHECK_THROWS_WITH(cli::compareStability(before, now), Catch::Contains("frames is 32 there and 8"));
+    CHECK_THROWS_WITH(cli::requireComparable(before, {32, 160, 90}),
+                      Catch::Contains("size is [320,180]"));
+    CHECK_NOTHROW(cli::requireComparable(before, {32, 320, 180}));
 }

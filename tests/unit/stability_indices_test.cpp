@@ -285,6 +285,7 @@ TEST_CASE("sequences of few frames or without surfaces have what can be judged")
     }
     checkFinite(stabilityIndices(frames));
     CHECK_FALSE(stabilityIndices(frames).flicker.has_value());
+    CHECK_FALSE(stabilityIndices(frames).drift.has_value());
 }
 
 TEST_CASE("frames that do not fit are named") {
