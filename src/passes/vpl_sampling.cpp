@@ -65,17 +65,17 @@ void VplSampling::draw(Executor& executor, const RsmInput& rsms, std::uint32_t s
                  rowSumsBuffer_, uniform, cl_int(sampleCount), sampleRotation(options_.seed), authored_, order_, vpls_);
 }
 
-Planes VplSampling::debugShape() const {
+Planes VplSampling::debugShape(lw_subset_order order) {
     Planes planes;
-    planes.width = std::uint32_t(order_.subsets * order_.capacity);
+    planes.width = std::uint32_t(order.subsets * order.capacity);
     planes.height = 1;
     planes.rowStride = planes.planeStride = paddedWidth(planes.width);
     planes.count = 10;
     return planes;
 }
 
-void VplSampling::recordPlanes(Executor& executor, const Planes& planes) {
-    executor.run("vpl_sampling.planes", planes_, gridOver(planes.width), kGroup, vpls_, cl_int(planes.width),
+void VplSampling::recordPlanes(Executor& executor, const Buffer& vpls, const Planes& planes) {
+    executor.run("vpl_sampling.planes", planes_, gridOver(planes.width), kGroup, vpls, cl_int(planes.width),
                  planes.memory, cl_int(planes.planeStride));
 }
 

@@ -31,8 +31,10 @@ public:
     const Buffer& vpls() const { return vpls_; }         // lw_vpl by slot
     lw_subset_order order() const { return order_; }
     std::uint32_t vplCount() const { return std::uint32_t(order_.count); }
-    Planes debugShape() const;  // planes without memory: position, normal, flux, area by slot
-    void recordPlanes(Executor& executor, const Planes& planes);  // fills them
+    // Of a list of VPLs, its own or another pass's. Planes without memory: position, normal, flux, area by slot; and what fills
+    // them.
+    static Planes debugShape(lw_subset_order order);
+    void recordPlanes(Executor& executor, const Buffer& vpls, const Planes& planes);
     std::uint64_t bytes() const;
     // What frames of this shape will have.
     static lw_subset_order orderOf(const VplSamplingOptions& options, const FrameShape& shape);

@@ -118,8 +118,10 @@ std::vector<DebugView> RsmTechnique::debugViews(const View* view) {
     std::vector<DebugView> views;
     if (sampling_.vpls())
         views.push_back({"vpls", "one column per slot: position xyz (m), unit normal xyz, flux rgb (W), area (m^2)",
-                         sampling_.debugShape(),
-                         [this](Executor& executor, const Planes& planes) { sampling_.recordPlanes(executor, planes); }});
+                         VplSampling::debugShape(sampling_.order()),
+                         [this](Executor& executor, const Planes& planes) {
+                             sampling_.recordPlanes(executor, sampling_.vpls(), planes);
+                         }});
     if (const InterleavedView* state = states_.find(view)) state->addDebugViews(views);
     return views;
 }

@@ -174,9 +174,11 @@ Report SsvpTechnique::report() {
 std::vector<DebugView> SsvpTechnique::debugViews(const View* view) {
     std::vector<DebugView> views;
     if (gather_.vpls()) {
-        views.push_back({"vpls", "one column per first-bounce VPL: position xyz (m), unit normal xyz, flux rgb (W), area (m^2)",
-                         sampling_.debugShape(),
-                         [this](Executor& executor, const Planes& planes) { sampling_.recordPlanes(executor, planes); }});
+        views.push_back({"vpls", "one column per slot, both bounces: position xyz (m), unit normal xyz, flux rgb (W), area (m^2)",
+                         VplSampling::debugShape(gather_.order()),
+                         [this](Executor& executor, const Planes& planes) {
+                             sampling_.recordPlanes(executor, gather_.vpls(), planes);
+                         }});
         views.push_back({"clusters", clusters_.debugDescription(), clusters_.debugShape(),
                          [this](Executor& executor, const Planes& planes) { clusters_.recordPlanes(executor, planes); }});
         views.push_back({"maps", "maps one below the other: distance (m), world normal xyz, albedo rgb", maps_.debugShape(),
