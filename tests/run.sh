@@ -104,7 +104,7 @@ awk -v budgets=tests/budgets.txt -v total=$((SECONDS - started)) -v status="$cte
         sub(/^ *[0-9]+\/[0-9]+ Test +#[0-9]+: /, "", name)
         sub(/[ .].*$/, "", name)
         seconds = $0
-        sub(/ sec.*$/, "", seconds)
+        sub(/ sec *$/, "", seconds)
         sub(/^.* /, "", seconds)
         if ($0 ~ /\*\*\*Skipped/ || $0 ~ /\*\*\*Not Run \(Disabled\)/) { result = "skipped"; ++skipped }
         else if ($0 ~ / Passed +[0-9.]+ sec/) { result = "passed"; ++passed }
