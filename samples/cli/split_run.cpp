@@ -1,6 +1,5 @@
 // `lightwell split`: for each view and set of parameters a few patterns of VPLs, each rendered as asked
-// for, at full resolution, and summed with exact visibility; the shares go to split.json, point by
-// point.
+// for, at full resolution, and summed with exact visibility; shares go to split.json, point by point.
 #include "split_run.h"
 
 #include <fmt/format.h>

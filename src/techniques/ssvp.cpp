@@ -73,6 +73,8 @@ std::vector<LWChoice> inputChoices(const LWSsvpDesc& desc, const LWFrame& frame)
         choices.push_back({"frame.lights", "some have no RSM: technique ssvp makes no indirect light of those"});
     if (needsMaps(desc) && (!frame.geometry || frame.geometry->triangleCount == 0))
         choices.push_back({"frame.geometry", "no triangles: nothing blocks, and there is no second bounce"});
+    if (!needsMaps(desc) && frame.geometry)
+        choices.push_back({"frame.geometry", "not used: one bounce without visibility asks for no maps"});
     if (frame.geometry && frame.geometry->surfelCount)
         choices.push_back({"frame.geometry.surfels", "not used: technique ssvp draws its maps from triangles"});
     return choices;
@@ -95,7 +97,7 @@ public:
     void update(Executor& executor, const LWFrame& frame) override {
         GeometryInput::check(frame.geometry);
         rsms_.import(executor, frame);
-        geometry_.import(executor, frame.geometry);
+        geometry_.import(executor, needsMaps(desc_) ? frame.geometry : nullptr);  // without triangles no map is drawn
         sampling_.record(executor, rsms_, frame.vpls, frame.vplCount);
 
         const VplList firsts{sampling_.vpls(), sampling_.vplCount()};
