@@ -431,6 +431,9 @@ typedef struct LWSsvpDesc {
     LWDirections directions; /**< in which a cluster's second-bounce VPLs are drawn */
     uint32_t warmStart;      /**< 1: clusters start where they were in the frame before */
     uint32_t interleave;     /**< as LWRsmDesc's */
+    uint32_t clusterGroups;  /**< 1, 2, 4, .. 64: a pixel is lit by one of so many groups of clusters, and its neighbours in the
+                                  interleave's window by the others. Look-ups fall in proportion; what the filter does not mix
+                                  shows. More than the window has pixels: as many as that */
     uint32_t filter;         /**< as LWRsmDesc's */
     LWResolution resolution; /**< as LWRsmDesc's */
     uint32_t seed;           /**< shifts the sample sets; 0: unshifted */

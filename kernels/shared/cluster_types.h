@@ -15,4 +15,8 @@ typedef struct {
 } lw_cluster;
 LW_SIZE_CHECK(lw_cluster, 80);
 
+// VPLs are sorted by cluster if there are no more clusters than this; with more, they keep their order: hardly two
+// neighbours share one anyway.
+#define LW_MOST_SORTED 64
+
 #endif

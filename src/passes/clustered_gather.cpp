@@ -1,9 +1,11 @@
 #include "passes/clustered_gather.h"
 
+#include <algorithm>
 #include <string>
 
 #include "compute/device.h"
 #include "passes/vpl_list.h"
+#include "shared/cluster_types.h"
 #include "shared/vpl_types.h"
 
 namespace lightwell {
@@ -19,11 +21,15 @@ std::uint64_t listBytes(const lw_subset_order& order) {
     return std::uint64_t(order.subsets) * std::uint64_t(order.capacity) * sizeof(lw_vpl);
 }
 
+std::uint64_t sortedBytes(std::uint32_t firstCount) { return (std::uint64_t(firstCount) + 1) * sizeof(cl_int); }
+
 }  // namespace
 
-ClusteredGather::ClusteredGather(Device& device, std::uint32_t interleave, ClusterVisibility visibility)
+ClusteredGather::ClusteredGather(Device& device, std::uint32_t interleave, std::uint32_t groups, ClusterVisibility visibility)
     : device_(device),
       interleave_(interleave),
+      groups_(groups),
+      sort_(device.programs().kernel("clustered_gather/clustered_order", "clustered_gather_sort")),
       orderList_(device.programs().kernel("clustered_gather/clustered_order", "clustered_gather_order")),
       gather_(device.programs().kernel("clustered_gather/clustered_gather", "clustered_gather_gather",
                                        definesOf(interleave, visibility))) {}
@@ -39,20 +45,23 @@ lw_subset_order ClusteredGather::orderOf(std::uint32_t firstCount, std::uint32_t
 void ClusteredGather::reserve(std::uint32_t firstCount, std::uint32_t secondCount) {
     const lw_subset_order order = orderOf(firstCount, secondCount, interleave_);
     vpls_.reserve(device_, std::size_t(listBytes(order)), "VPLs by cluster");
+    sorted_.reserve(device_, std::size_t(sortedBytes(firstCount)), "order of VPLs by cluster");
     order_ = order;
 }
 
 std::uint64_t ClusteredGather::estimateBytes(std::uint32_t firstCount, std::uint32_t secondCount,
                                              std::uint32_t interleave) {
-    return listBytes(orderOf(firstCount, secondCount, interleave));
+    return listBytes(orderOf(firstCount, secondCount, interleave)) + sortedBytes(firstCount);
 }
 
 void ClusteredGather::recordOrder(Executor& executor, const VplList& firsts, const Buffer& assignment,
                                   std::uint32_t clusterCount, const VplList& seconds) {
     const std::uint32_t subsets = interleave_ * interleave_;
-    executor.run("clustered_gather.order", orderList_, {subsets, 1}, {1, 1}, firsts.vpls, assignment,
-                 subsetOrder(firsts.count, subsets), cl_int(clusterCount), seconds.vpls,
-                 subsetOrder(seconds.count, subsets), order_, vpls_);
+    executor.run("clustered_gather.sort", sort_, {std::clamp<std::uint32_t>(clusterCount, 1, LW_MOST_SORTED), 1}, {1, 1}, assignment,
+                 cl_int(firsts.count), cl_int(clusterCount), sorted_);
+    executor.run("clustered_gather.order", orderList_, {subsets, 1}, {1, 1}, firsts.vpls, assignment, sorted_,
+                 cl_int(firsts.count), seconds.vpls, subsetOrder(seconds.count, subsets), cl_int(interleave_),
+                 cl_int(groups_), order_, vpls_);
 }
 
 void ClusteredGather::recordGather(Executor& executor, const Planes& position, const Planes& normal,

@@ -28,16 +28,17 @@ struct ClusterMaps {
 
 class ClusteredGather {
 public:
-    // interleave: 1, 2, 4 or 8.
-    ClusteredGather(Device& device, std::uint32_t interleave, ClusterVisibility visibility);
+    // interleave: 1, 2, 4 or 8. groups: a power of two; a pixel gathers from one group of the VPLs sorted by cluster, and so
+    // looks up about one groups-th of the clusters. interleave^2 at most.
+    ClusteredGather(Device& device, std::uint32_t interleave, std::uint32_t groups, ClusterVisibility visibility);
 
     // Makes room for the sorted list of so many VPLs; allocates only where it has grown.
     void reserve(std::uint32_t firstCount, std::uint32_t secondCount);
     static lw_subset_order orderOf(std::uint32_t firstCount, std::uint32_t secondCount, std::uint32_t interleave);
     static std::uint64_t estimateBytes(std::uint32_t firstCount, std::uint32_t secondCount, std::uint32_t interleave);
 
-    // Pass "clustered_gather.order": sorts each subset's share of `firsts` by cluster (`assignment`, an int each, -1: left
-    // out) and appends its share of `seconds`, which are seen everywhere.
+    // Passes "clustered_gather.sort" and ".order": sort `firsts` by cluster (`assignment`, an int each, -1: left out), deal
+    // each subset its share, and append its share of `seconds`, which are seen everywhere.
     void recordOrder(Executor& executor, const VplList& firsts, const Buffer& assignment, std::uint32_t clusterCount,
                      const VplList& seconds);
     // Pass "clustered_gather.gather"; masks (of `vpls`, by InterleavedGather::recordCull), irradiance and counts as in
@@ -47,13 +48,13 @@ public:
 
     const Buffer& vpls() const { return vpls_; }       // lw_vpl by slot; flux.w: cluster or -1
     lw_subset_order order() const { return order_; }  // its subsets and capacity
-    std::uint64_t bytes() const { return vpls_.bytes(); }
+    std::uint64_t bytes() const { return vpls_.bytes() + sorted_.bytes(); }
 
 private:
     Device& device_;
-    std::uint32_t interleave_;
-    Kernel &orderList_, &gather_;
-    Buffer vpls_;
+    std::uint32_t interleave_, groups_;
+    Kernel &sort_, &orderList_, &gather_;
+    Buffer vpls_, sorted_;
     lw_subset_order order_{};
 };
 

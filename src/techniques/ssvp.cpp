@@ -58,6 +58,9 @@ ClusterVisibility visibilityOf(const LWSsvpDesc& desc) {
     }
 }
 
+// As many groups as the interleave's window has pixels, at most.
+std::uint32_t groupsOf(const LWSsvpDesc& desc) { return std::min(desc.clusterGroups, desc.interleave * desc.interleave); }
+
 // Maps serve the visibility and the second bounce.
 bool needsMaps(const LWSsvpDesc& desc) { return desc.visibility != LW_VISIBILITY_NONE || desc.bounces > 1; }
 
@@ -73,6 +76,8 @@ std::vector<LWChoice> inputChoices(const LWSsvpDesc& desc, const LWFrame& frame)
         choices.push_back({"frame.lights", "some have no RSM: technique ssvp makes no indirect light of those"});
     if (needsMaps(desc) && (!frame.geometry || frame.geometry->triangleCount == 0))
         choices.push_back({"frame.geometry", "no triangles: nothing blocks, and there is no second bounce"});
+    if (groupsOf(desc) < desc.clusterGroups)
+        choices.push_back({"ssvp.clusterGroups", "as many as the interleave's window has pixels, which are fewer"});
     if (!needsMaps(desc) && frame.geometry)
         choices.push_back({"frame.geometry", "not used: one bounce without visibility asks for no maps"});
     if (frame.geometry && frame.geometry->surfelCount)
@@ -90,7 +95,7 @@ public:
           maps_(device, desc.mapSize),
           second_(device, secondOptions(desc)),
           passes_(device, desc.interleave),
-          gather_(device, desc.interleave, visibilityOf(desc)) {
+          gather_(device, desc.interleave, groupsOf(desc), visibilityOf(desc)) {
         if (interleavedOptions(desc).half) bilateral_.emplace(device);
     }
 

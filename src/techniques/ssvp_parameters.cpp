@@ -13,6 +13,7 @@ constexpr const char* kResolutionNames[] = {"full", "half", nullptr};
 constexpr const char* kVisibilityNames[] = {"none", "hard", "soft", nullptr};
 constexpr const char* kDirectionsNames[] = {"cosine", "disc", "square", nullptr};
 constexpr double kInterleaveValues[] = {1, 2, 4, 8};
+constexpr double kGroupValues[] = {1, 2, 4, 8, 16, 32, 64};
 constexpr double kMapSizeValues[] = {64, 96, 128, 192, 256, 384, 512};
 constexpr double kVplSweep[] = {256, 1024};
 constexpr double kClusterSweep[] = {4, 8, 16, 32};
@@ -56,6 +57,10 @@ std::vector<LWParameter> makeTable() {
         allowing(uint("interleave", "n of n x n pixels that share out the VPLs: time falls with n^2, noise at edges grows",
                       offsetof(LWSsvpDesc, interleave), 1, 8, 4),
                  kInterleaveValues),
+        allowing(uint("cluster_groups",
+                      "of which a pixel is lit by one, its neighbours in the interleave's window by others: time falls, noise at edges grows",
+                      offsetof(LWSsvpDesc, clusterGroups), 1, 64, 4),
+                 kGroupValues),
         flag("filter", "edge-aware n x n filter after an interleaved gather", offsetof(LWSsvpDesc, filter)),
         swept(oneOf("resolution", "pixels that are gathered; half: every second column and row, up-sampled after",
                     offsetof(LWSsvpDesc, resolution), kResolutionNames, 1, LW_RESOLUTION_FULL),
@@ -92,6 +97,7 @@ extern "C" void lwDefaultSsvp(LWSsvpDesc* desc) {
     desc->directions = LW_DIRECTIONS_COSINE;
     desc->warmStart = 1;
     desc->interleave = 4;
+    desc->clusterGroups = 4;
     desc->filter = 1;
     desc->resolution = LW_RESOLUTION_FULL;
 }

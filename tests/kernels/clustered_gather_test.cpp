@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <map>
+#include <set>
 
 #include "passes/interleaved_gather.h"
 #include "passes/vpl_list.h"
@@ -129,9 +130,11 @@ TEST_CASE("the list holds every VPL once, cluster by cluster, then the further o
           "[clustered_gather]") {
     const auto n = GENERATE(1u, 4u);
     const auto clusters = GENERATE(1u, 8u, 64u, 200u);
+    const auto groups = GENERATE(1u, 2u, 16u);
+    if (groups > n * n) return;
     KernelRig rig(16);
     const Scene scene = randomScene(257, 70, int(clusters));
-    ClusteredGather pass(rig.device(), n, ClusterVisibility::hard);
+    ClusteredGather pass(rig.device(), n, groups, ClusterVisibility::hard);
     recordOrder(rig, pass, scene, clusters);
     const std::vector<lw_vpl> list = listOf(pass);
     std::map<float, int> seen;
@@ -159,6 +162,35 @@ TEST_CASE("the list holds every VPL once, cluster by cluster, then the further o
     for (const auto& [flux, times] : seen) CHECK(times == 1);
 }
 
+// 8 clusters of 16 VPLs each, in groups of whole clusters.
+TEST_CASE("a subset's VPLs come from one group of the clusters, its neighbours' from the others", "[clustered_gather]") {
+    const auto groups = GENERATE(1u, 2u, 4u, 8u);
+    constexpr std::uint32_t n = 4, clusters = 8;
+    KernelRig rig(16);
+    Scene scene = randomScene(128, 0, int(clusters));
+    for (std::uint32_t k = 0; k < 128; ++k) scene.assignment[k] = cl_int(k * 5 % clusters);
+    ClusteredGather pass(rig.device(), n, groups, ClusterVisibility::hard);
+    recordOrder(rig, pass, scene, clusters);
+    const std::vector<lw_vpl> list = listOf(pass);
+    std::vector<std::set<int>> of(n * n);
+    for (std::uint32_t s = 0; s < n * n; ++s)
+        for (int i = 0; i < pass.order().capacity; ++i) {
+            const lw_vpl& v = list[std::size_t(int(s) * pass.order().capacity + i)];
+            if (v.flux.s[0] > 0.0f) of[s].insert(int(v.flux.s[3]));
+        }
+    for (const std::set<int>& seen : of) CHECK(seen.size() == clusters / groups);
+    // Side by side, and of every 2 x 2: also across the window's border, where the pattern begins anew.
+    for (std::uint32_t s = 0; s < n * n; ++s) {
+        const std::uint32_t x = s % n, y = s / n, right = y * n + (x + 1) % n, below = (y + 1) % n * n + x,
+                            across = (y + 1) % n * n + (x + 1) % n;
+        std::set<int> pair = of[s], square = of[s];
+        pair.insert(of[right].begin(), of[right].end());
+        for (const std::uint32_t other : {right, below, across}) square.insert(of[other].begin(), of[other].end());
+        CHECK(pair.size() >= std::min(2u * clusters / groups, clusters));
+        CHECK(square.size() >= std::min(4u * clusters / groups, clusters));
+    }
+}
+
 TEST_CASE("without visibility it is the gather of the same list", "[clustered_gather]") {
     const auto width = GENERATE(1u, 16u);
     const auto n = GENERATE(1u, 4u);
@@ -167,7 +199,7 @@ TEST_CASE("without visibility it is the gather of the same list", "[clustered_ga
     Image position(size.first, size.second), normal(size.first, size.second);
     reference::fillCorner(position, normal);
     Scene scene = randomScene(128, 32, 8);
-    ClusteredGather pass(rig.device(), n, ClusterVisibility::none);
+    ClusteredGather pass(rig.device(), n, n == 1 ? 1 : 4, ClusterVisibility::none);
     recordOrder(rig, pass, scene, 8);
     const Guarded none = rig.upload(std::vector<float>(64, 0.0f));
     const auto bits = GENERATE(Bits::found, Bits::all);
@@ -184,7 +216,7 @@ TEST_CASE("a wall's shadow as rays from the clusters cast it", "[clustered_gathe
     const DrawnMaps maps = rig.drawn(room.mesh, room.clusters);
     const std::vector<reference::Triangle> triangles = room.mesh.triangles();
     for (const bool soft : {false, true}) {
-        ClusteredGather pass(rig.device(), 1, soft ? ClusterVisibility::soft : ClusterVisibility::hard);
+        ClusteredGather pass(rig.device(), 1, 1, soft ? ClusterVisibility::soft : ClusterVisibility::hard);
         recordOrder(rig, pass, room.scene, 2);
         const Image light =
             gatherOn(rig, pass, 1, room.position, room.normal,
@@ -214,7 +246,7 @@ TEST_CASE("widths agree, and ten runs are one", "[clustered_gather][large]") {
         ParaboloidRig rig(width, 64);
         rig.draw(room.mesh, room.clusters);
         for (int run = 0; run < (width == 16 ? 10 : 1); ++run) {
-            ClusteredGather pass(rig.device(), 4, ClusterVisibility::hard);
+            ClusteredGather pass(rig.device(), 4, 4, ClusterVisibility::hard);
             recordOrder(rig, pass, room.scene, 2);
             const Image light =
                 gatherOn(rig, pass, 4, room.position, room.normal,

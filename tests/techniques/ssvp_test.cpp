@@ -113,16 +113,26 @@ TEST_CASE("without triangles it is rsm, and says so", "[ssvp]") {
     LitFloor floor(64, tiledProfile);
     WallAndCeiling scene(kWidth, kHeight);
     LWSsvpDesc desc = descOf(8, 2);
-    desc.interleave = GENERATE(1u, 4u);
+    desc.interleave = desc.clusterGroups = 1;
     LWRsmDesc plain;
     lwDefaultRsm(&plain);
-    plain.interleave = desc.interleave;
+    plain.interleave = 1;
     TestTechnique rsm(device, plain), ssvp(device, desc);
     TestView view(device, kWidth, kHeight);
     rsm.update({floor.light});
     ssvp.update({floor.light});
     const auto expected = rsm.render(view, scene.gbuffer);
     CHECK(difference(ssvp.render(view, scene.gbuffer), expected) < kRounding);
+    SECTION("interleaved, it is as far from it as rsm is") {
+        plain.interleave = desc.interleave = 4;
+        desc.clusterGroups = GENERATE(1u, 4u);
+        TestTechnique rsmDealt(device, plain), ssvpDealt(device, desc);
+        rsmDealt.update({floor.light});
+        ssvpDealt.update({floor.light});
+        const auto dealt = ssvpDealt.render(view, scene.gbuffer), rsmsDealt = rsmDealt.render(view, scene.gbuffer);
+        CAPTURE(desc.clusterGroups);
+        CHECK(difference(dealt, expected) < 1.5 * difference(rsmsDealt, expected));
+    }
     const LWStats stats = ssvp.stats();
     CHECK(std::any_of(stats.choices, stats.choices + stats.choiceCount, [](const LWChoice& choice) {
         return std::string(choice.name) == "frame.geometry";
