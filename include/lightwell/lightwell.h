@@ -320,12 +320,17 @@ typedef struct LWBlocker {
     float radius;
 } LWBlocker;
 
-/** Optional geometry: an array of surfels, triangles, or both. */
+/** Optional geometry: an array of surfels (small oriented discs that cover the surfaces between them), triangles, or
+ *  both. Surfels with a zero normal are none; with anything else that cannot be used they are left out and counted
+ *  ("rejected_surfels"). */
 typedef struct LWGeometry {
     uint32_t structSize;
     uint32_t surfelCount, triangleCount;
-    LWImage surfelPosition, surfelNormal, surfelAlbedo, surfelEmission; /**< surfelCount x 1 */
-    LWImage surfelArea;
+    LWImage surfelPosition;     /**< world position; 3 channels; all images of surfels: surfelCount x 1 pixels */
+    LWImage surfelNormal;       /**< world normal; 3 channels; either side blocks */
+    LWImage surfelAlbedo;       /**< diffuse reflectance in [0,1]; or absent (0.5) */
+    LWImage surfelEmission;     /**< radiance; or absent (0) */
+    LWImage surfelArea;         /**< 1 channel, m^2, above 0: of the surface that the surfel stands for */
     const float* vertices;      /**< xyz, host memory */
     const uint32_t* indices;    /**< three per triangle; null: consecutive vertices */
     const float* triangleAlbedo;   /**< rgb per triangle, or null (0.5) */
@@ -416,9 +421,17 @@ typedef enum LWDirections {
     LW_DIRECTIONS_SQUARE = 2  /**< evenly over the square about it: a fifth of the VPLs is lost */
 } LWDirections;
 
-/** Technique "ssvp": VPLs in clusters, each cluster's visibility in a paraboloid map of the frame's triangles
- *  (LWFrame::geometry; without it nothing blocks and there is no second bounce, which the stats say), a second
- *  bounce drawn from the maps. */
+/** What the maps of technique "ssvp" show. Asking for what a frame does not bring is an error of lwUpdate. */
+typedef enum LWOccluders {
+    LW_OCCLUDERS_AUTO = 0,      /**< the frame's triangles, else its surfels, else as SCREEN; the stats say which */
+    LW_OCCLUDERS_TRIANGLES = 1, /**< LWGeometry's triangles, exactly */
+    LW_OCCLUDERS_SURFELS = 2,   /**< LWGeometry's surfels as discs; without any, its triangles sampled to surfels */
+    LW_OCCLUDERS_SCREEN = 3     /**< the texels of all RSMs and the pixels of LWFrame::sourceViews as discs, in every
+                                     frame anew; what neither shows blocks nothing */
+} LWOccluders;
+
+/** Technique "ssvp": VPLs in clusters, each cluster's visibility in a paraboloid map of what stands around it
+ *  (LWOccluders), a second bounce drawn from the maps. */
 typedef struct LWSsvpDesc {
     uint32_t structSize;
     uint32_t vpls;           /**< of the first bounce, drawn from all RSMs together */
@@ -437,6 +450,7 @@ typedef struct LWSsvpDesc {
     uint32_t filter;         /**< as LWRsmDesc's */
     LWResolution resolution; /**< as LWRsmDesc's */
     uint32_t seed;           /**< shifts the sample sets; 0: unshifted */
+    LWOccluders occluders;   /**< what the maps show */
 } LWSsvpDesc;
 
 LW_API void lwDefaultSsvp(LWSsvpDesc* desc);

@@ -8,9 +8,9 @@
 LW_FN int differs(float4 a, float4 b) { return any(as_int4(a) != as_int4(b)); }
 
 // One work-item = one map. A map's place decides all that is drawn into it, so one that stands where
-// it was drawn last is not stale. `lift`: of the origin above the medoid, m. `force`: every map is stale.
-__kernel void paraboloid_map_place(__global const lw_cluster* clusters, int mapCount, float lift, int force,
-                                   __global lw_paraboloid* frames, __global int* states,
+// it was drawn last is not stale. `diagonal`: of the geometry, m. `force`: every map is stale.
+__kernel void paraboloid_map_place(__global const lw_cluster* clusters, int mapCount, __global const float* diagonal,
+                                   int force, __global lw_paraboloid* frames, __global int* states,
                                    volatile __global uint* counters) {
     const int map = (int)get_global_id(0);
     if (map >= mapCount) return;
@@ -25,6 +25,7 @@ __kernel void paraboloid_map_place(__global const lw_cluster* clusters, int mapC
     const int drawn = cluster.position.w > 0.0f && dot(z, z) > 0.25f;
     if (drawn) {
         z = z * rsqrt(dot(z, z));
+        const float lift = LW_PARABOLOID_LIFT * diagonal[0];
         frame.origin = cluster.medoidPosition + lift * cluster.medoidNormal;
         frame.origin.w = 1.0f;
         frame.axisZ = z;

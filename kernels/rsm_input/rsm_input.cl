@@ -1,5 +1,5 @@
 // The last steps of importing reflective shadow maps; unpacking itself is gbuffer_input's.
-#include "shared/rsm_types.h"
+#include "shared/rsm_texel.h"
 #include "shared/surface.h"
 #include "shared/wide.h"
 
@@ -18,8 +18,6 @@ __kernel void rsm_input_rows(__global int* rows, __global uint* counters, const 
     if (span.index == 0 && y == 0)
         for (int c = span.height; c < LW_RSM_COUNTERS; ++c) counters[c] = 0;
 }
-
-LW_FN real lw_linear(float4 c, real i, real j) { return fma_(c.x, i, fma_(c.y, j, c.w)); }
 
 LW_FN mask lw_usable_flux(real flux) { return and_(flux >= 0.0f, flux <= LW_LARGEST_FLUX); }
 
@@ -50,11 +48,7 @@ __kernel void rsm_input_finish(__global float* texels, int stride, __global uint
                              and_(lw_usable_flux(r), and_(lw_usable_flux(g), lw_usable_flux(b))));
     const mask occupied = and_(inside, not_(empty));
     mask surface = and_(occupied, usable);
-    mask covered = splat_mask(0);
-    for (int c = 0; c < span.finerCount; ++c) {
-        const real cx = lw_linear(span.finer[2 * c], i, j), cy = lw_linear(span.finer[2 * c + 1], i, j);
-        covered = or_(covered, and_(inside, and_(fabs(cx) <= 1.0f, fabs(cy) <= 1.0f)));
-    }
+    const mask covered = and_(inside, rsm_covered(span, i, j));
 
     // Area of the surface seen through the texel.
     const real scale = select_((real)1.0f, sqrt(n2), surface);
@@ -67,8 +61,8 @@ __kernel void rsm_input_finish(__global float* texels, int stride, __global uint
         const real d2 = fma_(lx, lx, fma_(ly, ly, lz * lz));
         const real distance = sqrt(select_((real)1.0f, d2, d2 > 0.0f));
         const real cosine = fma_(nx, lx, fma_(ny, ly, nz * lz)) / distance;
-        const real ax = lw_linear(span.rayX, i, j), ay = lw_linear(span.rayY, i, j),
-                   az = lw_linear(span.rayZ, i, j);
+        const real ax = rsm_linear(span.rayX, i, j), ay = rsm_linear(span.rayY, i, j),
+                   az = rsm_linear(span.rayZ, i, j);
         const real ray2 = fma_(ax, ax, fma_(ay, ay, az * az));  // 1 / cos^2 of the angle to the axis
         area = span.texelArea / (ray2 * sqrt(ray2)) * d2 / fmax(cosine, (real)LW_MIN_LIGHT_COSINE);
     } else {

@@ -121,7 +121,17 @@ LWStatus lwEstimateFrameMemory(LWDevice device, const char* name, const void* de
         const FrameArgument own(call, frame);
         FrameShape shape;
         shape.vplCount = own.get().vplCount;
-        if (own.get().geometry) shape.triangles = own.get().geometry->triangleCount;
+        if (own.get().geometry) {
+            shape.triangles = own.get().geometry->triangleCount;
+            shape.surfels = own.get().geometry->surfelCount;
+        }
+        for (std::uint32_t i = 0; i < own.get().sourceViewCount; ++i) {
+            const LWImage& image = own.get().sourceViews[i].gbuffer->normal;
+            if (image.width > kMaxSide || image.height > kMaxSide)
+                fail(LW_ERROR_INVALID_ARGUMENT, "frame.sourceViews[", i, "].gbuffer.normal: expected at most ", kMaxSide,
+                     " pixels a side, got ", image.width, " x ", image.height);
+            shape.sourcePixels += (std::uint64_t(image.width) + 15) / 16 * 16 * image.height;
+        }
         for (std::uint32_t l = 0; l < own.get().lightCount; ++l)
             for (std::uint32_t r = 0; r < own.get().lights[l].rsmCount; ++r) {
                 const LWImage& flux = own.get().lights[l].rsms[r].flux;

@@ -13,6 +13,8 @@ struct FrameShape {
     std::uint64_t largestMap = 0;    // texels of the largest RSM
     std::uint32_t vplCount = 0;      // the host's own VPLs
     std::uint32_t triangles = 0;     // of the host's geometry
+    std::uint32_t surfels = 0;       // of the host's geometry
+    std::uint64_t sourcePixels = 0;  // of all source views, rows rounded up to 16
     bool uploads = false;            // host memory goes through copies on the device (no unified memory)
     void addMap(std::uint64_t width, std::uint64_t height) {
         texels += width * height;

@@ -55,9 +55,9 @@ bool isWithinReach(const Triangle& t) {
     return true;
 }
 
-bool hasArea(const Triangle& t) {
+double areaOf(const Triangle& t) {
     const glm::dvec3 a = cornerOf(t, 0);
-    return glm::length(glm::cross(cornerOf(t, 1) - a, cornerOf(t, 2) - a)) > 0.0;
+    return 0.5 * glm::length(glm::cross(cornerOf(t, 1) - a, cornerOf(t, 2) - a));
 }
 
 struct Bounds {
@@ -139,7 +139,7 @@ std::vector<Triangle> drawnTriangles(const LWGeometry& g, Bounds& bounds, std::u
         const Triangle triangle = readTriangle(g, t);
         if (!isWithinReach(triangle)) {
             ++rejected;
-        } else if (hasArea(triangle)) {
+        } else if (areaOf(triangle) > 0.0) {
             bounds.add(triangle);
             triangles.push_back(triangle);
         }
@@ -151,6 +151,19 @@ std::vector<Triangle> drawnTriangles(const LWGeometry& g, Bounds& bounds, std::u
         return a.host < b.host;
     });
     return triangles;
+}
+
+void shareOut(const std::vector<Triangle>& drawn, double& area, std::vector<std::uint32_t>& shares) {
+    area = 0.0;
+    for (const Triangle& t : drawn) area += areaOf(t);
+    shares.clear();
+    shares.reserve(drawn.size());
+    double upTo = 0.0;
+    for (const Triangle& t : drawn) {
+        upTo += areaOf(t);
+        shares.push_back(std::uint32_t(std::min(upTo / area * 4294967296.0, 4294967295.0)));
+    }
+    if (!shares.empty()) shares.back() = 0xffffffffu;
 }
 
 std::uint32_t paddedTo16(std::uint64_t count) { return std::uint32_t((count + 15) / 16 * 16); }
@@ -219,6 +232,7 @@ void GeometryInput::import(Executor& executor, const LWGeometry* geometry) {
     ++revision;
     hostIndices.clear();
     for (const Triangle& t : drawn) hostIndices.push_back(t.host);
+    shareOut(drawn, area, areaShares);
     triangles = Planes{};
     if (drawn.empty()) return;
     triangles.memory = memory_.get();

@@ -38,6 +38,9 @@ public:
     std::uint32_t triangleCount = 0;  // drawn
     std::uint32_t groupCount = 0;     // padded to 16: floats per plane of `groups`
     float diagonal = 0.0f;            // of the bounding box of what is drawn, m
+    double area = 0.0;                // of all that is drawn, m^2
+    // For each drawn triangle the share of the area up to and with it, of 2^32; the last one's is the largest number.
+    std::vector<std::uint32_t> areaShares;
     std::uint64_t revision = 0;       // differs whenever the triangles do
     std::vector<std::uint32_t> hostIndices;  // of each drawn triangle: its number among the host's
 

@@ -240,6 +240,8 @@ void RsmInput::import(Executor& executor, const LWFrame& frame) {
     impl_->opened.clear();
     impl_->choices.clear();
     spans = std::move(newSpans);
+    shapes.clear();
+    for (const CheckedRsm& rsm : rsms) shapes.push_back(rsm.span);
     rowCount = newRows;
     texelCount = newTexels;
     texels = Planes{};

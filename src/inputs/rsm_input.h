@@ -12,6 +12,7 @@
 #include "compute/report.h"
 #include "inputs/frame_shape.h"
 #include "lightwell/lightwell.h"
+#include "shared/rsm_types.h"
 
 namespace lightwell {
 
@@ -58,6 +59,7 @@ public:
     std::uint32_t rowCount = 0;
     std::uint32_t texelCount = 0;  // valid texels, padding left out (covered cascade texels included)
     std::vector<RsmSpan> spans;
+    std::vector<LwRsmSpan> shapes;  // of each span, as kernels take it
 
     void report(Report& report) const;  // rejected_texels, covered_texels, choices
     std::uint64_t bytes() const;

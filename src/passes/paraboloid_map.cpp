@@ -1,6 +1,7 @@
 #include "passes/paraboloid_map.h"
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
 
 #include "compute/device.h"
@@ -53,8 +54,8 @@ ParaboloidMap::ParaboloidMap(Device& device, std::uint32_t size)
              ", got ", size);
 }
 
-void ParaboloidMap::reserve(std::uint32_t clusterCount, const GeometryInput& geometry) {
-    checkCount(size_, clusterCount, geometry.groupCount);
+void ParaboloidMap::reserve(std::uint32_t clusterCount) {
+    checkCount(size_, clusterCount, 0);
     const std::size_t maps = std::max(clusterCount, 1u), texels = maps * size_ * size_;
     // What a map holds from the last frame is lost where its memory grows.
     if (records_.bytes() < texels * 8 || frames_.bytes() < maps * sizeof(lw_paraboloid)) drawnCount_ = 0;
@@ -62,32 +63,52 @@ void ParaboloidMap::reserve(std::uint32_t clusterCount, const GeometryInput& geo
     state_.reserve(device_, maps * sizeof(cl_int), "states of paraboloid maps");
     records_.reserve(device_, texels * 8, "records of paraboloid maps");
     albedo_.reserve(device_, texels * 4, "albedo of paraboloid maps");
-    candidates_.reserve(device_, maps * std::max(geometry.groupCount, 16u) * sizeof(cl_uint),
-                        "candidates of paraboloid maps");
-    large_.reserve(device_, maps * kLargePerMap * sizeof(lw_large_triangle), "large triangles of paraboloid maps");
     counters_.reserve(device_, LW_MAP_COUNTERS * sizeof(cl_uint), "counters of paraboloid maps");
+}
+
+void ParaboloidMap::reserveTriangles(std::uint32_t clusterCount, std::uint32_t groupCount) {
+    checkCount(size_, clusterCount, groupCount);
+    const std::size_t maps = std::max(clusterCount, 1u);
+    candidates_.reserve(device_, maps * std::max(groupCount, 16u) * sizeof(cl_uint), "candidates of paraboloid maps");
+    large_.reserve(device_, maps * kLargePerMap * sizeof(lw_large_triangle), "large triangles of paraboloid maps");
+    diagonal_.reserve(device_, sizeof(float), "the triangles' extent");
+}
+
+void ParaboloidMap::recordPlaces(Executor& executor, const Buffer& clusters, std::uint32_t clusterCount,
+                                 const Buffer& diagonal, std::uint64_t revision) {
+    reserve(clusterCount);
+    mapCount_ = clusterCount;
+    executor.fill("paraboloid_map.clear", counters_, 0, 0, LW_MAP_COUNTERS * sizeof(cl_uint));
+    if (clusterCount == 0) return;
+    const cl_int force = clusterCount > drawnCount_ || revision != drawnRevision_ ? 1 : 0;
+    executor.run("paraboloid_map.place", place_, {clusterCount, 1}, {1, 1}, clusters, cl_int(clusterCount), diagonal, force,
+                 frames_, state_, counters_);
+    const std::size_t texels = std::size_t(size_) * size_;
+    executor.run("paraboloid_map.clear", clear_, {texels, clusterCount}, {64, 1}, state_, cl_int(texels), records_);
+    drawnCount_ = 0;  // where what draws fails, all of them again
+}
+
+void ParaboloidMap::noteDrawn(std::uint64_t revision) {
+    drawnCount_ = mapCount_;
+    drawnRevision_ = revision;
 }
 
 void ParaboloidMap::record(Executor& executor, const Buffer& clusters, std::uint32_t clusterCount,
                            const GeometryInput& geometry) {
-    reserve(clusterCount, geometry);
-    mapCount_ = clusterCount;
-    executor.fill("paraboloid_map.clear", counters_, 0, 0, LW_MAP_COUNTERS * sizeof(cl_uint));
+    reserveTriangles(clusterCount, geometry.groupCount);
+    cl_uint diagonal;
+    std::memcpy(&diagonal, &geometry.diagonal, sizeof diagonal);
+    executor.fill("paraboloid_map.clear", diagonal_, diagonal, 0, sizeof diagonal);
+    recordPlaces(executor, clusters, clusterCount, diagonal_, geometry.revision);
     if (clusterCount == 0) return;
-    const cl_int count = cl_int(clusterCount), size = cl_int(size_);
-    const cl_int force = clusterCount > drawnCount_ || geometry.revision != drawnRevision_ ? 1 : 0;
-    executor.run("paraboloid_map.place", place_, {clusterCount, 1}, {1, 1}, clusters, count,
-                 cl_float(LW_PARABOLOID_LIFT * geometry.diagonal), force, frames_, state_, counters_);
     const std::size_t texels = std::size_t(size_) * size_;
-    executor.run("paraboloid_map.clear", clear_, {texels, clusterCount}, {64, 1}, state_, cl_int(texels), records_);
     if (geometry.triangleCount) draw(executor, geometry);
     // A kernel's argument must be some memory, also where none is read.
     const cl_mem triangles = geometry.triangleCount ? geometry.triangles.memory : records_.get();
     executor.run("paraboloid_map.resolve", resolve_, {texels / resolve_.width(), clusterCount}, rowGroup(device_),
-                 triangles, cl_int(geometry.triangles.planeStride), frames_, state_, size,
+                 triangles, cl_int(geometry.triangles.planeStride), frames_, state_, cl_int(size_),
                  cl_int(geometry.triangleCount ? 1 : 0), records_, albedo_);
-    drawnCount_ = clusterCount;
-    drawnRevision_ = geometry.revision;
+    noteDrawn(geometry.revision);
 }
 
 void ParaboloidMap::draw(Executor& executor, const GeometryInput& geometry) {
@@ -132,7 +153,7 @@ void ParaboloidMap::report(Report& report) const {
 
 std::uint64_t ParaboloidMap::bytes() const {
     return frames_.bytes() + state_.bytes() + records_.bytes() + albedo_.bytes() + candidates_.bytes() +
-           large_.bytes() + counters_.bytes();
+           large_.bytes() + counters_.bytes() + diagonal_.bytes();
 }
 
 std::uint64_t ParaboloidMap::estimateBytes(std::uint32_t size, std::uint32_t clusterCount, std::uint32_t triangleCount) {
@@ -140,7 +161,7 @@ std::uint64_t ParaboloidMap::estimateBytes(std::uint32_t size, std::uint32_t clu
     checkCount(size, maps, groups);
     return maps * (sizeof(lw_paraboloid) + sizeof(cl_int) + std::uint64_t(size) * size * 12 +
                    std::max<std::uint64_t>(groups, 16) * sizeof(cl_uint) + kLargePerMap * sizeof(lw_large_triangle)) +
-           LW_MAP_COUNTERS * sizeof(cl_uint);
+           LW_MAP_COUNTERS * sizeof(cl_uint) + sizeof(float);
 }
 
 }  // namespace lightwell

@@ -12,6 +12,15 @@
 
 namespace lightwell {
 
+// The maps as passes draw into them and fill them.
+struct MapTexels {
+    const Buffer& frames;   // lw_paraboloid per map
+    const Buffer& states;   // per map, see paraboloid_map_types.h
+    const Buffer& records;  // two words per texel, see paraboloid_types.h
+    const Buffer& albedo;   // a word per texel
+    std::uint32_t size, mapCount;
+};
+
 class ParaboloidMap {
 public:
     // `size`: texels a side of every map; 64 .. 512, a multiple of 16.
@@ -21,6 +30,12 @@ public:
     // only when its cluster's medoid or normal moved or the geometry changed; that is found out on the device.
     void record(Executor& executor, const Buffer& clusters, std::uint32_t clusterCount,
                 const GeometryInput& geometry);
+    // For another pass to draw into: places the maps and empties those that are stale. `diagonal`: of the geometry, a
+    // float on the device, m; `revision`: differs whenever the geometry does. Once all is recorded: noteDrawn().
+    void recordPlaces(Executor& executor, const Buffer& clusters, std::uint32_t clusterCount, const Buffer& diagonal,
+                      std::uint64_t revision);
+    void noteDrawn(std::uint64_t revision);
+    MapTexels texels() const { return {frames_, state_, records_, albedo_, size_, mapCount_}; }
     void redrawAll() { drawnCount_ = 0; }  // in the next record(), whatever moved
 
     std::uint32_t size() const { return size_; }
@@ -41,13 +56,14 @@ public:
     static std::uint64_t estimateBytes(std::uint32_t size, std::uint32_t clusterCount, std::uint32_t triangleCount);
 
 private:
-    void reserve(std::uint32_t clusterCount, const GeometryInput& geometry);
+    void reserve(std::uint32_t clusterCount);
+    void reserveTriangles(std::uint32_t clusterCount, std::uint32_t groupCount);
     void draw(Executor& executor, const GeometryInput& geometry);
 
     Device& device_;
     std::uint32_t size_;
     Kernel &place_, &clear_, &depth_, &depthLarge_, &identity_, &identityLarge_, &resolve_, &planes_;
-    Buffer frames_, state_, records_, albedo_, candidates_, large_, counters_;
+    Buffer frames_, state_, records_, albedo_, candidates_, large_, counters_, diagonal_;
     std::uint32_t mapCount_ = 0;
     std::uint32_t drawnCount_ = 0;  // maps that hold what `drawnRevision_` showed
     std::uint64_t drawnRevision_ = 0;

@@ -42,6 +42,13 @@ struct Inputs {
             camera.projection[i] = projection[i];
         }
     }
+
+    // The first row of pixels.
+    LWImage row(Pixels& pixels, LWFormat format) {
+        LWImage image = imageOf(pixels, format);
+        image.height = 1;
+        return image;
+    }
 };
 
 // The device reads and writes the inputs until it is idle, also when an exception cuts the frames short.
@@ -83,9 +90,19 @@ void exerciseTechnique(Executor& executor, Technique& technique) {
         geometry.vertexCount = std::uint32_t(inputs.vertices.size() / 3);
         geometry.triangleCount = geometry.vertexCount / 3;
         geometry.version = byDepth ? 1 : 2;
+        if (!byDepth) {  // triangles in both, surfels in one
+            geometry.surfelCount = kSize;
+            geometry.surfelPosition = inputs.row(inputs.position, LW_FORMAT_FLOAT3);
+            geometry.surfelNormal = inputs.row(inputs.normal, LW_FORMAT_FLOAT3);
+            geometry.surfelArea = inputs.row(inputs.depth, LW_FORMAT_FLOAT1);
+        }
+        // Views are told apart by their images alone.
+        const LWSourceView source{nullptr, &gbuffer};
         LWFrame frame{};
         frame.structSize = sizeof frame;
         frame.geometry = &geometry;
+        frame.sourceViews = &source;
+        frame.sourceViewCount = 1;
         frame.lightCount = 1;
         frame.lights = &light;
         LWOutput output{};
@@ -106,6 +123,7 @@ void exerciseTechnique(Executor& executor, Technique& technique) {
         // The same view with every light out.
         LWFrame dark{};
         dark.structSize = sizeof dark;
+        dark.geometry = &geometry;
         technique.update(executor, dark);
         technique.render(executor, view, gbuffer, output);
         executor.device().finish();

@@ -5,15 +5,14 @@
 #include <optional>
 
 #include "compute/device.h"
-#include "inputs/geometry_input.h"
 #include "inputs/rsm_input.h"
 #include "passes/clustered_gather.h"
 #include "passes/kmeans.h"
-#include "passes/paraboloid_map.h"
 #include "passes/second_bounce.h"
 #include "passes/vpl_sampling.h"
 #include "techniques/interleaved_view.h"
 #include "techniques/prewarm.h"
+#include "techniques/ssvp_maps.h"
 #include "techniques/ssvp_parameters.h"
 
 namespace lightwell {
@@ -61,27 +60,16 @@ ClusterVisibility visibilityOf(const LWSsvpDesc& desc) {
 // As many groups as the interleave's window has pixels, at most.
 std::uint32_t groupsOf(const LWSsvpDesc& desc) { return std::min(desc.clusterGroups, desc.interleave * desc.interleave); }
 
-// Maps serve the visibility and the second bounce.
-bool needsMaps(const LWSsvpDesc& desc) { return desc.visibility != LW_VISIBILITY_NONE || desc.bounces > 1; }
-
-// What the host gave and this technique does not read, or lacks: said in the stats.
-std::vector<LWChoice> inputChoices(const LWSsvpDesc& desc, const LWFrame& frame) {
+// What the host gave and this technique does not read, or lacks: said in the stats. `choices`: the maps'.
+std::vector<LWChoice> inputChoices(std::vector<LWChoice> choices, const LWSsvpDesc& desc, const LWFrame& frame) {
     constexpr const char* kReason = "not used: technique ssvp takes light from RSMs and authored VPLs only";
-    std::vector<LWChoice> choices;
-    if (frame.sourceViewCount) choices.push_back({"frame.sourceViews", kReason});
     if (frame.blockerCount) choices.push_back({"frame.blockers", kReason});
     if (frame.environment[0] > 0.0f || frame.environment[1] > 0.0f || frame.environment[2] > 0.0f)
         choices.push_back({"frame.environment", kReason});
     if (std::any_of(frame.lights, frame.lights + frame.lightCount, [](const LWLight& light) { return light.rsmCount == 0; }))
         choices.push_back({"frame.lights", "some have no RSM: technique ssvp makes no indirect light of those"});
-    if (needsMaps(desc) && (!frame.geometry || frame.geometry->triangleCount == 0))
-        choices.push_back({"frame.geometry", "no triangles: nothing blocks, and there is no second bounce"});
     if (groupsOf(desc) < desc.clusterGroups)
         choices.push_back({"ssvp.clusterGroups", "as many as the interleave's window has pixels, which are fewer"});
-    if (!needsMaps(desc) && frame.geometry)
-        choices.push_back({"frame.geometry", "not used: one bounce without visibility asks for no maps"});
-    if (frame.geometry && frame.geometry->surfelCount)
-        choices.push_back({"frame.geometry.surfels", "not used: technique ssvp draws its maps from triangles"});
     return choices;
 }
 
@@ -92,7 +80,7 @@ public:
           desc_(desc),
           sampling_(device, samplingOptions(desc)),
           clusters_(device, clusterOptions(desc)),
-          maps_(device, desc.mapSize),
+          maps_(device, desc),
           second_(device, secondOptions(desc)),
           passes_(device, desc.interleave),
           gather_(device, desc.interleave, groupsOf(desc), visibilityOf(desc)) {
@@ -100,24 +88,25 @@ public:
     }
 
     void update(Executor& executor, const LWFrame& frame) override {
-        GeometryInput::check(frame.geometry);
+        maps_.check(frame);
         rsms_.import(executor, frame);
-        geometry_.import(executor, needsMaps(desc_) ? frame.geometry : nullptr);  // without triangles no map is drawn
+        maps_.import(executor, frame, rsms_);
         sampling_.record(executor, rsms_, frame.vpls, frame.vplCount);
 
         const VplList firsts{sampling_.vpls(), sampling_.vplCount()};
         clusters_.record(executor, firsts.vpls, firsts.count, frame.reset != 0);
         const std::uint32_t clusterCount = clusters_.clusterCount();
-        maps_.record(executor, clusters_.clusters(), clusterCount, geometry_);
+        maps_.record(executor, clusters_.clusters(), clusterCount);
+        const ParaboloidMap& maps = maps_.maps();
         second_.reserve(desc_.bounces > 1 ? clusterCount : 0);
         if (second_.vplCount())
-            second_.record(executor, clusters_.clusters(), clusterCount, maps_.frames(), maps_.records(), maps_.albedo(),
-                           maps_.size());
+            second_.record(executor, clusters_.clusters(), clusterCount, maps.frames(), maps.records(), maps.albedo(),
+                           maps.size());
         gather_.reserve(firsts.count, second_.vplCount());
         gather_.recordOrder(executor, firsts, clusters_.assignment(), clusterCount,
                             {second_.vplCount() ? second_.vpls() : firsts.vpls, second_.vplCount()});
 
-        choices_ = inputChoices(desc_, frame);
+        choices_ = inputChoices(maps_.choices(frame), desc_, frame);
         states_.purge();
         states_.each([](InterleavedView& state) { state.startFrame(); });
     }
@@ -127,7 +116,7 @@ public:
         checkInterleavedOutputs(device_, *view, output, "ssvp");
         InterleavedView& state = states_.get(
             view, [&] { return std::make_unique<InterleavedView>(device_, interleavedOptions(desc_), *view); });
-        const ClusterMaps maps{maps_.frames(), maps_.records(), maps_.size()};
+        const ClusterMaps maps{maps_.maps().frames(), maps_.maps().records(), maps_.maps().size()};
         state.render(executor, *view, gbuffer, output, passes_, bilateral_ ? &*bilateral_ : nullptr,
                      [&](const Planes& position, const Planes& normal, const Planes& irradiance) {
                          const Buffer& masks = state.cull(executor, passes_, position, normal, gather_.vpls(), gather_.order());
@@ -138,8 +127,14 @@ public:
     }
 
     void prewarm(Executor& executor, const std::shared_ptr<View>&) override {
-        SsvpTechnique twin(device_, desc_);  // so that this technique's frame stays as it is
-        exerciseTechnique(executor, twin);
+        // Twins, so that this technique's frame stays as it is; one for each source of maps that a frame may bring.
+        for (const LWOccluders occluders : {LW_OCCLUDERS_TRIANGLES, LW_OCCLUDERS_SURFELS, LW_OCCLUDERS_SCREEN}) {
+            if (desc_.occluders != LW_OCCLUDERS_AUTO && desc_.occluders != occluders) continue;
+            LWSsvpDesc desc = desc_;
+            desc.occluders = occluders;
+            SsvpTechnique twin(device_, desc);
+            exerciseTechnique(executor, twin);
+        }
     }
 
     Report report() override;
@@ -150,10 +145,9 @@ private:
     Device& device_;
     LWSsvpDesc desc_;
     RsmInput rsms_;
-    GeometryInput geometry_;
     VplSampling sampling_;
     KMeans clusters_;
-    ParaboloidMap maps_;
+    SsvpMaps maps_;
     SecondBounce second_;
     InterleavedGather passes_;
     ClusteredGather gather_;
@@ -165,7 +159,6 @@ private:
 Report SsvpTechnique::report() {
     Report report;
     rsms_.report(report);
-    geometry_.report(report);
     maps_.report(report);
     report.counts.push_back({"vpls", sampling_.vplCount()});
     report.counts.push_back({"clusters", clusters_.clusterCount()});
@@ -188,15 +181,15 @@ std::vector<DebugView> SsvpTechnique::debugViews(const View* view) {
                          }});
         views.push_back({"clusters", clusters_.debugDescription(), clusters_.debugShape(),
                          [this](Executor& executor, const Planes& planes) { clusters_.recordPlanes(executor, planes); }});
-        views.push_back({"maps", "maps one below the other: distance (m), world normal xyz, albedo rgb", maps_.debugShape(),
-                         [this](Executor& executor, const Planes& planes) { maps_.recordPlanes(executor, planes); }});
+        views.push_back({"maps", "maps one below the other: distance (m), world normal xyz, albedo rgb", maps_.maps().debugShape(),
+                         [this](Executor& executor, const Planes& planes) { maps_.maps().recordPlanes(executor, planes); }});
     }
     if (const InterleavedView* state = states_.find(view)) state->addDebugViews(views);
     return views;
 }
 
 std::uint64_t SsvpTechnique::bytes() const {
-    std::uint64_t total = rsms_.bytes() + geometry_.bytes() + sampling_.bytes() + clusters_.bytes() + maps_.bytes() +
+    std::uint64_t total = rsms_.bytes() + sampling_.bytes() + clusters_.bytes() + maps_.bytes() +
                           second_.bytes() + gather_.bytes();
     states_.each([&](const InterleavedView& state) { total += state.bytes(); });
     return total;
@@ -215,9 +208,8 @@ std::uint64_t estimateBytes(const void* desc, const LWViewDesc& view, const Fram
     const lw_subset_order firsts = VplSampling::orderOf(samplingOptions(ssvp), shape);
     const std::uint32_t count = std::uint32_t(firsts.count), clusters = ssvp.clusters ? ssvp.clusters : count;
     const std::uint32_t seconds = ssvp.bounces > 1 ? clusters * ssvp.secondVpls : 0;
-    return RsmInput::estimateBytes(shape) + GeometryInput::estimateBytes(shape.triangles) +
-           VplSampling::estimateBytes(samplingOptions(ssvp), shape) + KMeans::estimateBytes(clusterOptions(ssvp), count) +
-           ParaboloidMap::estimateBytes(ssvp.mapSize, clusters, shape.triangles) +
+    return RsmInput::estimateBytes(shape) + VplSampling::estimateBytes(samplingOptions(ssvp), shape) + KMeans::estimateBytes(clusterOptions(ssvp), count) +
+           SsvpMaps::estimateBytes(ssvp, clusters, shape) +
            SecondBounce::estimateBytes(secondOptions(ssvp), ssvp.bounces > 1 ? clusters : 0) +
            ClusteredGather::estimateBytes(count, seconds, ssvp.interleave) +
            InterleavedView::estimateBytes(interleavedOptions(ssvp), view, shape.uploads,

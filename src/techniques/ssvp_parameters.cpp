@@ -11,6 +11,7 @@ namespace {
 constexpr const char* kSamplingNames[] = {"flux", "uniform", nullptr};
 constexpr const char* kResolutionNames[] = {"full", "half", nullptr};
 constexpr const char* kVisibilityNames[] = {"none", "hard", "soft", nullptr};
+constexpr const char* kOccludersNames[] = {"auto", "triangles", "surfels", "screen", nullptr};
 constexpr const char* kDirectionsNames[] = {"cosine", "disc", "square", nullptr};
 constexpr double kInterleaveValues[] = {1, 2, 4, 8};
 constexpr double kGroupValues[] = {1, 2, 4, 8, 16, 32, 64};
@@ -65,7 +66,9 @@ std::vector<LWParameter> makeTable() {
         swept(oneOf("resolution", "pixels that are gathered; half: every second column and row, up-sampled after",
                     offsetof(LWSsvpDesc, resolution), kResolutionNames, 1, LW_RESOLUTION_FULL),
               kResolutionSweep),
-        uint("seed", "shift of the sample sets; 0: unshifted", offsetof(LWSsvpDesc, seed), 0, 4294967295.0, 0)};
+        uint("seed", "shift of the sample sets; 0: unshifted", offsetof(LWSsvpDesc, seed), 0, 4294967295.0, 0),
+        oneOf("occluders", "what the maps show: the best that the frame has, its triangles, its surfels (or else its triangles, sampled), or what RSMs and source views see",
+              offsetof(LWSsvpDesc, occluders), kOccludersNames, 3, LW_OCCLUDERS_AUTO)};
 }
 
 }  // namespace

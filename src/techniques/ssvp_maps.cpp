@@ -1,0 +1,172 @@
+#include "techniques/ssvp_maps.h"
+
+#include <algorithm>
+
+#include "compute/device.h"
+#include "compute/error.h"
+
+namespace lightwell {
+namespace {
+
+using Source = SsvpMaps::Source;
+
+// Maps serve the visibility and the second bounce.
+bool needsMaps(const LWSsvpDesc& desc) { return desc.visibility != LW_VISIBILITY_NONE || desc.bounces > 1; }
+
+Source chosenSource(const LWSsvpDesc& desc, std::uint32_t triangles, std::uint32_t surfels) {
+    if (!needsMaps(desc)) return Source::none;
+    const Source sampled = surfels ? Source::surfels : Source::sampledTriangles;
+    switch (desc.occluders) {
+        case LW_OCCLUDERS_TRIANGLES:
+            return Source::triangles;
+        case LW_OCCLUDERS_SURFELS:
+            return sampled;
+        case LW_OCCLUDERS_SCREEN:
+            return Source::screen;
+        default:
+            return triangles ? Source::triangles : surfels ? Source::surfels : Source::screen;
+    }
+}
+
+std::uint32_t trianglesOf(const LWFrame& frame) { return frame.geometry ? frame.geometry->triangleCount : 0; }
+std::uint32_t surfelsOf(const LWFrame& frame) { return frame.geometry ? frame.geometry->surfelCount : 0; }
+bool hasRsm(const LWFrame& frame) {
+    return std::any_of(frame.lights, frame.lights + frame.lightCount, [](const LWLight& l) { return l.rsmCount > 0; });
+}
+
+const char* describe(Source source) {
+    switch (source) {
+        case Source::triangles:
+            return "triangles, drawn exactly";
+        case Source::surfels:
+            return "the host's surfels, splatted";
+        case Source::sampledTriangles:
+            return "triangles, sampled to surfels by area and splatted";
+        case Source::screen:
+            return "RSM texels and source views, splatted anew in every frame";
+        default:
+            return "none: one bounce without visibility asks for no maps";
+    }
+}
+
+}  // namespace
+
+SsvpMaps::SsvpMaps(Device& device, const LWSsvpDesc& desc)
+    : device_(device), desc_(desc), sampling_(device), maps_(device, desc.mapSize), splat_(device), holes_(device) {}
+
+Source SsvpMaps::sourceOf(const LWFrame& frame) const {
+    return chosenSource(desc_, trianglesOf(frame), surfelsOf(frame));
+}
+
+void SsvpMaps::check(const LWFrame& frame) const {
+    const Source source = sourceOf(frame);
+    const bool drawsTriangles = source == Source::triangles || source == Source::sampledTriangles;
+    if (drawsTriangles && trianglesOf(frame) == 0)
+        fail(LW_ERROR_INVALID_ARGUMENT, "frame.geometry: expected ",
+             source == Source::triangles ? "triangles, as the technique's parameter occluders=triangles asks for them"
+                                         : "surfels or triangles, as the technique's parameter occluders=surfels asks for them",
+             ", got none");
+    // Without light there is nothing to shadow.
+    if (source == Source::screen && desc_.occluders == LW_OCCLUDERS_SCREEN && frame.vplCount && frame.sourceViewCount == 0 &&
+        !hasRsm(frame))
+        fail(LW_ERROR_INVALID_ARGUMENT, "frame: expected RSMs or sourceViews, as the technique's parameter "
+             "occluders=screen asks for them, got neither");
+    if (drawsTriangles) GeometryInput::check(frame.geometry);
+    if (source == Source::surfels) SurfelInput::check(device_, frame.geometry);
+    if (source == Source::screen) ScreenSurfels::check(device_, frame);
+}
+
+void SsvpMaps::import(Executor& executor, const LWFrame& frame, const RsmInput& rsms) {
+    const Source source = sourceOf(frame);
+    if (source != source_) maps_.redrawAll();  // revisions count within a source
+    source_ = source;
+    switch (source) {
+        case Source::triangles:
+        case Source::sampledTriangles:
+            triangles_.import(executor, frame.geometry);
+            break;
+        case Source::surfels:
+            hostSurfels_.import(executor, frame.geometry);
+            break;
+        case Source::screen:
+            screen_.import(executor, frame, rsms);
+            break;
+        default:
+            break;
+    }
+    if (source != Source::screen) screen_.clear();
+}
+
+SurfelSet SsvpMaps::surfels() const {
+    return source_ == Source::surfels ? hostSurfels_.surfels()
+           : source_ == Source::screen ? screen_.surfels()
+                                       : sampling_.surfels();
+}
+
+void SsvpMaps::record(Executor& executor, const Buffer& clusters, std::uint32_t clusterCount) {
+    if (source_ == Source::none) clusterCount = 0;
+    if (source_ == Source::none || source_ == Source::triangles) {
+        maps_.record(executor, clusters, clusterCount, triangles_);
+        return;
+    }
+    if (source_ == Source::sampledTriangles)
+        sampling_.record(executor, triangles_, SurfelSplat::mostSurfels(desc_.mapSize));
+    const SurfelSet set = surfels();
+    maps_.recordPlaces(executor, clusters, clusterCount, *set.diagonal, set.revision);
+    splat_.record(executor, set, maps_.texels());
+    holes_.record(executor, maps_.texels());
+    maps_.noteDrawn(set.revision);
+}
+
+std::vector<LWChoice> SsvpMaps::choices(const LWFrame& frame) const {
+    std::vector<LWChoice> choices = {{"occluders", describe(source_)}};
+    const bool isScreen = source_ == Source::screen;
+    if (isScreen && !hasRsm(frame) && frame.sourceViewCount == 0)
+        choices.push_back({"frame.geometry", "neither triangles, surfels, RSMs nor source views: nothing blocks, and there is "
+                                             "no second bounce"});
+    if (frame.sourceViewCount && !isScreen)
+        choices.push_back({"frame.sourceViews", "not used: they are no occluders, and technique ssvp takes light from RSMs and "
+                                                "authored VPLs only"});
+    if (surfelsOf(frame) && source_ != Source::surfels)
+        choices.push_back({"frame.geometry.surfels", "not used: they are no occluders"});
+    if (trianglesOf(frame) && source_ != Source::triangles && source_ != Source::sampledTriangles)
+        choices.push_back({"frame.geometry.triangles", "not used: they are no occluders"});
+    return choices;
+}
+
+void SsvpMaps::report(Report& report) const {
+    if (source_ == Source::surfels) hostSurfels_.report(report);
+    else if (source_ == Source::screen) screen_.report(report);
+    else triangles_.report(report);
+    if (source_ == Source::sampledTriangles) report.counts.push_back({"surfels", sampling_.surfels().count});
+    maps_.report(report);
+    if (source_ != Source::none && source_ != Source::triangles) holes_.report(report);
+}
+
+std::uint64_t SsvpMaps::bytes() const {
+    return triangles_.bytes() + hostSurfels_.bytes() + screen_.bytes() + sampling_.bytes() + maps_.bytes() + splat_.bytes() +
+           holes_.bytes();
+}
+
+std::uint64_t SsvpMaps::estimateBytes(const LWSsvpDesc& desc, std::uint32_t clusterCount, const FrameShape& shape) {
+    const Source source = chosenSource(desc, shape.triangles, shape.surfels);
+    const std::uint32_t sampled = SurfelSplat::mostSurfels(desc.mapSize);
+    const std::uint32_t maps = source == Source::none ? 0 : clusterCount;
+    std::uint64_t total = ParaboloidMap::estimateBytes(desc.mapSize, maps, source == Source::triangles ? shape.triangles : 0);
+    std::uint64_t surfels = 0;
+    if (source == Source::triangles || source == Source::sampledTriangles) total += GeometryInput::estimateBytes(shape.triangles);
+    if (source == Source::none || source == Source::triangles) return total;
+    if (source == Source::surfels) {
+        surfels = shape.surfels;
+        total += SurfelInput::estimateBytes(shape.surfels, shape.uploads);
+    } else if (source == Source::screen) {
+        surfels = shape.paddedTexels + shape.sourcePixels;
+        total += ScreenSurfels::estimateBytes(shape);
+    } else {
+        surfels = sampled;
+        total += SurfelSampling::estimateBytes(shape.triangles, sampled);
+    }
+    return total + SurfelSplat::estimateBytes(surfels, maps) + PullPush::estimateBytes(desc.mapSize, maps);
+}
+
+}  // namespace lightwell

@@ -1,0 +1,58 @@
+// Technique ssvp's maps: what occludes, from which of the host's inputs, and the passes that draw it.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "inputs/geometry_input.h"
+#include "inputs/rsm_input.h"
+#include "inputs/screen_surfels.h"
+#include "inputs/surfel_input.h"
+#include "passes/paraboloid_map.h"
+#include "passes/pull_push.h"
+#include "passes/surfel_sampling.h"
+#include "passes/surfel_splat.h"
+#include "techniques/technique.h"
+
+namespace lightwell {
+
+class SsvpMaps {
+public:
+    // Where a frame's maps come from.
+    enum class Source { none, triangles, surfels, sampledTriangles, screen };
+
+    SsvpMaps(Device& device, const LWSsvpDesc& desc);
+
+    // Throws what import() would say of this frame, whose RSMs are RsmInput's to check.
+    void check(const LWFrame& frame) const;
+    void import(Executor& executor, const LWFrame& frame, const RsmInput& rsms);
+    // The maps of these clusters (lw_cluster each); drawn anew only where a medoid or what is drawn has moved. What the
+    // screen shows moves with every frame.
+    void record(Executor& executor, const Buffer& clusters, std::uint32_t clusterCount);
+
+    const ParaboloidMap& maps() const { return maps_; }
+    ParaboloidMap& maps() { return maps_; }
+
+    // What of the frame's geometry and views is used, and what is not.
+    std::vector<LWChoice> choices(const LWFrame& frame) const;
+    void report(Report& report) const;
+    std::uint64_t bytes() const;
+    static std::uint64_t estimateBytes(const LWSsvpDesc& desc, std::uint32_t clusterCount, const FrameShape& shape);
+
+private:
+    Source sourceOf(const LWFrame& frame) const;
+    SurfelSet surfels() const;
+
+    Device& device_;
+    LWSsvpDesc desc_;
+    Source source_ = Source::none;
+    GeometryInput triangles_;
+    SurfelInput hostSurfels_;
+    ScreenSurfels screen_;
+    SurfelSampling sampling_;
+    ParaboloidMap maps_;
+    SurfelSplat splat_;
+    PullPush holes_;
+};
+
+}  // namespace lightwell
