@@ -117,3 +117,17 @@ __kernel void clustered_gather_gather(__global const float* position, int4 posit
     if (rejectedHere) atomic_add(counts, rejectedHere);
     if (saturatedHere) atomic_add(counts + 2, saturatedHere);
 }
+
+// For debugging: one work-item = LW_WIDTH pixels (x) of one cluster's row (y): how far the gather takes the surface to be
+// seen by the cluster, the clusters one below the other; 0 without a surface.
+__kernel void clustered_gather_visibility(__global const float* position, int4 positionLayout,
+                                          __global const float* normal, int4 normalLayout, int width, int height,
+                                          int clusters, __global const lw_paraboloid* frames,
+                                          __global const float* records, int size, __global float* planes, int rowStride) {
+    const int x = (int)get_global_id(0) * LW_WIDTH, row = (int)get_global_id(1);
+    if (x >= width || row >= clusters * height) return;
+    const int cluster = row / height;
+    const lw_maps maps = {frames, records, size};
+    const lw_surface s = load_surface(position, positionLayout, normal, normalLayout, x, row - cluster * height);
+    store(select_((real)0.0f, cluster_visibility(maps, cluster, s), s.valid), planes, row * rowStride + x);
+}

@@ -62,3 +62,9 @@ __kernel void clustered_gather_order(__global const lw_vpl* firsts, __global con
     }
     for (; used < order.capacity; ++used) out[used] = of_cluster(no_vpl(), -1);
 }
+
+// For debugging: one work-item = one slot of the sorted list: its cluster, -1 for none.
+__kernel void clustered_gather_clusters(__global const lw_vpl* vpls, int count, __global float* planes) {
+    const int i = lw_list_index();
+    if (i < count) planes[i] = vpls[i].flux.w;
+}

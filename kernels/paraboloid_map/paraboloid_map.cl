@@ -30,6 +30,7 @@ __kernel void paraboloid_map_place(__global const lw_cluster* clusters, int mapC
         frame.origin.w = 1.0f;
         frame.axisZ = z;
         paraboloid_axes(z, &frame.axisX, &frame.axisY);
+        frame.axisX.w = lift;
     }
     const lw_paraboloid last = frames[map];
     const int stale = force || differs(frame.origin, last.origin) || differs(frame.axisZ, last.axisZ);

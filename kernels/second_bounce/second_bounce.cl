@@ -64,7 +64,8 @@ LW_FN float unpacked(uint bits, int field, float offset, float scale) {
 }
 
 LW_FN float4 to_world(lw_paraboloid map, float x, float y, float z) {
-    return map.axisX * x + map.axisY * y + map.axisZ * z;
+    const float4 v = map.axisX * x + map.axisY * y + map.axisZ * z;
+    return (float4)(v.xyz, 0.0f);
 }
 
 // What the map saw in the texel of a direction of its frame, along that texel's centre ray.

@@ -81,7 +81,7 @@ typedef struct {
     real nx, ny, nz;  // its normal there
     real distance;    // |q|
     real x, y;        // in texels; whole numbers are texel centres
-    mask inside;      // before the rim
+    mask inside;      // before the rim, and not on the back of the surface that the origin stands on
 } lw_map_receiver;
 
 LW_FN real along_axis(float4 axis, real x, real y, real z) {
@@ -99,11 +99,16 @@ LW_FN lw_map_receiver paraboloid_receiver(lw_paraboloid map, int size, real px, 
     r.ny = along_axis(map.axisY, nx, ny, nz);
     r.nz = along_axis(map.axisZ, nx, ny, nz);
     r.distance = sqrt(fma_(r.qx, r.qx, fma_(r.qy, r.qy, r.qz * r.qz)));
+    // How far the origin lies behind the receiver's plane. Behind it by next to nothing, it stands on the other side of the
+    // receiver's own sheet, a ceiling of no thickness: there the horizon runs through the texel, which saw the sky.
+    // Farther behind, normal maps and smooth normals on coarse facets are the usual case, and the texel is asked.
+    const real behind = fma_(r.qx, r.nx, fma_(r.qy, r.ny, r.qz * r.nz));
+    const mask faces = or_(behind <= 0.0f, behind > fmax(LW_PARABOLOID_BIAS * r.distance, (real)(2.0f * map.axisX.w)));
     // Strict: also false at the origin, where there is no direction, and for what is not a number.
-    r.inside = r.qz > LW_PARABOLOID_RIM_COSINE * r.distance;
+    r.inside = and_(r.qz > LW_PARABOLOID_RIM_COSINE * r.distance, faces);
     const real denominator = select_((real)(1.0f), (r.distance + r.qz) * paraboloid_step(size), r.inside);
     const real scale = 1.0f / denominator, centre = 0.5f * (float)size - 0.5f;
-    // Beyond the rim: the map's middle, so that every index is one.
+    // Outside: the map's middle, so that every index is one.
     r.x = select_(centre, fma_(r.qx, scale, centre), r.inside);
     r.y = select_(centre, fma_(r.qy, scale, centre), r.inside);
     return r;
@@ -124,16 +129,20 @@ LW_FN mask paraboloid_texel_lit(__global const float* records, int firstRecord, 
     const real hitSide = hit * fma_(2.0f * u, nx, fma_(2.0f * v, ny, (1.0f - r2) * nz));
     const mask before = r.distance <= hit * (1.0f + LW_PARABOLOID_BIAS);
     const mask onPlane = fabs(receiverSide - hitSide) <= LW_PARABOLOID_BIAS * r.distance * length;
-    const mask agrees = fma_(nx, r.nx, fma_(ny, r.ny, nz * r.nz)) >= LW_PARABOLOID_AGREES;
-    return or_(before, and_(onPlane, agrees));
+    const real agreement = fma_(nx, r.nx, fma_(ny, r.ny, nz * r.nz));
+    const mask own = and_(onPlane, agreement >= LW_PARABOLOID_AGREES);
+    // The other side of a sheet, as near as the side that the texel saw.
+    const mask back = and_(onPlane, agreement <= -LW_PARABOLOID_AGREES);
+    return and_(or_(and_(before, not_(back)), own), r2 <= LW_PARABOLOID_RIM * LW_PARABOLOID_RIM);
 }
 
-// Hard: the nearest texel decides. Beyond the rim and where the map saw nothing: lit. `firstRecord`: of the map.
+// Hard: the nearest texel decides. Where the map saw nothing: lit. Beyond the rim: dark, as behind the surface that the medoid
+// lies on; lit there, clusters with members on either side of an edge shine through walls. `firstRecord`: of the map.
 LW_FN mask paraboloid_sees(__global const float* records, int firstRecord, int size, lw_map_receiver r) {
     const real last = (float)(size - 1);
     const lanei x = to_lanei(fmin(fmax(r.x + 0.5f, 0.0f), last));
     const lanei y = to_lanei(fmin(fmax(r.y + 0.5f, 0.0f), last));
-    return or_(not_(r.inside), paraboloid_texel_lit(records, firstRecord, size, x, y, r));
+    return and_(r.inside, paraboloid_texel_lit(records, firstRecord, size, x, y, r));
 }
 
 // Soft, in [0,1]: the share of the four nearest texels that are lit, weighted bilinearly (percentage-closer
@@ -149,7 +158,7 @@ LW_FN real paraboloid_visibility(__global const float* records, int firstRecord,
     const real c = ones_(paraboloid_texel_lit(records, firstRecord, size, x0, y1, r));
     const real d = ones_(paraboloid_texel_lit(records, firstRecord, size, x1, y1, r));
     const real upper = fma_(fx, b - a, a), lower = fma_(fx, d - c, c);
-    return select_((real)(1.0f), fma_(fy, lower - upper, upper), r.inside);
+    return select_((real)(0.0f), fma_(fy, lower - upper, upper), r.inside);
 }
 
 #endif

@@ -6,8 +6,8 @@
 #include "portable.h"
 
 // A map reaches this far from its axis. A hemisphere would do for VPLs with the cluster's own normal; members'
-// normals differ from the mean, and what they light beyond 90 degrees would count as unoccluded. Raised, the same
-// texels cover more; lowered, light leaks from the members that are tilted most. 105 degrees: half the tilt
+// normals differ from the mean, and what they light beyond 90 degrees would count as dark. Raised, the same
+// texels cover more; lowered, what the members that are tilted most light is shadowed. 105 degrees: half the tilt
 // beyond which k-means (weight of normals 0.4) opens another cluster.
 // The disc's radius is the stereographic image of that angle, tan(105 / 2 degrees); the cosine is that of 105.
 #define LW_PARABOLOID_RIM 1.3032254f
@@ -22,7 +22,7 @@
 // An orthonormal frame with z along the cluster's normal.
 typedef struct {
     lw_float4 origin;  // m; w: 1, or 0 for the map of an empty cluster, where nothing is drawn
-    lw_float4 axisX;   // unit; w unused
+    lw_float4 axisX;   // unit; w: how far the origin was lifted off the medoid, m
     lw_float4 axisY;
     lw_float4 axisZ;
 } lw_paraboloid;

@@ -90,6 +90,7 @@ void addCompare(CLI::App& app);
 void addTriptych(CLI::App& app);
 void addChart(CLI::App& app);
 void addSplit(CLI::App& app);
+void addVisibility(CLI::App& app);
 void addStability(CLI::App& app);
 void addCheck(CLI::App& app);
 

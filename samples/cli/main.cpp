@@ -78,6 +78,7 @@ int main(int argc, char** argv) {
         cli::addTriptych(app);
         cli::addChart(app);
         cli::addSplit(app);
+        cli::addVisibility(app);
         cli::addStability(app);
         cli::addCheck(app);
         return parse(app, argc, argv);

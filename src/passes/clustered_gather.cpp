@@ -1,9 +1,11 @@
 #include "passes/clustered_gather.h"
 
 #include <algorithm>
+#include <limits>
 #include <string>
 
 #include "compute/device.h"
+#include "compute/error.h"
 #include "passes/vpl_list.h"
 #include "shared/cluster_types.h"
 #include "shared/vpl_types.h"
@@ -32,7 +34,10 @@ ClusteredGather::ClusteredGather(Device& device, std::uint32_t interleave, std::
       sort_(device.programs().kernel("clustered_gather/clustered_order", "clustered_gather_sort")),
       orderList_(device.programs().kernel("clustered_gather/clustered_order", "clustered_gather_order")),
       gather_(device.programs().kernel("clustered_gather/clustered_gather", "clustered_gather_gather",
-                                       definesOf(interleave, visibility))) {}
+                                       definesOf(interleave, visibility))),
+      visibility_(device.programs().kernel("clustered_gather/clustered_gather", "clustered_gather_visibility",
+                                           definesOf(interleave, visibility))),
+      clusters_(device.programs().kernel("clustered_gather/clustered_order", "clustered_gather_clusters")) {}
 
 // Slots for both lists side by side.
 lw_subset_order ClusteredGather::orderOf(std::uint32_t firstCount, std::uint32_t secondCount, std::uint32_t interleave) {
@@ -71,6 +76,42 @@ void ClusteredGather::recordGather(Executor& executor, const Planes& position, c
     executor.run("clustered_gather.gather", gather_, {(position.width + pixels - 1) / pixels, position.height},
                  groupOf(gather_), position, normal, cl_int(position.width), cl_int(position.height), vpls_, order_, masks,
                  tiles, maps.frames, maps.records, cl_int(maps.size), irradiance, counts);
+}
+
+Planes ClusteredGather::visibilityShape(const Planes& position, std::uint32_t clusterCount) {
+    Planes planes;
+    planes.width = position.width;
+    planes.height = position.height * clusterCount;
+    planes.rowStride = paddedWidth(planes.width);
+    planes.planeStride = planes.rowStride * planes.height;
+    planes.count = 1;
+    return planes;
+}
+
+void ClusteredGather::recordVisibility(Executor& executor, const Planes& position, const Planes& normal,
+                                       const ClusterMaps& maps, std::uint32_t clusterCount, const Planes& planes) {
+    if (planes.height == 0) return;
+    if (planes.planeStride > std::numeric_limits<std::int32_t>::max())
+        fail(LW_ERROR_UNSUPPORTED, "debug view visibility: ", clusterCount, " clusters at ", position.width, "x", position.height,
+             " pixels exceed the 32-bit indices of the kernels");
+    executor.run("clustered_gather.visibility", visibility_,
+                 {(position.width + visibility_.width() - 1) / visibility_.width(), planes.height}, groupOf(visibility_),
+                 position, normal, cl_int(position.width), cl_int(position.height), cl_int(clusterCount), maps.frames,
+                 maps.records, cl_int(maps.size), planes.memory, cl_int(planes.rowStride));
+}
+
+Planes ClusteredGather::clustersShape() const {
+    Planes planes;
+    planes.width = std::uint32_t(order_.subsets * order_.capacity);
+    planes.height = 1;
+    planes.rowStride = planes.planeStride = paddedWidth(planes.width);
+    planes.count = 1;
+    return planes;
+}
+
+void ClusteredGather::recordClusters(Executor& executor, const Planes& planes) {
+    executor.run("clustered_gather.clusters", clusters_, gridOver(planes.width), {64, 1}, vpls_, cl_int(planes.width),
+                 planes.memory);
 }
 
 }  // namespace lightwell

@@ -46,6 +46,14 @@ public:
     void recordGather(Executor& executor, const Planes& position, const Planes& normal, const Buffer& masks,
                       const lw_vpl_tiles& tiles, const ClusterMaps& maps, const Planes& irradiance, const Buffer& counts);
 
+    // Debug views as planes without memory, and what fills them: the visibility that the gather takes surfaces to have from
+    // each cluster, the clusters one below the other; and each slot's cluster.
+    static Planes visibilityShape(const Planes& position, std::uint32_t clusterCount);
+    void recordVisibility(Executor& executor, const Planes& position, const Planes& normal, const ClusterMaps& maps,
+                          std::uint32_t clusterCount, const Planes& planes);
+    Planes clustersShape() const;
+    void recordClusters(Executor& executor, const Planes& planes);
+
     const Buffer& vpls() const { return vpls_; }       // lw_vpl by slot; flux.w: cluster or -1
     lw_subset_order order() const { return order_; }  // its subsets and capacity
     std::uint64_t bytes() const { return vpls_.bytes() + sorted_.bytes(); }
@@ -53,7 +61,7 @@ public:
 private:
     Device& device_;
     std::uint32_t interleave_, groups_;
-    Kernel &sort_, &orderList_, &gather_;
+    Kernel &sort_, &orderList_, &gather_, &visibility_, &clusters_;
     Buffer vpls_, sorted_;
     lw_subset_order order_{};
 };

@@ -41,6 +41,9 @@ public:
                        const Buffer& vpls, lw_subset_order order);
 
     const Buffer& counts() const { return counts_; }  // as InterleavedGather and JointBilateral count
+    // The surfaces of the last frame, at full resolution; empty where it had no irradiance.
+    Planes position() const { return lastGathered_ ? gbuffer_.position : Planes{}; }
+    Planes normal() const { return lastGathered_ ? gbuffer_.normal : Planes{}; }
     void startFrame() { isRendered_ = false; }
     // Counts and choices of the views that this frame has rendered; `order` as the last cull had it.
     void report(Device& device, Report& report, lw_subset_order order) const;

@@ -183,8 +183,19 @@ std::vector<DebugView> SsvpTechnique::debugViews(const View* view) {
                          [this](Executor& executor, const Planes& planes) { clusters_.recordPlanes(executor, planes); }});
         views.push_back({"maps", "maps one below the other: distance (m), world normal xyz, albedo rgb", maps_.maps().debugShape(),
                          [this](Executor& executor, const Planes& planes) { maps_.maps().recordPlanes(executor, planes); }});
+        views.push_back({"vpl_clusters", "one column per slot as in vpls: the VPL's cluster, -1 for none", gather_.clustersShape(),
+                         [this](Executor& executor, const Planes& planes) { gather_.recordClusters(executor, planes); }});
     }
-    if (const InterleavedView* state = states_.find(view)) state->addDebugViews(views);
+    const InterleavedView* state = states_.find(view);
+    if (!state) return views;
+    state->addDebugViews(views);
+    if (const Planes position = state->position())
+        views.push_back({"visibility", "clusters one below the other: the share of its light that each pixel is taken to see",
+                         ClusteredGather::visibilityShape(position, clusters_.clusterCount()),
+                         [this, position, normal = state->normal()](Executor& executor, const Planes& planes) {
+                             gather_.recordVisibility(executor, position, normal, {maps_.frames(), maps_.records(), maps_.size()},
+                                                      clusters_.clusterCount(), planes);
+                         }});
     return views;
 }
 
