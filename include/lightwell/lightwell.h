@@ -439,8 +439,11 @@ typedef struct LWSsvpDesc {
     uint32_t clusters;       /**< 1 .. 64; 0: every VPL its own, with a map each */
     uint32_t mapSize;        /**< texels a side of a cluster's map: 64 .. 512, a multiple of 16 */
     LWVisibility visibility;
-    uint32_t bounces;        /**< 1 or 2 */
-    uint32_t secondVpls;     /**< of the second bounce, for each cluster; they light what faces them, unshadowed */
+    uint32_t bounces;        /**< 1 .. 4 */
+    uint32_t shadowedBounces; /**< 1 or 2: bounces whose light `visibility` shadows; with 2, the second's VPLs are put into as
+                                  many clusters (64 where `clusters` is 0) with maps of their own. Light of later bounces
+                                  goes through walls */
+    uint32_t secondVpls;     /**< of the second and of each further bounce, for each cluster of the bounce before */
     LWDirections directions; /**< in which a cluster's second-bounce VPLs are drawn */
     uint32_t warmStart;      /**< 1: clusters start where they were in the frame before */
     uint32_t interleave;     /**< as LWRsmDesc's */

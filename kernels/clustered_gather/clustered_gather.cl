@@ -11,11 +11,14 @@
 #include "shared/vpl_light.h"
 #include "shared/vpl_tiles.h"
 
-// What the gather knows of the maps.
+// What the gather knows of the maps: those of the first bounce's clusters, and from cluster number `seconds` on those
+// of the second's.
 typedef struct {
     __global const lw_paraboloid* frames;
     __global const float* records;
-    int size;
+    __global const lw_paraboloid* secondFrames;
+    __global const float* secondRecords;
+    int seconds, size;
 } lw_maps;
 
 // 1 where the cluster's map sees the surface, or the share of it that does. Cluster -1 is seen everywhere.
@@ -24,13 +27,15 @@ LW_FN real cluster_visibility(lw_maps maps, int cluster, const lw_surface s) {
 #if LW_VISIBILITY == 0
     return (real)1.0f;
 #else
-    const lw_map_receiver receiver =
-        paraboloid_receiver(maps.frames[cluster], maps.size, s.px, s.py, s.pz, s.nx, s.ny, s.nz);
-    const int first = cluster * maps.size * maps.size;
+    const bool isSecond = cluster >= maps.seconds;
+    const int map = isSecond ? cluster - maps.seconds : cluster, first = map * maps.size * maps.size;
+    const lw_paraboloid frame = isSecond ? maps.secondFrames[map] : maps.frames[map];
+    __global const float* const records = isSecond ? maps.secondRecords : maps.records;
+    const lw_map_receiver receiver = paraboloid_receiver(frame, maps.size, s.px, s.py, s.pz, s.nx, s.ny, s.nz);
 #if LW_VISIBILITY == 1
-    return ones_(paraboloid_sees(maps.records, first, maps.size, receiver));
+    return ones_(paraboloid_sees(records, first, maps.size, receiver));
 #else
-    return paraboloid_visibility(maps.records, first, maps.size, receiver);
+    return paraboloid_visibility(records, first, maps.size, receiver);
 #endif
 #endif
 }
@@ -81,19 +86,21 @@ LW_FN rgb gather_subset(const lw_surface s, __global const float* vpls, lw_subse
 }
 
 // One work-item = LW_WIDTH * LW_INTERLEAVE adjacent pixels of one row, of a width x height image.
-// vpls: float[12] each as clustered_gather_order wrote them. frames, records: the maps of all clusters, of `size`
+// vpls: float[12] each as clustered_gather_order and _deal wrote them. frames ... seconds: as lw_maps, of `size`
 // texels a side. masks, irradiance, counts: as in interleaved_gather_gather.
 __kernel void clustered_gather_gather(__global const float* position, int4 positionLayout,
                                       __global const float* normal, int4 normalLayout, int width, int height,
                                       __global const float* vpls, lw_subset_order order,
                                       __global const uint* masks, lw_vpl_tiles tiles,
-                                      __global const lw_paraboloid* frames, __global const float* records, int size,
-                                      __global float* irradiance, int4 irradianceLayout, __global int* counts) {
+                                      __global const lw_paraboloid* frames, __global const float* records,
+                                      __global const lw_paraboloid* secondFrames, __global const float* secondRecords,
+                                      int seconds, int size, __global float* irradiance, int4 irradianceLayout,
+                                      __global int* counts) {
     const int x = (int)get_global_id(0) * LW_WIDTH * LW_INTERLEAVE, y = (int)get_global_id(1);
     if (x >= width || y >= height) return;
     const int tile = (y / LW_TILE_ROWS) * tiles.columns + x / tiles.tileWidth;
     const int positionRow = positionLayout.x + y * positionLayout.y, normalRow = normalLayout.x + y * normalLayout.y;
-    const lw_maps maps = {frames, records, size};
+    const lw_maps maps = {frames, records, secondFrames, secondRecords, seconds, size};
     real p[3][LW_INTERLEAVE], n[3][LW_INTERLEAVE], e[3][LW_INTERLEAVE];
     LW_UNROLL for (int a = 0; a < 3; ++a) {
         load_dealt(p[a], position, positionRow + a * positionLayout.z, x, width);
@@ -123,11 +130,13 @@ __kernel void clustered_gather_gather(__global const float* position, int4 posit
 __kernel void clustered_gather_visibility(__global const float* position, int4 positionLayout,
                                           __global const float* normal, int4 normalLayout, int width, int height,
                                           int clusters, __global const lw_paraboloid* frames,
-                                          __global const float* records, int size, __global float* planes, int rowStride) {
+                                          __global const float* records, __global const lw_paraboloid* secondFrames,
+                                          __global const float* secondRecords, int seconds, int size,
+                                          __global float* planes, int rowStride) {
     const int x = (int)get_global_id(0) * LW_WIDTH, row = (int)get_global_id(1);
     if (x >= width || row >= clusters * height) return;
     const int cluster = row / height;
-    const lw_maps maps = {frames, records, size};
+    const lw_maps maps = {frames, records, secondFrames, secondRecords, seconds, size};
     const lw_surface s = load_surface(position, positionLayout, normal, normalLayout, x, row - cluster * height);
     store(select_((real)0.0f, cluster_visibility(maps, cluster, s), s.valid), planes, row * rowStride + x);
 }

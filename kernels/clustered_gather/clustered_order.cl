@@ -1,5 +1,5 @@
-// The list that a clustered gather walks: every subset's first-bounce VPLs, cluster by cluster, so that a pixel
-// looks up a cluster's visibility once, then the further VPLs, which have none.
+// The list that a clustered gather walks: of every subset of pixels the VPLs of one bounce after the other, those whose
+// light is shadowed first and cluster by cluster, so that a pixel looks up a cluster's visibility once.
 //
 // Look-ups are what such a gather costs, so a subset may also hold VPLs of a part of the clusters only: the sorted
 // list is cut into `groups` runs of equal length, and each subset of pixels takes its VPLs from one run. A window
@@ -39,28 +39,45 @@ LW_FN int spread_number(int subset, int n) {
     return number;
 }
 
-// One work-item = one subset of the n x n: writes its order.capacity slots. firsts, seconds: lists of VPLs by index;
-// sorted as above, of firstCount firsts; secondOrder deals out the seconds. groups: a power of two, n * n at most.
-// A slot's flux.w is its cluster, -1 for none.
-__kernel void clustered_gather_order(__global const lw_vpl* firsts, __global const int* assignment,
-                                     __global const int* sorted, int firstCount, __global const lw_vpl* seconds,
-                                     lw_subset_order secondOrder, int n, int groups, lw_subset_order order,
-                                     __global lw_vpl* vpls) {
+// A list fills slots.y of a subset's slots from slots.x on.
+LW_FN __global lw_vpl* slots_of(__global lw_vpl* vpls, lw_subset_order order, int2 slots, int subset) {
+    return vpls + subset * order.capacity + slots.x;
+}
+
+LW_FN void clear_rest(__global lw_vpl* out, int used, int count) {
+    for (; used < count; ++used) out[used] = of_cluster(no_vpl(), -1);
+}
+
+// One work-item = one subset of the n x n: fills its slots from a list by index, sorted as above. groups: a power of
+// two, n * n at most. A slot's flux.w is its cluster's number plus firstCluster.
+__kernel void clustered_gather_order(__global const lw_vpl* list, __global const int* assignment,
+                                     __global const int* sorted, int listCount, int firstCluster, int n, int groups,
+                                     lw_subset_order order, int2 slots, __global lw_vpl* vpls) {
     const int subset = (int)get_global_id(0);
     if (subset >= order.subsets) return;
-    __global lw_vpl* out = vpls + subset * order.capacity;
+    __global lw_vpl* out = slots_of(vpls, order, slots, subset);
     const int number = spread_number(subset, n), group = number % groups;
-    const int lit = sorted[firstCount], end = lit * (group + 1) / groups;
+    const int lit = sorted[listCount], end = lit * (group + 1) / groups;
     int used = 0;
     for (int place = lit * group / groups + number / groups; place < end; place += order.subsets / groups) {
         const int k = sorted[place];
-        out[used++] = of_cluster(firsts[k], assignment[k]);
+        out[used++] = of_cluster(list[k], firstCluster + assignment[k]);
     }
-    for (int place = 0; place < secondOrder.capacity; ++place) {
-        const int k = lw_subset_index(secondOrder, subset * secondOrder.capacity + place);
-        if (k >= 0) out[used++] = of_cluster(seconds[k], -1);
+    clear_rest(out, used, slots.y);
+}
+
+// The same from a list whose light nothing shadows, dealt out as `dealt` says: flux.w is -1.
+__kernel void clustered_gather_deal(__global const lw_vpl* list, lw_subset_order dealt, lw_subset_order order,
+                                    int2 slots, __global lw_vpl* vpls) {
+    const int subset = (int)get_global_id(0);
+    if (subset >= order.subsets) return;
+    __global lw_vpl* out = slots_of(vpls, order, slots, subset);
+    int used = 0;
+    for (int place = 0; place < dealt.capacity; ++place) {
+        const int k = lw_subset_index(dealt, subset * dealt.capacity + place);
+        if (k >= 0) out[used++] = of_cluster(list[k], -1);
     }
-    for (; used < order.capacity; ++used) out[used] = of_cluster(no_vpl(), -1);
+    clear_rest(out, used, slots.y);
 }
 
 // For debugging: one work-item = one slot of the sorted list: its cluster, -1 for none.

@@ -102,7 +102,7 @@ int modelledBounces(const Parameters& parameters) {
     for (const auto& [name, value] : parameters.resolved())
         if (const auto* count = std::get_if<std::uint64_t>(&value);
             name == "bounces" && count != nullptr)
-            return int(*count);
+            return *count > 2 ? 0 : int(*count);
     return int(infoOf(parameters.technique()).bounces);
 }
 

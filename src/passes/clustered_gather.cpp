@@ -23,7 +23,7 @@ std::uint64_t listBytes(const lw_subset_order& order) {
     return std::uint64_t(order.subsets) * std::uint64_t(order.capacity) * sizeof(lw_vpl);
 }
 
-std::uint64_t sortedBytes(std::uint32_t firstCount) { return (std::uint64_t(firstCount) + 1) * sizeof(cl_int); }
+std::uint64_t sortedBytes(std::uint32_t count) { return (std::uint64_t(count) + 1) * sizeof(cl_int); }
 
 }  // namespace
 
@@ -33,41 +33,63 @@ ClusteredGather::ClusteredGather(Device& device, std::uint32_t interleave, std::
       groups_(groups),
       sort_(device.programs().kernel("clustered_gather/clustered_order", "clustered_gather_sort")),
       orderList_(device.programs().kernel("clustered_gather/clustered_order", "clustered_gather_order")),
+      deal_(device.programs().kernel("clustered_gather/clustered_order", "clustered_gather_deal")),
       gather_(device.programs().kernel("clustered_gather/clustered_gather", "clustered_gather_gather",
                                        definesOf(interleave, visibility))),
       visibility_(device.programs().kernel("clustered_gather/clustered_gather", "clustered_gather_visibility",
                                            definesOf(interleave, visibility))),
       clusters_(device.programs().kernel("clustered_gather/clustered_order", "clustered_gather_clusters")) {}
 
-// Slots for both lists side by side.
-lw_subset_order ClusteredGather::orderOf(std::uint32_t firstCount, std::uint32_t secondCount, std::uint32_t interleave) {
-    lw_subset_order order = subsetOrder(firstCount, interleave * interleave);
-    order.capacity += subsetOrder(secondCount, interleave * interleave).capacity;
-    order.count = cl_int(firstCount + secondCount);
+// Slots for all lists side by side.
+lw_subset_order ClusteredGather::orderOf(const std::vector<std::uint32_t>& counts, std::uint32_t interleave) {
+    lw_subset_order order = subsetOrder(0, interleave * interleave);
+    order.capacity = order.count = 0;
+    for (const std::uint32_t count : counts) {
+        order.capacity += subsetOrder(count, interleave * interleave).capacity;
+        order.count += cl_int(count);
+    }
+    if (listBytes(order) / sizeof(float) > std::uint64_t(std::numeric_limits<std::int32_t>::max()))
+        fail(LW_ERROR_UNSUPPORTED, "vpls: those of ", counts.size(), " bounces together exceed the 32-bit indices of the kernels");
     return order;
 }
 
-void ClusteredGather::reserve(std::uint32_t firstCount, std::uint32_t secondCount) {
-    const lw_subset_order order = orderOf(firstCount, secondCount, interleave_);
-    vpls_.reserve(device_, std::size_t(listBytes(order)), "VPLs by cluster");
-    sorted_.reserve(device_, std::size_t(sortedBytes(firstCount)), "order of VPLs by cluster");
-    order_ = order;
-}
-
-std::uint64_t ClusteredGather::estimateBytes(std::uint32_t firstCount, std::uint32_t secondCount,
+std::uint64_t ClusteredGather::estimateBytes(const std::vector<std::uint32_t>& counts, std::size_t clusteredLists,
                                              std::uint32_t interleave) {
-    return listBytes(orderOf(firstCount, secondCount, interleave)) + sortedBytes(firstCount);
+    std::uint64_t total = listBytes(orderOf(counts, interleave));
+    for (std::size_t i = 0; i < std::min(clusteredLists, counts.size()); ++i) total += sortedBytes(counts[i]);
+    return total;
 }
 
-void ClusteredGather::recordOrder(Executor& executor, const VplList& firsts, const Buffer& assignment,
-                                  std::uint32_t clusterCount, const VplList& seconds) {
+void ClusteredGather::recordOrder(Executor& executor, const std::vector<GatheredList>& lists) {
+    std::vector<std::uint32_t> counts;
+    for (const GatheredList& list : lists) counts.push_back(list.vpls.count);
+    const lw_subset_order order = orderOf(counts, interleave_);
+    vpls_.reserve(device_, std::size_t(listBytes(order)), "VPLs by cluster");
+    order_ = order;
     const std::uint32_t subsets = interleave_ * interleave_;
-    executor.run("clustered_gather.sort", sort_, {std::clamp<std::uint32_t>(clusterCount, 1, LW_MOST_SORTED), 1}, {1, 1}, assignment,
-                 cl_int(firsts.count), cl_int(clusterCount), sorted_);
-    executor.run("clustered_gather.order", orderList_, {subsets, 1}, {1, 1}, firsts.vpls, assignment, sorted_,
-                 cl_int(firsts.count), seconds.vpls, subsetOrder(seconds.count, subsets), cl_int(interleave_),
-                 cl_int(groups_), order_, vpls_);
+    cl_int2 slots{};
+    cl_int firstCluster = 0;
+    std::size_t sortedLists = 0;
+    for (const GatheredList& list : lists) {
+        const lw_subset_order dealt = subsetOrder(list.vpls.count, subsets);
+        slots.s[1] = dealt.capacity;
+        if (!list.assignment) {
+            executor.run("clustered_gather.order", deal_, {subsets, 1}, {1, 1}, list.vpls.vpls, dealt, order_, slots, vpls_);
+        } else {
+            if (sortedLists == kMostClusteredLists) fail(LW_ERROR_INTERNAL, "clustered_gather: more lists with clusters than maps");
+            Buffer& sorted = sorted_[sortedLists++];
+            sorted.reserve(device_, std::size_t(sortedBytes(list.vpls.count)), "order of VPLs by cluster");
+            executor.run("clustered_gather.sort", sort_, {std::clamp<std::uint32_t>(list.clusterCount, 1, LW_MOST_SORTED), 1},
+                         {1, 1}, *list.assignment, cl_int(list.vpls.count), cl_int(list.clusterCount), sorted);
+            executor.run("clustered_gather.order", orderList_, {subsets, 1}, {1, 1}, list.vpls.vpls, *list.assignment, sorted,
+                         cl_int(list.vpls.count), firstCluster, cl_int(interleave_), cl_int(groups_), order_, slots, vpls_);
+            firstCluster += cl_int(list.clusterCount);
+        }
+        slots.s[0] += slots.s[1];
+    }
 }
+
+std::uint64_t ClusteredGather::bytes() const { return vpls_.bytes() + sorted_[0].bytes() + sorted_[1].bytes(); }
 
 void ClusteredGather::recordGather(Executor& executor, const Planes& position, const Planes& normal,
                                    const Buffer& masks, const lw_vpl_tiles& tiles, const ClusterMaps& maps,
@@ -75,7 +97,8 @@ void ClusteredGather::recordGather(Executor& executor, const Planes& position, c
     const std::uint32_t pixels = gather_.width() * interleave_;
     executor.run("clustered_gather.gather", gather_, {(position.width + pixels - 1) / pixels, position.height},
                  groupOf(gather_), position, normal, cl_int(position.width), cl_int(position.height), vpls_, order_, masks,
-                 tiles, maps.frames, maps.records, cl_int(maps.size), irradiance, counts);
+                 tiles, maps.frames, maps.records, maps.secondFrames, maps.secondRecords, cl_int(maps.seconds),
+                 cl_int(maps.size), irradiance, counts);
 }
 
 Planes ClusteredGather::visibilityShape(const Planes& position, std::uint32_t clusterCount) {
@@ -97,7 +120,7 @@ void ClusteredGather::recordVisibility(Executor& executor, const Planes& positio
     executor.run("clustered_gather.visibility", visibility_,
                  {(position.width + visibility_.width() - 1) / visibility_.width(), planes.height}, groupOf(visibility_),
                  position, normal, cl_int(position.width), cl_int(position.height), cl_int(clusterCount), maps.frames,
-                 maps.records, cl_int(maps.size), planes.memory, cl_int(planes.rowStride));
+                 maps.records, maps.secondFrames, maps.secondRecords, cl_int(maps.seconds), cl_int(maps.size), planes.memory, cl_int(planes.rowStride));
 }
 
 Planes ClusteredGather::clustersShape() const {

@@ -2,7 +2,9 @@
 // paraboloid map (Dong et al. 2009; Aranha et al. 2020). The filter is interleaved_gather's.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <vector>
 
 #include "compute/buffer.h"
 #include "compute/executor.h"
@@ -19,11 +21,21 @@ struct VplList {
     std::uint32_t count;
 };
 
-// The clusters' maps, as ParaboloidMap leaves them.
+// The VPLs of a bounce; without an assignment (an int each: cluster, or -1: left out) nothing shadows their light.
+struct GatheredList {
+    VplList vpls;
+    const Buffer* assignment = nullptr;
+    std::uint32_t clusterCount = 0;
+};
+
+// The clusters' maps, as ParaboloidMap leaves them: of the first list that has clusters, which are numbers 0 to seconds - 1,
+// and of the second.
 struct ClusterMaps {
     const Buffer& frames;
     const Buffer& records;
-    std::uint32_t size;
+    const Buffer& secondFrames;
+    const Buffer& secondRecords;
+    std::uint32_t seconds, size;
 };
 
 class ClusteredGather {
@@ -32,15 +44,15 @@ public:
     // looks up about one groups-th of the clusters. interleave^2 at most.
     ClusteredGather(Device& device, std::uint32_t interleave, std::uint32_t groups, ClusterVisibility visibility);
 
-    // Makes room for the sorted list of so many VPLs; allocates only where it has grown.
-    void reserve(std::uint32_t firstCount, std::uint32_t secondCount);
-    static lw_subset_order orderOf(std::uint32_t firstCount, std::uint32_t secondCount, std::uint32_t interleave);
-    static std::uint64_t estimateBytes(std::uint32_t firstCount, std::uint32_t secondCount, std::uint32_t interleave);
+    // For lists of so many VPLs each.
+    static lw_subset_order orderOf(const std::vector<std::uint32_t>& counts, std::uint32_t interleave);
+    static std::uint64_t estimateBytes(const std::vector<std::uint32_t>& counts, std::size_t clusteredLists,
+                                       std::uint32_t interleave);
 
-    // Passes "clustered_gather.sort" and ".order": sort `firsts` by cluster (`assignment`, an int each, -1: left out), deal
-    // each subset its share, and append its share of `seconds`, which are seen everywhere.
-    void recordOrder(Executor& executor, const VplList& firsts, const Buffer& assignment, std::uint32_t clusterCount,
-                     const VplList& seconds);
+    // Passes "clustered_gather.sort" and ".order": deal each subset its share of every list, of those with clusters sorted by
+    // cluster. At most kMostClusteredLists of them.
+    static constexpr std::size_t kMostClusteredLists = 2;
+    void recordOrder(Executor& executor, const std::vector<GatheredList>& lists);
     // Pass "clustered_gather.gather"; masks (of `vpls`, by InterleavedGather::recordCull), irradiance and counts as in
     // InterleavedGather::recordGather.
     void recordGather(Executor& executor, const Planes& position, const Planes& normal, const Buffer& masks,
@@ -56,13 +68,14 @@ public:
 
     const Buffer& vpls() const { return vpls_; }       // lw_vpl by slot; flux.w: cluster or -1
     lw_subset_order order() const { return order_; }  // its subsets and capacity
-    std::uint64_t bytes() const { return vpls_.bytes() + sorted_.bytes(); }
+    std::uint64_t bytes() const;
 
 private:
     Device& device_;
     std::uint32_t interleave_, groups_;
-    Kernel &sort_, &orderList_, &gather_, &visibility_, &clusters_;
-    Buffer vpls_, sorted_;
+    Kernel &sort_, &orderList_, &deal_, &gather_, &visibility_, &clusters_;
+    Buffer vpls_;
+    std::array<Buffer, kMostClusteredLists> sorted_;
     lw_subset_order order_{};
 };
 

@@ -2,7 +2,9 @@
 #include "techniques/ssvp.h"
 
 #include <algorithm>
+#include <deque>
 #include <optional>
+#include <vector>
 
 #include "compute/device.h"
 #include "inputs/rsm_input.h"
@@ -27,18 +29,19 @@ VplSamplingOptions samplingOptions(const LWSsvpDesc& desc) {
     return options;
 }
 
-KMeansOptions clusterOptions(const LWSsvpDesc& desc) {
+// Of bounce `stage` + 1. The first bounce's VPLs may have a cluster each; those of later ones would be too many.
+KMeansOptions clusterOptions(const LWSsvpDesc& desc, std::size_t stage) {
     KMeansOptions options;
-    options.clusters = desc.clusters;
+    options.clusters = stage > 0 && desc.clusters == 0 ? LW_MOST_SORTED : desc.clusters;
     options.warmStart = desc.warmStart != 0;
     return options;
 }
 
-SecondBounceOptions secondOptions(const LWSsvpDesc& desc) {
+SecondBounceOptions nextOptions(const LWSsvpDesc& desc, std::size_t stage) {
     SecondBounceOptions options;
     options.perCluster = desc.secondVpls;
     options.directions = std::uint32_t(desc.directions);
-    options.seed = desc.seed;
+    options.seed = desc.seed + std::uint32_t(stage);
     return options;
 }
 
@@ -60,6 +63,22 @@ ClusterVisibility visibilityOf(const LWSsvpDesc& desc) {
 // As many groups as the interleave's window has pixels, at most.
 std::uint32_t groupsOf(const LWSsvpDesc& desc) { return std::min(desc.clusterGroups, desc.interleave * desc.interleave); }
 
+// Bounces whose VPLs are shadowed, and those whose VPLs have clusters: these and all that another bounce follows.
+std::size_t shadowedOf(const LWSsvpDesc& desc) {
+    return desc.visibility == LW_VISIBILITY_NONE ? 0 : std::min(desc.shadowedBounces, desc.bounces);
+}
+std::size_t stagesOf(const LWSsvpDesc& desc) {
+    return std::max<std::size_t>({1, shadowedOf(desc), desc.bounces - 1});
+}
+
+// A bounce whose VPLs have clusters, and the VPLs of the next one.
+struct Stage {
+    Stage(Device& device, const LWSsvpDesc& desc, std::size_t index)
+        : clusters(device, clusterOptions(desc, index)), next(device, nextOptions(desc, index)) {}
+    KMeans clusters;
+    SecondBounce next;
+};
+
 // What the host gave and this technique does not read, or lacks: said in the stats. `choices`: the maps'.
 std::vector<LWChoice> inputChoices(std::vector<LWChoice> choices, const LWSsvpDesc& desc, const LWFrame& frame) {
     constexpr const char* kReason = "not used: technique ssvp takes light from RSMs and authored VPLs only";
@@ -79,11 +98,10 @@ public:
         : device_(device),
           desc_(desc),
           sampling_(device, samplingOptions(desc)),
-          clusters_(device, clusterOptions(desc)),
-          maps_(device, desc),
-          second_(device, secondOptions(desc)),
+          maps_(device, desc, stagesOf(desc)),
           passes_(device, desc.interleave),
           gather_(device, desc.interleave, groupsOf(desc), visibilityOf(desc)) {
+        for (std::size_t i = 0; i < stagesOf(desc); ++i) stages_.emplace_back(device, desc, i);
         if (interleavedOptions(desc).half) bilateral_.emplace(device);
     }
 
@@ -93,18 +111,21 @@ public:
         maps_.import(executor, frame, rsms_);
         sampling_.record(executor, rsms_, frame.vpls, frame.vplCount);
 
-        const VplList firsts{sampling_.vpls(), sampling_.vplCount()};
-        clusters_.record(executor, firsts.vpls, firsts.count, frame.reset != 0);
-        const std::uint32_t clusterCount = clusters_.clusterCount();
-        maps_.record(executor, clusters_.clusters(), clusterCount);
-        const ParaboloidMap& maps = maps_.maps();
-        second_.reserve(desc_.bounces > 1 ? clusterCount : 0);
-        if (second_.vplCount())
-            second_.record(executor, clusters_.clusters(), clusterCount, maps.frames(), maps.records(), maps.albedo(),
-                           maps.size());
-        gather_.reserve(firsts.count, second_.vplCount());
-        gather_.recordOrder(executor, firsts, clusters_.assignment(), clusterCount,
-                            {second_.vplCount() ? second_.vpls() : firsts.vpls, second_.vplCount()});
+        std::vector<GatheredList> lists{{{sampling_.vpls(), sampling_.vplCount()}}};
+        for (std::size_t i = 0; i < stages_.size(); ++i) {
+            KMeans& clusters = stages_[i].clusters;
+            clusters.record(executor, lists[i].vpls.vpls, lists[i].vpls.count, frame.reset != 0);
+            maps_.record(executor, i, clusters.clusters(), clusters.clusterCount());
+            if (i < std::max<std::size_t>(shadowedOf(desc_), 1)) {
+                lists[i].assignment = &clusters.assignment();
+                lists[i].clusterCount = clusters.clusterCount();
+            }
+            if (i + 1 < desc_.bounces && clusters.clusterCount()) lists.push_back({recordNext(executor, i)});
+            if (lists.size() == i + 1) break;  // no VPLs, or the last bounce
+        }
+        gather_.recordOrder(executor, lists);
+        vplCounts_.clear();
+        for (const GatheredList& list : lists) vplCounts_.push_back(list.vpls.count);
 
         choices_ = inputChoices(maps_.choices(frame), desc_, frame);
         states_.purge();
@@ -116,7 +137,7 @@ public:
         checkInterleavedOutputs(device_, *view, output, "ssvp");
         InterleavedView& state = states_.get(
             view, [&] { return std::make_unique<InterleavedView>(device_, interleavedOptions(desc_), *view); });
-        const ClusterMaps maps{maps_.maps().frames(), maps_.maps().records(), maps_.maps().size()};
+        const ClusterMaps maps = mapsRead();
         state.render(executor, *view, gbuffer, output, passes_, bilateral_ ? &*bilateral_ : nullptr,
                      [&](const Planes& position, const Planes& normal, const Planes& irradiance) {
                          const Buffer& masks = state.cull(executor, passes_, position, normal, gather_.vpls(), gather_.order());
@@ -142,13 +163,34 @@ public:
     std::uint64_t bytes() const override;
 
 private:
+    // The VPLs that the maps of a stage show lit.
+    VplList recordNext(Executor& executor, std::size_t index) {
+        Stage& stage = stages_[index];
+        const ParaboloidMap& maps = maps_.maps(index);
+        stage.next.reserve(stage.clusters.clusterCount());
+        stage.next.record(executor, stage.clusters.clusters(), stage.clusters.clusterCount(), maps.frames(), maps.records(),
+                          maps.albedo(), maps.size());
+        return {stage.next.vpls(), stage.next.vplCount()};
+    }
+    // Of what is shadowed.
+    ClusterMaps mapsRead() const {
+        const ParaboloidMap &first = maps_.maps(0), &second = maps_.maps(shadowedOf(desc_) > 1 ? 1 : 0);
+        return {first.frames(), first.records(), second.frames(), second.records(), stages_[0].clusters.clusterCount(),
+                first.size()};
+    }
+    std::uint32_t shadowingClusters() const {
+        std::uint32_t count = 0;
+        for (std::size_t i = 0; i < std::max<std::size_t>(shadowedOf(desc_), 1); ++i) count += stages_[i].clusters.clusterCount();
+        return count;
+    }
+
     Device& device_;
     LWSsvpDesc desc_;
     RsmInput rsms_;
     VplSampling sampling_;
-    KMeans clusters_;
+    std::deque<Stage> stages_;
     SsvpMaps maps_;
-    SecondBounce second_;
+    std::vector<std::uint32_t> vplCounts_;  // of each bounce
     InterleavedGather passes_;
     ClusteredGather gather_;
     std::optional<JointBilateral> bilateral_;  // half resolution only
@@ -161,8 +203,10 @@ Report SsvpTechnique::report() {
     rsms_.report(report);
     maps_.report(report);
     report.counts.push_back({"vpls", sampling_.vplCount()});
-    report.counts.push_back({"clusters", clusters_.clusterCount()});
-    report.counts.push_back({"second_vpls", second_.vplCount()});
+    report.counts.push_back({"clusters", stages_[0].clusters.clusterCount()});
+    constexpr const char* kLater[] = {"second_vpls", "third_vpls", "fourth_vpls"};
+    for (std::size_t i = 1; i < desc_.bounces || i < 2; ++i)
+        report.counts.push_back({kLater[i - 1], i < vplCounts_.size() ? vplCounts_[i] : 0});
     for (const LWChoice& choice : choices_) report.choose(choice.name, choice.reason);
     report.counts.push_back({"rejected_pixels", 0});
     report.counts.push_back({"upsample_fallbacks", 0});
@@ -174,15 +218,21 @@ Report SsvpTechnique::report() {
 std::vector<DebugView> SsvpTechnique::debugViews(const View* view) {
     std::vector<DebugView> views;
     if (gather_.vpls()) {
-        views.push_back({"vpls", "one column per slot, both bounces: position xyz (m), unit normal xyz, flux rgb (W), area (m^2)",
+        views.push_back({"vpls", "one column per slot, of all bounces: position xyz (m), unit normal xyz, flux rgb (W), area (m^2)",
                          VplSampling::debugShape(gather_.order()),
                          [this](Executor& executor, const Planes& planes) {
                              sampling_.recordPlanes(executor, gather_.vpls(), planes);
                          }});
-        views.push_back({"clusters", clusters_.debugDescription(), clusters_.debugShape(),
-                         [this](Executor& executor, const Planes& planes) { clusters_.recordPlanes(executor, planes); }});
-        views.push_back({"maps", "maps one below the other: distance (m), world normal xyz, albedo rgb", maps_.maps().debugShape(),
-                         [this](Executor& executor, const Planes& planes) { maps_.maps().recordPlanes(executor, planes); }});
+        constexpr const char* kClusters[] = {"clusters", "second_clusters", "third_clusters"};
+        constexpr const char* kMaps[] = {"maps", "second_maps", "third_maps"};
+        for (std::size_t i = 0; i < stages_.size(); ++i) {
+            KMeans& clusters = stages_[i].clusters;
+            ParaboloidMap& maps = maps_.maps(i);
+            views.push_back({kClusters[i], clusters.debugDescription(), clusters.debugShape(),
+                             [&clusters](Executor& executor, const Planes& planes) { clusters.recordPlanes(executor, planes); }});
+            views.push_back({kMaps[i], "maps one below the other: distance (m), world normal xyz, albedo rgb", maps.debugShape(),
+                             [&maps](Executor& executor, const Planes& planes) { maps.recordPlanes(executor, planes); }});
+        }
         views.push_back({"vpl_clusters", "one column per slot as in vpls: the VPL's cluster, -1 for none", gather_.clustersShape(),
                          [this](Executor& executor, const Planes& planes) { gather_.recordClusters(executor, planes); }});
     }
@@ -191,17 +241,16 @@ std::vector<DebugView> SsvpTechnique::debugViews(const View* view) {
     state->addDebugViews(views);
     if (const Planes position = state->position())
         views.push_back({"visibility", "clusters one below the other: the share of its light that each pixel is taken to see",
-                         ClusteredGather::visibilityShape(position, clusters_.clusterCount()),
+                         ClusteredGather::visibilityShape(position, shadowingClusters()),
                          [this, position, normal = state->normal()](Executor& executor, const Planes& planes) {
-                             gather_.recordVisibility(executor, position, normal, {maps_.frames(), maps_.records(), maps_.size()},
-                                                      clusters_.clusterCount(), planes);
+                             gather_.recordVisibility(executor, position, normal, mapsRead(), shadowingClusters(), planes);
                          }});
     return views;
 }
 
 std::uint64_t SsvpTechnique::bytes() const {
-    std::uint64_t total = rsms_.bytes() + sampling_.bytes() + clusters_.bytes() + maps_.bytes() +
-                          second_.bytes() + gather_.bytes();
+    std::uint64_t total = rsms_.bytes() + sampling_.bytes() + maps_.bytes() + gather_.bytes();
+    for (const Stage& stage : stages_) total += stage.clusters.bytes() + stage.next.bytes();
     states_.each([&](const InterleavedView& state) { total += state.bytes(); });
     return total;
 }
@@ -216,15 +265,21 @@ std::unique_ptr<Technique> create(Device& device, const void* desc) {
 
 std::uint64_t estimateBytes(const void* desc, const LWViewDesc& view, const FrameShape& shape) {
     const LWSsvpDesc& ssvp = *static_cast<const LWSsvpDesc*>(desc);
-    const lw_subset_order firsts = VplSampling::orderOf(samplingOptions(ssvp), shape);
-    const std::uint32_t count = std::uint32_t(firsts.count), clusters = ssvp.clusters ? ssvp.clusters : count;
-    const std::uint32_t seconds = ssvp.bounces > 1 ? clusters * ssvp.secondVpls : 0;
-    return RsmInput::estimateBytes(shape) + VplSampling::estimateBytes(samplingOptions(ssvp), shape) + KMeans::estimateBytes(clusterOptions(ssvp), count) +
-           SsvpMaps::estimateBytes(ssvp, clusters, shape) +
-           SecondBounce::estimateBytes(secondOptions(ssvp), ssvp.bounces > 1 ? clusters : 0) +
-           ClusteredGather::estimateBytes(count, seconds, ssvp.interleave) +
+    std::vector<std::uint32_t> counts{std::uint32_t(VplSampling::orderOf(samplingOptions(ssvp), shape).count)}, clusterCounts;
+    std::uint64_t total = 0;
+    for (std::size_t i = 0; i < stagesOf(ssvp); ++i) {
+        const KMeansOptions options = clusterOptions(ssvp, i);
+        clusterCounts.push_back(options.clusters ? options.clusters : counts[i]);
+        total += KMeans::estimateBytes(options, counts[i]);
+        if (i + 1 >= ssvp.bounces) break;
+        counts.push_back(clusterCounts[i] * ssvp.secondVpls);
+        total += SecondBounce::estimateBytes(nextOptions(ssvp, i), clusterCounts[i]);
+    }
+    return total + RsmInput::estimateBytes(shape) + VplSampling::estimateBytes(samplingOptions(ssvp), shape) +
+           SsvpMaps::estimateBytes(ssvp, clusterCounts, shape) +
+           ClusteredGather::estimateBytes(counts, std::max<std::size_t>(shadowedOf(ssvp), 1), ssvp.interleave) +
            InterleavedView::estimateBytes(interleavedOptions(ssvp), view, shape.uploads,
-                                          ClusteredGather::orderOf(count, seconds, ssvp.interleave));
+                                          ClusteredGather::orderOf(counts, ssvp.interleave));
 }
 
 TechniqueEntry makeEntry() {

@@ -51,8 +51,10 @@ const char* describe(Source source) {
 
 }  // namespace
 
-SsvpMaps::SsvpMaps(Device& device, const LWSsvpDesc& desc)
-    : device_(device), desc_(desc), sampling_(device), maps_(device, desc.mapSize), splat_(device), holes_(device) {}
+SsvpMaps::SsvpMaps(Device& device, const LWSsvpDesc& desc, std::size_t stages)
+    : device_(device), desc_(desc), sampling_(device) {
+    for (std::size_t i = 0; i < stages; ++i) stages_.emplace_back(device, desc.mapSize);
+}
 
 Source SsvpMaps::sourceOf(const LWFrame& frame) const {
     return chosenSource(desc_, trianglesOf(frame), surfelsOf(frame));
@@ -78,7 +80,8 @@ void SsvpMaps::check(const LWFrame& frame) const {
 
 void SsvpMaps::import(Executor& executor, const LWFrame& frame, const RsmInput& rsms) {
     const Source source = sourceOf(frame);
-    if (source != source_) maps_.redrawAll();  // revisions count within a source
+    if (source != source_)  // revisions count within a source
+        for (Stage& stage : stages_) stage.maps.redrawAll();
     source_ = source;
     switch (source) {
         case Source::triangles:
@@ -103,19 +106,20 @@ SurfelSet SsvpMaps::surfels() const {
                                        : sampling_.surfels();
 }
 
-void SsvpMaps::record(Executor& executor, const Buffer& clusters, std::uint32_t clusterCount) {
+void SsvpMaps::record(Executor& executor, std::size_t index, const Buffer& clusters, std::uint32_t clusterCount) {
+    Stage& stage = stages_[index];
     if (source_ == Source::none) clusterCount = 0;
     if (source_ == Source::none || source_ == Source::triangles) {
-        maps_.record(executor, clusters, clusterCount, triangles_);
+        stage.maps.record(executor, clusters, clusterCount, triangles_);
         return;
     }
-    if (source_ == Source::sampledTriangles)
+    if (source_ == Source::sampledTriangles && index == 0)
         sampling_.record(executor, triangles_, SurfelSplat::mostSurfels(desc_.mapSize));
     const SurfelSet set = surfels();
-    maps_.recordPlaces(executor, clusters, clusterCount, *set.diagonal, set.revision);
-    splat_.record(executor, set, maps_.texels());
-    holes_.record(executor, maps_.texels());
-    maps_.noteDrawn(set.revision);
+    stage.maps.recordPlaces(executor, clusters, clusterCount, *set.diagonal, set.revision);
+    stage.splat.record(executor, set, stage.maps.texels());
+    stage.holes.record(executor, stage.maps.texels());
+    stage.maps.noteDrawn(set.revision);
 }
 
 std::vector<LWChoice> SsvpMaps::choices(const LWFrame& frame) const {
@@ -139,20 +143,26 @@ void SsvpMaps::report(Report& report) const {
     else if (source_ == Source::screen) screen_.report(report);
     else triangles_.report(report);
     if (source_ == Source::sampledTriangles) report.counts.push_back({"surfels", sampling_.surfels().count});
-    maps_.report(report);
-    if (source_ != Source::none && source_ != Source::triangles) holes_.report(report);
+    for (const Stage& stage : stages_) {
+        stage.maps.report(report);
+        if (source_ != Source::none && source_ != Source::triangles) stage.holes.report(report);
+    }
 }
 
 std::uint64_t SsvpMaps::bytes() const {
-    return triangles_.bytes() + hostSurfels_.bytes() + screen_.bytes() + sampling_.bytes() + maps_.bytes() + splat_.bytes() +
-           holes_.bytes();
+    std::uint64_t total = triangles_.bytes() + hostSurfels_.bytes() + screen_.bytes() + sampling_.bytes();
+    for (const Stage& stage : stages_) total += stage.maps.bytes() + stage.splat.bytes() + stage.holes.bytes();
+    return total;
 }
 
-std::uint64_t SsvpMaps::estimateBytes(const LWSsvpDesc& desc, std::uint32_t clusterCount, const FrameShape& shape) {
+std::uint64_t SsvpMaps::estimateBytes(const LWSsvpDesc& desc, const std::vector<std::uint32_t>& clusterCounts,
+                                      const FrameShape& shape) {
     const Source source = chosenSource(desc, shape.triangles, shape.surfels);
     const std::uint32_t sampled = SurfelSplat::mostSurfels(desc.mapSize);
-    const std::uint32_t maps = source == Source::none ? 0 : clusterCount;
-    std::uint64_t total = ParaboloidMap::estimateBytes(desc.mapSize, maps, source == Source::triangles ? shape.triangles : 0);
+    const auto mapsOf = [&](std::uint32_t clusters) { return source == Source::none ? 0 : clusters; };
+    std::uint64_t total = 0;
+    for (const std::uint32_t clusters : clusterCounts)
+        total += ParaboloidMap::estimateBytes(desc.mapSize, mapsOf(clusters), source == Source::triangles ? shape.triangles : 0);
     std::uint64_t surfels = 0;
     if (source == Source::triangles || source == Source::sampledTriangles) total += GeometryInput::estimateBytes(shape.triangles);
     if (source == Source::none || source == Source::triangles) return total;
@@ -166,7 +176,9 @@ std::uint64_t SsvpMaps::estimateBytes(const LWSsvpDesc& desc, std::uint32_t clus
         surfels = sampled;
         total += SurfelSampling::estimateBytes(shape.triangles, sampled);
     }
-    return total + SurfelSplat::estimateBytes(surfels, maps) + PullPush::estimateBytes(desc.mapSize, maps);
+    for (const std::uint32_t clusters : clusterCounts)
+        total += SurfelSplat::estimateBytes(surfels, mapsOf(clusters)) + PullPush::estimateBytes(desc.mapSize, mapsOf(clusters));
+    return total;
 }
 
 }  // namespace lightwell

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <vector>
 
 #include "inputs/geometry_input.h"
@@ -21,25 +22,35 @@ public:
     // Where a frame's maps come from.
     enum class Source { none, triangles, surfels, sampledTriangles, screen };
 
-    SsvpMaps(Device& device, const LWSsvpDesc& desc);
+    // stages: bounces whose VPLs have clusters.
+    SsvpMaps(Device& device, const LWSsvpDesc& desc, std::size_t stages);
 
     // Throws what import() would say of this frame, whose RSMs are RsmInput's to check.
     void check(const LWFrame& frame) const;
     void import(Executor& executor, const LWFrame& frame, const RsmInput& rsms);
-    // The maps of these clusters (lw_cluster each); drawn anew only where a medoid or what is drawn has moved. What the
+    // The maps of a stage's clusters (lw_cluster each); drawn anew only where a medoid or what is drawn has moved. What the
     // screen shows moves with every frame.
-    void record(Executor& executor, const Buffer& clusters, std::uint32_t clusterCount);
+    void record(Executor& executor, std::size_t stage, const Buffer& clusters, std::uint32_t clusterCount);
 
-    const ParaboloidMap& maps() const { return maps_; }
-    ParaboloidMap& maps() { return maps_; }
+    const ParaboloidMap& maps(std::size_t stage) const { return stages_[stage].maps; }
+    ParaboloidMap& maps(std::size_t stage) { return stages_[stage].maps; }
 
     // What of the frame's geometry and views is used, and what is not.
     std::vector<LWChoice> choices(const LWFrame& frame) const;
     void report(Report& report) const;
     std::uint64_t bytes() const;
-    static std::uint64_t estimateBytes(const LWSsvpDesc& desc, std::uint32_t clusterCount, const FrameShape& shape);
+    // clusterCounts: of each stage.
+    static std::uint64_t estimateBytes(const LWSsvpDesc& desc, const std::vector<std::uint32_t>& clusterCounts,
+                                       const FrameShape& shape);
 
 private:
+    struct Stage {
+        Stage(Device& device, std::uint32_t size) : maps(device, size), splat(device), holes(device) {}
+        ParaboloidMap maps;
+        SurfelSplat splat;
+        PullPush holes;
+    };
+
     Source sourceOf(const LWFrame& frame) const;
     SurfelSet surfels() const;
 
@@ -50,9 +61,7 @@ private:
     SurfelInput hostSurfels_;
     ScreenSurfels screen_;
     SurfelSampling sampling_;
-    ParaboloidMap maps_;
-    SurfelSplat splat_;
-    PullPush holes_;
+    std::deque<Stage> stages_;
 };
 
 }  // namespace lightwell

@@ -46,12 +46,14 @@ std::vector<LWParameter> makeTable() {
         allowing(uint("map_size", "texels a side of a cluster's map: finer occluders, memory and drawing time with its square",
                       offsetof(LWSsvpDesc, mapSize), 64, 512, 128),
                  kMapSizeValues),
-        swept(oneOf("visibility", "of first-bounce VPLs: none, the map's nearest texel, or its four nearest",
+        swept(oneOf("visibility", "of VPLs: none, the map's nearest texel, or its four nearest",
                     offsetof(LWSsvpDesc, visibility), kVisibilityNames, 2, LW_VISIBILITY_HARD),
               kVisibilitySweep),
-        swept(uint("bounces", "indirect bounces: 1, or 2 with VPLs drawn from the clusters' maps", offsetof(LWSsvpDesc, bounces), 1, 2, 2),
+        swept(uint("bounces", "indirect bounces; those after the first with VPLs drawn from the maps of the bounce before", offsetof(LWSsvpDesc, bounces), 1, 4, 2),
               kBouncesSweep),
-        uint("second_vpls", "second-bounce VPLs for each cluster, unshadowed", offsetof(LWSsvpDesc, secondVpls), 1, 1024, 32),
+        uint("shadowed_bounces", "1: light of the first bounce only is shadowed; 2: of the second too, by maps of its own clusters: less light through walls, time",
+             offsetof(LWSsvpDesc, shadowedBounces), 1, 2, 1),
+        uint("second_vpls", "VPLs of each bounce after the first for each cluster of the one before", offsetof(LWSsvpDesc, secondVpls), 1, 1024, 32),
         oneOf("directions", "in which second-bounce VPLs are drawn: by cosine, evenly on the map's disc, or on its square",
               offsetof(LWSsvpDesc, directions), kDirectionsNames, 2, LW_DIRECTIONS_COSINE),
         flag("warm_start", "clusters start where they were in the frame before", offsetof(LWSsvpDesc, warmStart)),
@@ -96,6 +98,7 @@ extern "C" void lwDefaultSsvp(LWSsvpDesc* desc) {
     desc->mapSize = 128;
     desc->visibility = LW_VISIBILITY_HARD;
     desc->bounces = 2;
+    desc->shadowedBounces = 1;
     desc->secondVpls = 32;
     desc->directions = LW_DIRECTIONS_COSINE;
     desc->warmStart = 1;

@@ -50,9 +50,9 @@ std::vector<lw_vpl> listOf(const ClusteredGather& pass) {
 void recordOrder(KernelRig& rig, ClusteredGather& pass, const Scene& scene, std::uint32_t clusterCount) {
     const Guarded firsts = rig.upload(scene.firsts), assignment = rig.upload(scene.assignment);
     const Guarded seconds = rig.upload(scene.seconds.empty() ? scene.firsts : scene.seconds);
-    pass.reserve(std::uint32_t(scene.firsts.size()), std::uint32_t(scene.seconds.size()));
-    pass.recordOrder(rig.executor(), {firsts, std::uint32_t(scene.firsts.size())}, assignment,
-                     clusterCount, {seconds, std::uint32_t(scene.seconds.size())});
+    std::vector<GatheredList> lists{{{firsts, std::uint32_t(scene.firsts.size())}, &assignment, clusterCount}};
+    if (!scene.seconds.empty()) lists.push_back({{seconds, std::uint32_t(scene.seconds.size())}});
+    pass.recordOrder(rig.executor(), lists);
     rig.device().finish();
 }
 
@@ -78,6 +78,12 @@ Image gatherOn(KernelRig& rig, ClusteredGather& pass, std::uint32_t n, const Ima
     Image result(w, h);
     result.planes = rig.downloadPlanes(rig.planes(out, w, h, 3));
     return result;
+}
+
+// Of one list with clusters.
+ClusterMaps mapsOf(ParaboloidRig& rig) {
+    const ParaboloidMap& maps = rig.pass;
+    return {maps.frames(), maps.records(), maps.frames(), maps.records(), maps.mapCount(), maps.size()};
 }
 
 // A floor under a wall that stands on it, lit by two clusters on either side.
@@ -203,7 +209,7 @@ TEST_CASE("without visibility it is the gather of the same list", "[clustered_ga
     recordOrder(rig, pass, scene, 8);
     const Guarded none = rig.upload(std::vector<float>(64, 0.0f));
     const auto bits = GENERATE(Bits::found, Bits::all);
-    const Image light = gatherOn(rig, pass, n, position, normal, {none, none, 64}, bits);
+    const Image light = gatherOn(rig, pass, n, position, normal, {none, none, none, none, 8, 64}, bits);
     const Image twin = reference::gather(position, normal, listOf(pass), pass.order(), n);
     CHECK(disagreement(light.planes, twin.planes, kTwinTolerance) == "");
 }
@@ -220,7 +226,7 @@ TEST_CASE("a wall's shadow as rays from the clusters cast it", "[clustered_gathe
         recordOrder(rig, pass, room.scene, 2);
         const Image light =
             gatherOn(rig, pass, 1, room.position, room.normal,
-                     {rig.pass.frames(), rig.pass.records(), rig.pass.size()}, Bits::found);
+                     mapsOf(rig), Bits::found);
         int off = 0;
         double sum = 0.0, expected = 0.0;
         for (std::uint32_t y = 0; y < light.height; ++y)
@@ -250,9 +256,35 @@ TEST_CASE("widths agree, and ten runs are one", "[clustered_gather][large]") {
             recordOrder(rig, pass, room.scene, 2);
             const Image light =
                 gatherOn(rig, pass, 4, room.position, room.normal,
-                         {rig.pass.frames(), rig.pass.records(), rig.pass.size()}, Bits::found);
+                         mapsOf(rig), Bits::found);
             if (first.empty()) first = light.planes;
             CHECK(bitDifference(light.planes, first) == "");
         }
     }
+}
+
+TEST_CASE("two bounces with clusters are one list with the clusters of both", "[clustered_gather]") {
+    const auto width = GENERATE(1u, 16u);
+    ParaboloidRig rig(width, 64);
+    const auto size = testSize({96, 64});
+    const Walled room(size.first, size.second);
+    rig.draw(room.mesh, room.clusters);
+    const Guarded list = rig.upload(room.scene.firsts), assignment = rig.upload(room.scene.assignment);
+    ClusteredGather pass(rig.device(), 1, 1, GENERATE(ClusterVisibility::hard, ClusterVisibility::soft));
+    pass.recordOrder(rig.executor(), {{{list, 40}, &assignment, 2}});
+    const Image expected = gatherOn(rig, pass, 1, room.position, room.normal, mapsOf(rig), Bits::found);
+
+    // The same VPLs, each cluster's as a bounce of its own, with a map of its own.
+    std::vector<lw_vpl> bounce[2];
+    for (std::size_t k = 0; k < 40; ++k) bounce[room.scene.assignment[k]].push_back(room.scene.firsts[k]);
+    const Guarded lists[2] = {rig.upload(bounce[0]), rig.upload(bounce[1])};
+    const Guarded own = rig.upload(std::vector<cl_int>(20, 0));
+    ParaboloidMap maps[2] = {ParaboloidMap(rig.device(), 64), ParaboloidMap(rig.device(), 64)};
+    for (int i = 0; i < 2; ++i)
+        maps[i].record(rig.executor(), rig.upload(std::vector<lw_cluster>{room.clusters[std::size_t(i)]}), 1, rig.input);
+    pass.recordOrder(rig.executor(), {{{lists[0], 20}, &own, 1}, {{lists[1], 20}, &own, 1}});
+    const Image light =
+        gatherOn(rig, pass, 1, room.position, room.normal,
+                 {maps[0].frames(), maps[0].records(), maps[1].frames(), maps[1].records(), 1, 64}, Bits::found);
+    CHECK(bitDifference(light.planes, expected.planes) == "");
 }
