@@ -199,18 +199,18 @@ void Stability::runSequence(const FailureSequence& sequence) {
 Truths Stability::truthsOf(const FailureSequence& sequence, const FrameScene& now,
                            const studio::GBuffer& view) {
     Truths truths;
-    for (const Runner* runner : due_) {
-        std::shared_ptr<const FrameTruth>& truth = truths[runner->bounces];
-        if (truth != nullptr) continue;
+    for (const Runner* runner : due_) truths[runner->bounces] = nullptr;
+    for (auto each = truths.rbegin(); each != truths.rend(); ++each) {
         SequenceTruths::Request request;
-        request.bounces = runner->bounces;
+        request.bounces = each->first;
+        request.keepsFirstBounce = each->first == 2 && truths.count(1) != 0;
         request.samples = samplesOf(sequence);
         request.sharesPoints = sequence.truthSharesPoints;
         request.guide = guide_ ? guide_->points.get() : nullptr;
         request.progress = [&](double fraction) { report(fraction); };
-        truth = sequence.truth == studio::SequenceTruth::Dark
-                    ? darkTruth(now.frame.width, now.frame.height)
-                    : truths_.obtain(*now.scene, view, request);
+        each->second = sequence.truth == studio::SequenceTruth::Dark
+                           ? darkTruth(now.frame.width, now.frame.height)
+                           : truths_.obtain(*now.scene, view, request);
     }
     return truths;
 }
@@ -223,7 +223,6 @@ void Stability::runFrame(const FailureSequence& sequence, const FrameScene& now,
     const auto truths = truthsOf(sequence, now, view);
     if (options_.onlyTruths) return;
     pictures_.addFrame(view);
-
     renderFrame(sequence, now, before, frameToJudge(sequence, now, before), truths);
 }
 
