@@ -24,8 +24,8 @@ struct Arguments {
     bool onlyReport = false, skipsReport = false;
 };
 
-// Truths of a scene cost what its catalogue's twenty cost together: a quarter of the pixels, half of the
-// frames, which the ghost index (14 frames) still has something to judge by in.
+// A frame of a real scene costs several times one of the catalogue's (rays, suns' shadow maps, paths): a
+// quarter of the pixels and half of the frames, of which the ghost index, from 14 on, can still tell.
 constexpr const char *kSize = "320x180", *kSceneSize = "160x90";
 constexpr int kFrames = 32, kSceneFrames = 16, kQuickFrames = 8;
 
