@@ -78,6 +78,7 @@ TEST_CASE("a scene's movements are the same every time and begin the same, howev
         CHECK(a.frames[0].reset);
         CHECK(a.truthSamples == makeMovement(scene, name, kSmall).truthSamples);
         CHECK(a.truthSamples >= 16);
+        CHECK(a.truthSharesPoints == (std::string(name) != "light_sweep_slow"));
         for (std::size_t f = 0; f < a.frames.size(); ++f)
             CHECK(hashFrame(a.frames[f]) == hashFrame(b.frames[f]));
         CHECK(hashFrame(a.frames[0]) != hashFrame(a.frames[1]));
