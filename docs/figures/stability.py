@@ -137,6 +137,8 @@ def technique_text(data, technique):
     """What the figures say about one technique."""
     sentences = []
     for index in INDICES:
+        if all(r["indices"][index] is None for r in data["results"] if r["technique"] == technique):
+            continue
         some = trusted(data, technique, index)
         if not some:
             sentences.append(f"{index.capitalize()}: no sequence has a figure that stands out of the truth's noise.")
