@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 """Writes the measured part of docs/stability.md, and its pictures, from what `lightwell stability` measured.
 
-    docs/figures/stability.py [--results build/stability] [--lightwell build/release/bin/lightwell] [stability options ...]
+    docs/figures/stability.py [--results build/stability] [--scene-results build/stability_scenes]
+                              [--lightwell build/release/bin/lightwell] [stability options ...]
 
-Measures first where --results holds no stability.json, with the options that follow (such as --techniques rsm rival); an hour
-or two where truths are not cached yet.
+--results is of the catalogue, --scene-results of real scenes, which LIGHTWELL_SCENES must hold. Measures first where either holds
+no stability.json, with the options that follow (such as --techniques rsm rival); an hour or two each where truths are not cached
+yet.
 """
 import argparse
 import json
@@ -20,23 +22,47 @@ INDICES = ["flicker", "ghost", "leak", "drift", "spike"]
 NOTICED = {"flicker": 0.05, "ghost": 1.0, "leak": 0.01, "drift": 0.1, "spike": 0.25}
 FLOOR_SHARE = 0.25  # of a figure; with a larger floor it is put in brackets
 PICTURES = ["thin_walls", "opening_door", "camera_pan"]
+SCENES = ["cornell", "basic", "rooms", "sibenik", "sponza_dabrovic", "sponza_crytek", "living_room", "wooden_staircase"]
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--lightwell", default=str(ROOT / "build/release/bin/lightwell"))
     parser.add_argument("--results", default=str(ROOT / "build/stability"))
+    parser.add_argument("--scene-results", default=str(ROOT / "build/stability_scenes"))
     options, more = parser.parse_known_args()
     folder = pathlib.Path(options.results)
-    if not (folder / "stability.json").exists():
-        if subprocess.run([options.lightwell, "stability", "--out", str(folder), *more], check=False).returncode != 0:
-            sys.exit("lightwell stability failed")
-    data = json.loads((folder / "stability.json").read_text(encoding="utf-8"))
+    data = obtain(options.lightwell, folder, more)
+    scenes = obtain(options.lightwell, pathlib.Path(options.scene_results), ["--scenes", *SCENES, *more])
     page = ROOT / "docs/stability.md"
     before, rest = page.read_text(encoding="utf-8").split(BEGIN)
-    text = "\n".join(measured(data, folder))
+    text = "\n".join(measured(data, folder) + of_scenes(scenes))
     page.write_text(before + BEGIN + "\n" + text + "\n" + END + rest.split(END)[1], encoding="utf-8")
     print(page)
+
+
+def obtain(lightwell, folder, options):
+    """What the folder holds; measured where it holds nothing."""
+    if not (folder / "stability.json").exists():
+        if subprocess.run([lightwell, "stability", "--out", str(folder), *options], check=False).returncode != 0:
+            sys.exit("lightwell stability failed")
+    return json.loads((folder / "stability.json").read_text(encoding="utf-8"))
+
+
+def of_scenes(data):
+    """The part on real scenes, in the order of SCENES."""
+    movements = list(dict.fromkeys(s["id"].split(".")[1] for s in data["sequences"]))
+    order = [f"{scene}.{movement}" for scene in SCENES for movement in movements]
+    data["sequences"] = sorted((s for s in data["sequences"] if s["id"] in order), key=lambda s: order.index(s["id"]))
+    lines = ["### Real scenes", "", *conditions(data), "", *table(data), ""]
+    for technique in techniques(data):
+        lines += technique_text(data, technique) + [""]
+    return lines + samples_text(data)
+
+
+def samples_text(data):
+    samples = {s["id"].split(".")[0]: s["samples"] for s in data["sequences"]}
+    return ["Paths per pixel of the truths: " + ", ".join(f"`{scene}` {count}" for scene, count in samples.items()) + ".", ""]
 
 
 def measured(data, folder):
@@ -111,6 +137,8 @@ def technique_text(data, technique):
     """What the figures say about one technique."""
     sentences = []
     for index in INDICES:
+        if all(r["indices"][index] is None for r in data["results"] if r["technique"] == technique):
+            continue
         some = trusted(data, technique, index)
         if not some:
             sentences.append(f"{index.capitalize()}: no sequence has a figure that stands out of the truth's noise.")

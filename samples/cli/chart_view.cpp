@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <stdexcept>
 
 #include "film.h"
 #include "layers.h"
@@ -27,8 +28,11 @@ void requireScenes(const std::vector<std::string>& scenes) {
     std::map<std::string, std::string> byName;
     for (const std::string& scene : scenes) {
         const bool isName = std::find(known.begin(), known.end(), scene) != known.end();
-        if (!isName && !std::filesystem::exists(scene))
-            asUsage([&] { studio::loadScene(scene); });  // says what it expected
+        if (!isName && !std::filesystem::exists(scene)) try {
+                studio::loadScene(scene);  // says what it expected
+            } catch (const std::runtime_error& error) {
+                throw UsageError(fmt::format("--scenes '{}': {}", scene, error.what()));
+            }
         const std::string name = isName ? scene : std::filesystem::path(scene).stem().string();
         const std::string& first = byName.emplace(name, scene).first->second;
         if (first != scene)

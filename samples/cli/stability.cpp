@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -17,17 +18,16 @@ namespace {
 
 struct Arguments {
     StabilityOptions stability;
+    std::vector<std::string> scenes, sequences;
     std::string size, compare;
     int frames = 0;
     bool onlyReport = false, skipsReport = false;
 };
 
-std::vector<std::string> sequenceNames(bool quickOnly) {
-    std::vector<std::string> names;
-    for (const studio::SequenceEntry& entry : studio::sequenceCatalogue())
-        if (entry.quick || !quickOnly) names.push_back(entry.name);
-    return names;
-}
+// A frame of a real scene costs several times one of the catalogue's (rays, suns' shadow maps, paths): a
+// quarter of the pixels and half of the frames, of which the ghost index, from 14 on, can still tell.
+constexpr const char *kSize = "320x180", *kSceneSize = "160x90";
+constexpr int kFrames = 32, kSceneFrames = 16, kQuickFrames = 8;
 
 // More would overflow the number of paths long after the time of anybody who waits for them.
 void requireEffort(double effort) {
@@ -50,18 +50,19 @@ void complete(Arguments& arguments) {
     if (options.techniques.empty()) options.techniques = techniqueNames();
     for (const std::string& technique : options.techniques)
         requireOneOf("technique", technique, techniqueNames());
-    if (options.sequences.empty()) options.sequences = sequenceNames(options.quick);
-    for (const std::string& sequence : options.sequences)
-        requireOneOf("sequence", sequence, sequenceNames(false));
+    options.sequences = chooseSequences(arguments.scenes, arguments.sequences, options.quick);
+    const bool hasScene = std::any_of(options.sequences.begin(), options.sequences.end(),
+                                      [](const SequenceChoice& c) { return !c.scene.empty(); });
     requireEffort(options.truthEffort);
     if (options.deviceWidth != 0)
         requireOneOf("--width", std::to_string(options.deviceWidth), {"1", "4", "8", "16"});
-    const Size size = parseSize(!arguments.size.empty() ? arguments.size
-                                : options.quick         ? "160x90"
-                                                        : "320x180");
+    const Size size = parseSize(!arguments.size.empty()     ? arguments.size
+                                : hasScene || options.quick ? kSceneSize
+                                                            : kSize);
     options.size = {arguments.frames != 0 ? arguments.frames
-                    : options.quick       ? 8
-                                          : 32,
+                    : options.quick       ? kQuickFrames
+                    : hasScene            ? kSceneFrames
+                                          : kFrames,
                     size.width, size.height};
     requireMemoryFor(options);
 }
@@ -108,7 +109,8 @@ void stability(Arguments& arguments) {
 
 void addStability(CLI::App& app) {
     CLI::App* command = app.add_subcommand(
-        "stability", "The catalogue of failures: how techniques behave from frame to frame");
+        "stability",
+        "The catalogue of failures, or movements of scenes: how techniques behave from frame to frame");
     auto arguments = std::make_shared<Arguments>();
     StabilityOptions& options = arguments->stability;
     command
@@ -116,12 +118,21 @@ void addStability(CLI::App& app) {
                      "Folder (made when missing) of stability.json and the worst frames' pictures")
         ->required();
     command->add_option("--techniques", options.techniques, "Techniques by name; default: all");
-    command->add_option("--sequences", options.sequences, "Sequences by name; default: the catalogue");
+    command->add_option("--scenes", arguments->scenes,
+                        "Scenes by name or path: instead of the catalogue their first cameras and "
+                        "lights, moved");
+    command->add_option("--sequences", arguments->sequences,
+                        "Sequences by name, or SCENE.MOVEMENT; with --scenes movements of these; "
+                        "default: the catalogue, or all movements");
     command->add_flag("--quick", options.quick,
-                      "About a minute: 8 frames of 160x90, the sequences that say most");
-    command->add_option("--frames", arguments->frames, "Frames of each sequence; default: 32")
+                      "8 frames of 160x90; of the catalogue, about a minute, the sequences that say "
+                      "most");
+    command
+        ->add_option("--frames", arguments->frames,
+                     "Frames of each sequence; default: 32, with scenes 16")
         ->check(CLI::Range(2, 10000));
-    command->add_option("--size", arguments->size, "Picture size, WIDTHxHEIGHT; default: 320x180");
+    command->add_option("--size", arguments->size,
+                        "Picture size, WIDTHxHEIGHT; default: 320x180, with scenes 160x90");
     CLI::Option* compare = command->add_option(
         "--compare", arguments->compare,
         "stability.json of an earlier run: says what is worse beyond the noise of both; exit "

@@ -149,9 +149,12 @@ Json describeSequence(const studio::FailureSequence& sequence, int samples) {
 }
 
 std::string stabilityTable(const Json& results) {
-    constexpr const char* kRow = "{:19} {:7} {:>16} {:>16} {:>16} {:>16} {:>16} {:>18} {:>7}\n";
-    std::string table = fmt::format(fmt::runtime(kRow), "failure", "by", "flicker", "ghost", "leak",
-                                    "drift", "spike", "relMSE", "bias");
+    constexpr const char* kRow = "{:{}} {:7} {:>16} {:>16} {:>16} {:>16} {:>16} {:>18} {:>7}\n";
+    std::size_t width = 19;  // of the first column; scenes' sequences have long names
+    for (const Json& sequence : results.at("sequences"))
+        width = std::max(width, sequence.at("id").get<std::string>().size());
+    std::string table = fmt::format(fmt::runtime(kRow), "failure", width, "by", "flicker", "ghost",
+                                    "leak", "drift", "spike", "relMSE", "bias");
     for (const Json& sequence : results.at("sequences"))
         for (const Json& result : results.at("results")) {
             if (result.at("sequence") != sequence.at("id")) continue;
@@ -160,7 +163,7 @@ std::string stabilityTable(const Json& results) {
             const auto index = [&](const char* name) { return cell(indices, floors, name, "{:.3g}"); };
             std::string bias = cell(errors, Json::object(), "bias", "{:+.3f}");
             if (result.at("passes") == false) bias += "  FAILS: light or NaN where there must be none";
-            table += fmt::format(fmt::runtime(kRow), sequence.at("id").get<std::string>(),
+            table += fmt::format(fmt::runtime(kRow), sequence.at("id").get<std::string>(), width,
                                  result.at("technique").get<std::string>(), index("flicker"),
                                  index("ghost"), index("leak"), index("drift"), index("spike"),
                                  cell(errors, result.at("error_floors"), "relMSE", "{:.3g}"), bias);

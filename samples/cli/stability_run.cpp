@@ -96,10 +96,8 @@ Stability::Stability(const StabilityOptions& options)
     : options_(options),
       results_((std::filesystem::path(options.folder) / "stability.json").string()),
       truths_(asUsage([&] { return SequenceTruths(options.truthDirectory); })) {
-    for (const std::string& name : options.sequences) {
-        sequences_.push_back(asUsage([&] { return studio::makeSequence(name, options.size); }));
-        all_ += costOf(sequences_.back(), samplesOf(sequences_.back()));
-    }
+    sequences_ = makeSequences(options.sequences, options.size);
+    for (const FailureSequence& sequence : sequences_) all_ += costOf(sequence, samplesOf(sequence));
     bool needsDevice = false;
     for (const std::string& technique : options.techniques) {
         runners_.emplace_back(technique);
@@ -154,9 +152,11 @@ std::string Stability::keyOf(const FailureSequence& sequence, const Runner& runn
                     sequence.name, samplesOf(sequence), runner.bounces);
     for (const auto& [name, value] : runner.parameters.resolved())
         text += fmt::format(" {}={}", name, valueText(value));
+    const auto place = [](const glm::vec3& v) { return fmt::format(" {} {} {}", v.x, v.y, v.z); };
     for (const SequenceFrame& frame : sequence.frames)
-        text += fmt::format(" {}x{} {} {} {}", frame.width, frame.height, frame.camera.position.x,
-                            frame.camera.target.x, frame.value);
+        text += fmt::format(" {}x{} {} {}", frame.width, frame.height, frame.camera.verticalFov,
+                            frame.value) +
+                place(frame.camera.position) + place(frame.camera.target) + place(frame.camera.up);
     // The code is in the build's identity; files of shipped scenes are not.
     const SequenceFrame& middle = sequence.frames[sequence.frames.size() / 2];
     text += fmt::format(" {:016x}", studio::hashScene(studio::RayScene(middle.scene, middle.time)));
@@ -199,18 +199,18 @@ void Stability::runSequence(const FailureSequence& sequence) {
 Truths Stability::truthsOf(const FailureSequence& sequence, const FrameScene& now,
                            const studio::GBuffer& view) {
     Truths truths;
-    for (const Runner* runner : due_) {
-        std::shared_ptr<const FrameTruth>& truth = truths[runner->bounces];
-        if (truth != nullptr) continue;
+    for (const Runner* runner : due_) truths[runner->bounces] = nullptr;
+    for (auto each = truths.rbegin(); each != truths.rend(); ++each) {
         SequenceTruths::Request request;
-        request.bounces = runner->bounces;
+        request.bounces = each->first;
+        request.keepsFirstBounce = each->first == 2 && truths.count(1) != 0;
         request.samples = samplesOf(sequence);
         request.sharesPoints = sequence.truthSharesPoints;
         request.guide = guide_ ? guide_->points.get() : nullptr;
         request.progress = [&](double fraction) { report(fraction); };
-        truth = sequence.truth == studio::SequenceTruth::Dark
-                    ? darkTruth(now.frame.width, now.frame.height)
-                    : truths_.obtain(*now.scene, view, request);
+        each->second = sequence.truth == studio::SequenceTruth::Dark
+                           ? darkTruth(now.frame.width, now.frame.height)
+                           : truths_.obtain(*now.scene, view, request);
     }
     return truths;
 }
@@ -223,7 +223,6 @@ void Stability::runFrame(const FailureSequence& sequence, const FrameScene& now,
     const auto truths = truthsOf(sequence, now, view);
     if (options_.onlyTruths) return;
     pictures_.addFrame(view);
-
     renderFrame(sequence, now, before, frameToJudge(sequence, now, before), truths);
 }
 

@@ -1,12 +1,13 @@
-// `lightwell stability`: drives every technique through the catalogue of failures and keeps
-// stability.json.
+// `lightwell stability`: drives every technique through the catalogue of failures, or through movements
+// of scenes, and keeps stability.json.
 //
 // stability.json (one JSON object; numbers are null where a sequence has nothing to judge by):
 //
 //   format      "lightwell-stability 1"
 //   header      written, size [w, h], frames, quick, build, versions, techniques,
 //               device {name, platform, driver, opencl, compute_units, width} or null
-//   sequences   list of {id, failure, frames, size, scale, sweeps, truth ("traced" or "dark"), samples,
+//   sequences   list of {id ("<scene>.<movement>" of a scene's), failure, frames, size, scale, sweeps,
+//   truth ("traced" or "dark"), samples,
 //               values [per frame, what the sequence sweeps], sizes [[w, h] per frame], cuts [frames]}
 //   results     list of {
 //       id            "<technique>/<sequence>"
@@ -38,11 +39,13 @@
 #include <vector>
 
 #include "sequence.h"
+#include "stability_choice.h"
 
 namespace cli {
 
 struct StabilityOptions {
-    std::vector<std::string> techniques, sequences;
+    std::vector<std::string> techniques;
+    std::vector<SequenceChoice> sequences;
     std::string folder, device, truthDirectory;
     studio::SequenceSize size;
     int deviceWidth = 0;       // lanes per work-item; 0: by probe

@@ -38,7 +38,6 @@ std::vector<float> planesOf(const studio::Image& image, const std::string& prefi
     return planes;
 }
 
-// Layers "a." and "b.": the two references, and "validity".
 studio::Image trace(const studio::RayScene& scene, const studio::GBuffer& view,
                     const SequenceTruths::Request& request) {
     studio::PathTracerOptions options;
@@ -48,17 +47,18 @@ studio::Image trace(const studio::RayScene& scene, const studio::GBuffer& view,
     options.guide = request.guide;
     if (request.progress)
         options.progress = [&](double fraction, double) { request.progress(fraction); };
-    const studio::Image traced = studio::tracePaths(scene, view, options);
-    const std::vector<std::string> layers =
-        request.bounces == 0
-            ? std::vector<std::string>{"all"}
-            : std::vector<std::string>{"bounce1", "bounce2"};  // the second is 0 where not asked for
+    return studio::tracePaths(scene, view, options);
+}
+
+// Layers "a." and "b.": the two references of so many bounces, and "validity".
+studio::Image referencesOf(const studio::Image& traced, int bounces) {
+    std::vector<std::string> layers = {bounces == 0 ? "all" : "bounce1"};
+    if (bounces == 2) layers.push_back("bounce2");
     studio::Image image(traced.width, traced.height);
     for (const std::string half : {"a.", "b."})
         for (const char* channel : {"R", "G", "B"}) {
             std::vector<float>& sum = image.plane(half + channel);
             for (const std::string& layer : layers) {
-                if (layer == "bounce2" && request.bounces == 1) continue;
                 const std::vector<float>& values = traced.plane(half + layer + "." + channel);
                 for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += values[i];
             }
@@ -122,9 +122,16 @@ std::shared_ptr<const FrameTruth> SequenceTruths::obtain(const studio::RayScene&
     if (fs::exists(path)) {
         truth = readKept(path, name, request.samples);
     } else {
-        const studio::Image image = trace(scene, view, request);
+        const studio::Image traced = trace(scene, view, request);
+        const studio::Image image = referencesOf(traced, request.bounces);
         save(path, image);
         ++traced_;
+        if (request.keepsFirstBounce) {
+            Request first = request;
+            first.bounces = 1;
+            const fs::path also = fs::path(directory_) / (fileName(scene, view, first) + ".exr");
+            if (!fs::exists(also)) save(also.string(), referencesOf(traced, 1));
+        }
         truth = fromImage(image, name, request.samples);
     }
     if (recent_.size() >= kRecentMost) recent_.clear();

@@ -34,6 +34,9 @@ public:
 
     struct Request {
         int bounces = 1;  // 0: all
+        // Of two bounces: the paths' first alone is a truth of one, the same to the bit as if it were
+        // traced alone; it is kept too.
+        bool keepsFirstBounce = false;
         int samples = 64;
         const studio::LitPoints* guide = nullptr;  // one for the whole sequence
         bool sharesPoints = true;                  // FailureSequence::truthSharesPoints

@@ -1,5 +1,6 @@
 // The catalogue. What moves in each sequence is in sequence_views.cpp and sequence_lights.cpp, the
-// scenes that no shipped one gives in sequence_scenes.cpp, the way from one frame to the next in
+// scenes that no shipped one gives in sequence_scenes.cpp, the movements of any other scene in
+// sequence_movements.cpp, the way from one frame to the next in
 // sequence_motion.cpp.
 #include "sequence.h"
 
@@ -47,11 +48,15 @@ const std::vector<SequenceEntry>& sequenceCatalogue() {
     return kEntries;
 }
 
-FailureSequence makeSequence(const std::string& name, const SequenceSize& size) {
+void requireSequenceSize(const SequenceSize& size) {
     if (size.frames < 2 || size.width < 1 || size.height < 1)
         throw std::invalid_argument(fmt::format(
             "sequence size: expected 2 frames or more of 1x1 pixels or more, got {} of {}x{}",
             size.frames, size.width, size.height));
+}
+
+FailureSequence makeSequence(const std::string& name, const SequenceSize& size) {
+    requireSequenceSize(size);
     std::vector<std::string> names;
     for (const SequenceMaker& maker : sequenceMakers()) {
         if (maker.entry.name == name) {

@@ -67,6 +67,13 @@ const std::vector<SequenceEntry>& sequenceCatalogue();
 // Throws std::invalid_argument naming the valid names, or the size that cannot be.
 FailureSequence makeSequence(const std::string& name, const SequenceSize& size);
 
+// The movements that any scene can be put through (sequence_movements.cpp), by its first camera and its
+// lights: camera_pan, camera_dolly, light_sweep_slow.
+const std::vector<SequenceEntry>& sceneMovements();
+// Named "<scene's name>.<movement>". Throws std::invalid_argument naming the valid movements, the size
+// that cannot be, or what the scene lacks: a light, surfaces in view, room to move.
+FailureSequence makeMovement(const Scene& scene, const std::string& movement, const SequenceSize& size);
+
 // What each pixel of a frame shows, to follow it to the next one.
 struct SeenFrame {
     int width = 0, height = 0;

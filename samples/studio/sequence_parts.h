@@ -34,6 +34,21 @@ FailureSequence makeSphericalRoom(const SequenceSize& size);
 FailureSequence makeOpeningDoor(const SequenceSize& size);
 FailureSequence makeBlockedLight(const SequenceSize& size);
 
+// sequence_probe.cpp
+// Median depth of the middle fifth of the picture, along rays: a post in the very middle says little.
+// Where nothing is seen there, the scene's diagonal.
+float middleDepth(const RayScene& scene, const Camera& camera);
+// How far a ball of this radius gets, its margin less beside a wall; at most the scene's diagonal where
+// nothing is in the way.
+float freeWay(const RayScene& scene, const glm::vec3& from, const glm::vec3& direction, float radius);
+// From a spot along its axis, from a point light the median of six directions.
+float litDistance(const RayScene& scene, const Light& light);
+// Paths per pixel, a power of two, that bring the first frame's truth of one bounce to this relMSE: by a
+// pilot of 16. Throws std::invalid_argument when the first camera sees nothing.
+int samplesFor(const std::shared_ptr<const Scene>& scene, const SequenceSize& size, double noise);
+
+void requireSequenceSize(const SequenceSize& size);  // throws std::invalid_argument
+
 // Frame f of a scene at time f, the scene's keys being one per frame.
 SequenceFrame& addFrame(FailureSequence& sequence, const SequenceSize& size,
                         std::shared_ptr<const Scene> scene, const Camera& camera);

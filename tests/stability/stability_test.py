@@ -26,6 +26,7 @@ BOUNDS = {
     "rival/thin_walls": {"leak": 0.004},
 }
 LEAST_LEAK = 0.05  # rsm has no visibility: a thin wall that stops its light would be the catalogue's own fault
+MOVEMENTS = ["camera_pan", "camera_dolly", "light_sweep_slow"]  # of any scene
 INDICES = {"error", "flicker", "ghost", "leak", "drift", "spike"}
 RESULT_KEYS = {"id", "key", "technique", "sequence", "settings", "parameters", "bounces", "device", "build", "load_average",
                "indices", "floors", "errors", "error_floors", "not_finite", "largest", "is_dark_truth", "passes", "worst_frame",
@@ -168,6 +169,54 @@ class Stability(unittest.TestCase):
             errors = [frame["relMSE"] for frame in result["frames"]]
             self.assertEqual(errors[2], errors[6])  # the same picture before and after a smaller one
             self.assertNotEqual(errors[2], errors[4])
+
+    def test_scenes_are_moved_through(self):
+        folder = os.path.join(self.temporary.name, "scenes")
+        cheap = ("--no-report", "--size", "32x18", "--frames", "3", "--truth-effort", "0.1", "--techniques", "rsm", "rival")
+        output, _ = self.run_again("--scenes", "cornell", "basic", *cheap, folder=folder)
+        with open(os.path.join(folder, "stability.json"), encoding="utf-8") as file:
+            data = json.load(file)
+        names = [f"{scene}.{movement}" for scene in ("cornell", "basic") for movement in MOVEMENTS]
+        self.assertEqual([s["id"] for s in data["sequences"]], names)
+        self.assertEqual({r["id"] for r in data["results"]}, {f"{t}/{name}" for t in ("rsm", "rival") for name in names})
+        for sequence in data["sequences"]:
+            self.assertIn(sequence["id"], output)
+            steps = [b - a for a, b in zip(sequence["values"], sequence["values"][1:])]
+            self.assertGreater(min(steps), 0.0)
+            self.assertAlmostEqual(steps[0], steps[1], places=6)
+        for result in data["results"]:
+            self.assertTrue(result["passes"])
+            self.assertIsNotNone(result["indices"]["flicker"])
+
+        # One of them by its name, and some of a scene's: what is known already is not measured again.
+        picture = os.path.join(folder, "images", "rsm_basic.camera_pan_picture.png")
+        before = os.stat(picture).st_mtime_ns
+        self.run_again("--sequences", "basic.camera_pan", *cheap, folder=folder)
+        self.run_again("--scenes", "basic", "--sequences", "camera_pan", *cheap, folder=folder)
+        self.assertEqual(before, os.stat(picture).st_mtime_ns)
+        # The catalogue's sequences go into the same file.
+        self.run_again("--sequences", "no_light", "rooms.camera_dolly", *cheap, folder=folder)
+        with open(os.path.join(folder, "stability.json"), encoding="utf-8") as file:
+            self.assertEqual([s["id"] for s in json.load(file)["sequences"]], [*names, "no_light", "rooms.camera_dolly"])
+
+    def test_wrong_scenes_are_named(self):
+        path = os.path.join(self.temporary.name, "dark.json")
+        with open(path, "w", encoding="utf-8") as file:
+            json.dump({"meshes": [{"box": {"lower": [0, 0, 0], "upper": [1, 1, 1]}}], "lights": []}, file)
+        for arguments, named in [(("--scenes", "nowhere"), ("--scenes 'nowhere'", "cornell")),
+                                 (("--scenes", "furnace"), ("--scenes 'furnace'", "light")),
+                                 (("--scenes", path), (f"--scenes '{path}'", "light")),
+                                 (("--scenes", self.temporary.name), ("--scenes", "expected a path")),
+                                 (("--scenes", "basic", "--sequences", "thin_walls"), ("--sequences 'thin_walls'", "camera_dolly")),
+                                 (("--sequences", "furnace.camera_pan"), ("--sequences 'furnace.camera_pan'", "light")),
+                                 (("--sequences", "basic.thin_walls"), ("basic.thin_walls", "SCENE.MOVEMENT")),
+                                 (("--sequences", "nowhere.camera_pan"), ("nowhere.camera_pan", "SCENE.MOVEMENT"))]:
+            with self.subTest(arguments=arguments):
+                folder = os.path.join(self.temporary.name, "wrong")
+                _, errors = self.run_again(*arguments, "--quick", "--no-report", code=2, folder=folder)
+                for text in named:
+                    self.assertIn(text, errors)
+                self.assertEqual(errors.count("\n"), 1)
 
     def test_wrong_arguments_are_named(self):
         _, errors = self.run_again("--sequences", "pan", code=2)
