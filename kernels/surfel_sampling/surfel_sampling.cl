@@ -1,14 +1,15 @@
-// Triangles as surfels, drawn by area. Sample i takes a point of the additive recurrence of three dimensions (Roberts 2018):
-// the first coordinate chooses the triangle, the others the place on it. Whole numbers make it exact, so that the same
-// triangles always give the same surfels, and neighbours in the sequence lie far apart.
+// Triangles as surfels, drawn by area. Multiples of the golden ratio, modulo one, choose sample i's triangle, and the additive
+// recurrence of two dimensions (Roberts 2018) its place there. (The recurrence of three dimensions for both puts the samples
+// of a triangle with a small share of the area on few lines.) Whole numbers make it exact: the same triangles always give the
+// same surfels, and neighbours in the sequence lie far apart.
 #include "shared/geometry_types.h"
 #include "shared/paraboloid_box.h"
 #include "shared/surfel_types.h"
 
-// 2^32 over powers of the root of x^4 = x + 1, odd.
-#define LW_STEP_AREA 0xd1b54a33u
-#define LW_STEP_S 0xabc98389u
-#define LW_STEP_T 0x8cb92ba7u
+// 2^32 over the golden ratio; over the root of x^3 = x + 1 and its square; odd.
+#define LW_STEP_AREA 0x9e3779b1u
+#define LW_STEP_S 0xc13fa9a9u
+#define LW_STEP_T 0x91e10da5u
 
 LW_FN lw_direction corner_of(__global const float* triangles, int stride, int plane, lanei t) {
     const lw_direction v = {gather(triangles + plane * stride, t), gather(triangles + (plane + 1) * stride, t),

@@ -19,10 +19,10 @@
 // LW_WIDTH at once.
 #define LW_FEW_TEXELS 16
 
-// Radius over that of a disc of the surfel's area. Discs of equal areas side by side leave gaps; a circle about a square has
-// 1.25 times the radius of the circle of its area. Raised, discs reach farther over the edges of what they stand for (false
-// shadow); lowered, more is seen through them.
-#define LW_SURFEL_OVERLAP 1.25f
+// Radius over that of a disc of the surfel's area. Discs of equal areas side by side leave gaps; the circle about a square
+// has sqrt(pi / 2) times the radius of the circle of its area. Raised, discs reach farther over the edges of what they stand
+// for (false shadow); lowered, more is seen through them.
+#define LW_SURFEL_OVERLAP 1.26f
 
 // Least radius as seen from the map, in texels: a far surfel smaller than that would fall between the texels' centres, and
 // what lies behind it would be seen. 0.71: a disc that faces the map holds a centre wherever it lies.
