@@ -104,24 +104,31 @@ TEST_CASE("surfels lie on their triangles, their areas are the mesh's, their den
     CHECK(covered == Approx(area).epsilon(1e-5));
     for (std::size_t n = 0; n < triangles.size(); ++n) {
         CAPTURE(n, taken[n], inner[n]);
-        CHECK(isFair(taken[n], areaOf(triangles[n]) / area));
+        CHECK(std::abs(taken[n] - kCount * areaOf(triangles[n]) / area) < 1.01);  // systematic
         CHECK(isFair(inner[n], 0.25 * areaOf(triangles[n]) / area));
     }
 }
 
-TEST_CASE("any run of the samples is spread over the mesh", "[surfel_sampling]") {
+// Where triangles hold several surfels each. With about one for each, the curve that orders them decides: less than the
+// tenth that discs at independent places would leave.
+TEST_CASE("discs half as large again as their share leave next to nothing of a wall open", "[surfel_sampling]") {
     SamplingRig rig(16);
     Mesh mesh;
-    mesh.addQuad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 8, 8);
-    const Sampled s = rig.sampled(mesh, 4096);
-    for (std::size_t first = 0; first < 4096; first += 512) {
-        std::vector<int> cells(16);
-        for (std::size_t i = first; i < first + 512; ++i) {
-            const Vec p = s.at(i, LW_SURFEL_POSITION);
-            ++cells[std::size_t(std::min(p.x, 0.999) * 4.0) * 4 + std::size_t(std::min(p.y, 0.999) * 4.0)];
+    const int cells = GENERATE(1, 5, 40);
+    mesh.addQuad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, cells, cells);
+    const std::uint32_t count = GENERATE(1000u, 2917u);
+    const Sampled s = rig.sampled(mesh, count);
+    constexpr int kProbes = 60;  // a side, a little off the border
+    int open = 0;
+    for (int v = 0; v < kProbes; ++v)
+        for (int u = 0; u < kProbes; ++u) {
+            const Vec at{0.05 + 0.9 * u / kProbes, 0.05 + 0.9 * v / kProbes, 0.0};
+            double nearest = 1e9;
+            for (std::uint32_t i = 0; i < count; ++i) nearest = std::min(nearest, reference::length(s.at(i, LW_SURFEL_POSITION) - at));
+            if (nearest > 1.5 * s.radius(0)) ++open;
         }
-        for (const int n : cells) CHECK(std::abs(n - 32) <= 4.0 * std::sqrt(32.0));
-    }
+    CAPTURE(cells, count, open);
+    CHECK(open <= kProbes * kProbes / (cells == 40 ? 10 : 100));
 }
 
 TEST_CASE("the same triangles, in whatever order, at whatever width: the same surfels, drawn once", "[surfel_sampling]") {
