@@ -1,14 +1,14 @@
-// Triangles as surfels, drawn by area. Sample i takes a point of the additive recurrence of three dimensions (Roberts 2018):
-// the first coordinate chooses the triangle, the others the place on it. Whole numbers make it exact, so that the same
-// triangles always give the same surfels, and neighbours in the sequence lie far apart.
+// Triangles as surfels, drawn by area: systematically along the triangles' order, which keeps neighbours together, and on a
+// triangle by the additive recurrence of two dimensions (Roberts 2018). Both leave fewer and smaller gaps between the discs
+// than independent places would: of the latter, discs that together cover a wall twice leave 13 % of it open. Whole numbers
+// make it exact: the same triangles always give the same surfels.
 #include "shared/geometry_types.h"
 #include "shared/paraboloid_box.h"
 #include "shared/surfel_types.h"
 
-// 2^32 over powers of the root of x^4 = x + 1, odd.
-#define LW_STEP_AREA 0xd1b54a33u
-#define LW_STEP_S 0xabc98389u
-#define LW_STEP_T 0x8cb92ba7u
+// 2^32 over the root of x^3 = x + 1 and over its square; odd.
+#define LW_STEP_S 0xc13fa9a9u
+#define LW_STEP_T 0x91e10da5u
 
 LW_FN lw_direction corner_of(__global const float* triangles, int stride, int plane, lanei t) {
     const lw_direction v = {gather(triangles + plane * stride, t), gather(triangles + (plane + 1) * stride, t),
@@ -20,15 +20,17 @@ LW_FN lw_direction corner_of(__global const float* triangles, int stride, int pl
 LW_FN real unit_of(laneu bits) { return to_real(bits >> 8) * (1.0f / 16777216.0f); }
 
 // One work-item = LW_WIDTH surfels. `shares`: for each triangle the share of the area up to and with it, of 2^32, the last
-// one's all of it; `steps`: halvings that find one among them. Every surfel stands for a disc of `radius`.
+// one's all of it; `steps`: halvings that find one among them. Surfel i lies at share (i + 1/2) 2^32 / count, where 2^32 / count
+// is `spacing` 2^(shift - 31). Every surfel stands for a disc of `radius`.
 __kernel void surfel_sampling_draw(__global const float* triangles, int triangleStride, __global const int* shares,
-                                   int triangleCount, int steps, float radius, int count, __global float* surfels, int stride) {
+                                   int triangleCount, int steps, uint spacing, int shift, float radius, int count,
+                                   __global float* surfels, int stride) {
     const int first = (int)get_global_id(0) * LW_WIDTH;
     if (first >= stride) return;
     const lanei index = lanei_iota() + first;
     const laneu i = to_laneu(index);
     // The first triangle whose share exceeds the sample's.
-    const laneu wanted = i * LW_STEP_AREA;
+    const laneu wanted = (mul_hi(i << (uint)shift, (laneu)(spacing)) << 1) + 0x80000000u / (uint)count;
     lanei low = 0, high = triangleCount - 1;
     for (int step = 0; step < steps; ++step) {
         const lanei middle = (low + high) / 2;
@@ -37,8 +39,11 @@ __kernel void surfel_sampling_draw(__global const float* triangles, int triangle
         high = selecti_(middle, high, beyond);
     }
     const lanei t = low;
+    // Its number among the triangle's own.
+    const laneu before = selectu_(as_laneu_(gatheri(shares, max(t - 1, (lanei)(0)))), (laneu)(0u), t == 0);
+    const laneu j = i - mul_hi(before, (laneu)((uint)count));
     // A parallelogram's point, folded over its diagonal: as even as on the square.
-    const real p = unit_of(i * LW_STEP_S), q = unit_of(i * LW_STEP_T);
+    const real p = unit_of(j * LW_STEP_S + 0x80000000u), q = unit_of(j * LW_STEP_T + 0x80000000u);
     const mask folded = p + q > 1.0f;
     const real s = select_(p, 1.0f - p, folded), r = select_(q, 1.0f - q, folded);
     const lw_direction a = corner_of(triangles, triangleStride, LW_TRIANGLE_A, t);

@@ -23,11 +23,14 @@ void SurfelSampling::record(Executor& executor, const GeometryInput& geometry, s
         executor.writeCopy("surfel_sampling.upload", shares_, 0, bytes, geometry.areaShares.data());
         int steps = 0;
         while ((std::uint64_t(1) << steps) < geometry.triangleCount) ++steps;
+        int shift = 0;
+        while ((std::uint64_t(count) << (shift + 1)) <= (std::uint64_t(1) << 32)) ++shift;
+        const auto scale = cl_uint((std::uint64_t(1) << 63) / (std::uint64_t(count) << shift));
         const double radius = std::sqrt(geometry.area / (double(count) * 3.14159265358979323846));
         const Planes& planes = memory_.planes();
         executor.run("surfel_sampling.draw", draw_, rowGrid(device, planes.width, 1), rowGroup(device),
                      geometry.triangles.memory, cl_int(geometry.triangles.planeStride), shares_,
-                     cl_int(geometry.triangleCount), cl_int(steps), cl_float(radius), cl_int(count), planes.memory,
+                     cl_int(geometry.triangleCount), cl_int(steps), scale, cl_int(shift), cl_float(radius), cl_int(count), planes.memory,
                      cl_int(planes.planeStride));
     }
     memory_.noteChange();
