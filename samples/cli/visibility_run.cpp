@@ -87,6 +87,14 @@ Json metricsJson(const studio::Metrics& metrics) {
     return {{"relMSE", metrics.relMse}, {"nrmse", metrics.nrmse}, {"bias", metrics.bias}};
 }
 
+// Errors relative to darkness have no meaning.
+bool isBlack(const studio::Image& image) {
+    for (const char* channel : {"R", "G", "B"})
+        for (const float value : image.plane(channel))
+            if (value != 0.0f) return false;
+    return true;
+}
+
 Json pointJson(const Parameters& parameters, const studio::VisibilityVerdict& verdict, std::size_t vpls,
                std::size_t clusters, const studio::Image* truth, const studio::Image& layers) {
     Json point{{"settings", describeDifference(parameters)},
@@ -99,11 +107,12 @@ Json pointJson(const Parameters& parameters, const studio::VisibilityVerdict& ve
     Json misjudged, errors, against;
     studio::Image exact = verdict.irradiance[int(studio::Sight::exact)];
     for (const auto& [name, plane] : layers.channels) exact.channels[name] = plane;
+    const bool isDark = isBlack(exact);
     for (std::size_t way = 0; way < studio::kSightCount; ++way) {
         const char* name = studio::kSightNames[way];
         if (way != std::size_t(studio::Sight::exact)) {
             misjudged[name] = misjudgedJson(verdict.against[way]);
-            against[name] = metricsJson(studio::compareIrradiance(verdict.irradiance[way], exact));
+            if (!isDark) against[name] = metricsJson(studio::compareIrradiance(verdict.irradiance[way], exact));
         }
         if (truth != nullptr) errors[name] = metricsJson(studio::compareIrradiance(verdict.irradiance[way], *truth));
     }
