@@ -7,12 +7,12 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
-def read_options(description, scenes, spp):
+def read_options(description, scenes, spp, size="1280x720"):
     """The options of a script, with `work` as a folder that exists."""
     parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--lightwell", default=str(ROOT / "build/release/bin/lightwell"))
     parser.add_argument("--work", type=pathlib.Path, default=ROOT / "build/figures")
-    parser.add_argument("--size", default="1280x720")
+    parser.add_argument("--size", default=size)
     parser.add_argument("--scenes", nargs="+", default=scenes)
     parser.add_argument("--spp", type=int, default=spp)
     options = parser.parse_args()

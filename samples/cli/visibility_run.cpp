@@ -21,8 +21,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Every pixel its own surface and all VPLs, of the bounce that has visibility: of whichever of these a technique has.
-constexpr std::pair<const char*, const char*> kFixed[] = {{"resolution", "full"}, {"interleave", "1"}, {"bounces", "1"}};
+// Every pixel its own surface and all VPLs, of the bounce that has visibility: of whichever of these a
+// technique has.
+constexpr std::pair<const char*, const char*> kFixed[] = {
+    {"resolution", "full"}, {"interleave", "1"}, {"bounces", "1"}};
 constexpr std::uint32_t kVplChannels = 10, kClusterChannels = 16;
 constexpr double kPixelBytes = 1500.0;
 
@@ -43,13 +45,15 @@ std::vector<studio::ClusteredVpl> readVpls(const IndirectRenderer& renderer) {
     const DebugPlanes planes = requirePlanes(renderer, kVplView, kVplChannels);
     const DebugPlanes clusters = requirePlanes(renderer, kVplClustersView, 1);
     if (clusters.width != planes.width)
-        throw std::runtime_error(
-            fmt::format("debug view {}: expected {} slots, got {}", kVplClustersView, planes.width, clusters.width));
+        throw std::runtime_error(fmt::format("debug view {}: expected {} slots, got {}",
+                                             kVplClustersView, planes.width, clusters.width));
     std::vector<studio::ClusteredVpl> vpls;
     for (std::size_t i = 0; i < planes.width; ++i) {
-        const studio::VplRecord vpl{vectorOf(planes, 0, i), vectorOf(planes, 3, i), vectorOf(planes, 6, i), planes.plane(9)[i]};
+        const studio::VplRecord vpl{vectorOf(planes, 0, i), vectorOf(planes, 3, i),
+                                    vectorOf(planes, 6, i), planes.plane(9)[i]};
         const float cluster = clusters.plane(0)[i];
-        if (vpl.flux != glm::vec3(0.0f) && cluster >= 0.0f) vpls.push_back({vpl, int(std::lround(cluster))});
+        if (vpl.flux != glm::vec3(0.0f) && cluster >= 0.0f)
+            vpls.push_back({vpl, int(std::lround(cluster))});
     }
     return vpls;
 }
@@ -58,21 +62,24 @@ std::vector<studio::ClusterPlace> readClusters(const IndirectRenderer& renderer)
     const DebugPlanes planes = requirePlanes(renderer, kClustersView, kClusterChannels);
     std::vector<studio::ClusterPlace> clusters;
     for (std::size_t k = 0; k < planes.width; ++k)
-        clusters.push_back({vectorOf(planes, 10, k), vectorOf(planes, 13, k), vectorOf(planes, 0, k), vectorOf(planes, 3, k)});
+        clusters.push_back({vectorOf(planes, 10, k), vectorOf(planes, 13, k), vectorOf(planes, 0, k),
+                            vectorOf(planes, 3, k)});
     return clusters;
 }
 
 // At the picked pixels, cluster after cluster.
-std::vector<float> readSeen(const IndirectRenderer& renderer, const PixelPicks& picks, int height, std::size_t clusters) {
+std::vector<float> readSeen(const IndirectRenderer& renderer, const PixelPicks& picks, int height,
+                            std::size_t clusters) {
     const DebugPlanes planes = requirePlanes(renderer, kVisibilityView, 1);
     if (planes.height != std::uint32_t(height) * clusters)
-        throw std::runtime_error(
-            fmt::format("debug view {}: expected {} rows, got {}", kVisibilityView, std::size_t(height) * clusters, planes.height));
+        throw std::runtime_error(fmt::format("debug view {}: expected {} rows, got {}", kVisibilityView,
+                                             std::size_t(height) * clusters, planes.height));
     std::vector<float> seen;
     for (std::size_t k = 0; k < clusters; ++k)
         for (int y = 0; y < picks.height(); ++y)
             for (int x = 0; x < picks.width(); ++x)
-                seen.push_back(planes.plane(0)[k * std::size_t(height) * planes.width + picks.pixel(x, y)]);
+                seen.push_back(
+                    planes.plane(0)[k * std::size_t(height) * planes.width + picks.pixel(x, y)]);
     return seen;
 }
 
@@ -87,6 +94,14 @@ Json metricsJson(const studio::Metrics& metrics) {
     return {{"relMSE", metrics.relMse}, {"nrmse", metrics.nrmse}, {"bias", metrics.bias}};
 }
 
+// Errors relative to darkness have no meaning.
+bool isBlack(const studio::Image& image) {
+    for (const char* channel : {"R", "G", "B"})
+        for (const float value : image.plane(channel))
+            if (value != 0.0f) return false;
+    return true;
+}
+
 Json pointJson(const Parameters& parameters, const studio::VisibilityVerdict& verdict, std::size_t vpls,
                std::size_t clusters, const studio::Image* truth, const studio::Image& layers) {
     Json point{{"settings", describeDifference(parameters)},
@@ -99,13 +114,16 @@ Json pointJson(const Parameters& parameters, const studio::VisibilityVerdict& ve
     Json misjudged, errors, against;
     studio::Image exact = verdict.irradiance[int(studio::Sight::exact)];
     for (const auto& [name, plane] : layers.channels) exact.channels[name] = plane;
+    const bool isDark = isBlack(exact);
     for (std::size_t way = 0; way < studio::kSightCount; ++way) {
         const char* name = studio::kSightNames[way];
         if (way != std::size_t(studio::Sight::exact)) {
             misjudged[name] = misjudgedJson(verdict.against[way]);
-            against[name] = metricsJson(studio::compareIrradiance(verdict.irradiance[way], exact));
+            if (!isDark)
+                against[name] = metricsJson(studio::compareIrradiance(verdict.irradiance[way], exact));
         }
-        if (truth != nullptr) errors[name] = metricsJson(studio::compareIrradiance(verdict.irradiance[way], *truth));
+        if (truth != nullptr)
+            errors[name] = metricsJson(studio::compareIrradiance(verdict.irradiance[way], *truth));
     }
     misjudged["map_against_medoid"] = misjudgedJson(verdict.mapAgainstMedoid);
     point["misjudged"] = misjudged;
@@ -124,9 +142,11 @@ std::vector<std::string> valuesOf(const std::string& text) {
 void requireFree(const char* option, const std::string& key) {
     for (const auto& [name, value] : kFixed)
         if (key == name)
-            throw UsageError(fmt::format("{} '{}': expected another parameter; here it is {}, so that every pixel has all VPLs of "
-                                         "one bounce",
-                                         option, key, value));
+            throw UsageError(
+                fmt::format("{} '{}': expected another parameter; here it is {}, so that every pixel "
+                            "has all VPLs of "
+                            "one bounce",
+                            option, key, value));
 }
 
 const JudgedTruth* traceTruth(ChartView& view, const VisibilityOptions& options) {
@@ -160,7 +180,8 @@ std::vector<Parameters> visibilityPoints(const VisibilityOptions& options) {
                 wider.push_back(point);
                 wider.back().set(fmt::format("{}={}", key, value));
             }
-        if (wider.empty()) throw UsageError(fmt::format("--sweep '{}': expected KEY=VALUE,VALUE", sweep));
+        if (wider.empty())
+            throw UsageError(fmt::format("--sweep '{}': expected KEY=VALUE,VALUE", sweep));
         points = std::move(wider);
     }
     return points;
@@ -170,7 +191,8 @@ VisibilityResult runVisibility(const VisibilityOptions& options, const std::vect
     const Size size = parseSize(options.view.size);
     requireMemory("--size", options.view.size, kPixelBytes * size.width * size.height);
     const auto scene = loadScene(options.view);
-    const auto rayScene = asUsage([&] { return std::make_shared<studio::RayScene>(scene, float(options.view.time)); });
+    const auto rayScene =
+        asUsage([&] { return std::make_shared<studio::RayScene>(scene, float(options.view.time)); });
     InputOptions input;
     input.width = size.width;
     input.height = size.height;
@@ -185,10 +207,11 @@ VisibilityResult runVisibility(const VisibilityOptions& options, const std::vect
 
     VisibilityResult result;
     Json& json = result.json;
-    json = {{"scene", view.sceneName()}, {"camera", view.cameraName()},
-            {"size", {size.width, size.height}}, {"judged_block", view.picks().block()},
+    json = {{"scene", view.sceneName()},           {"camera", view.cameraName()},
+            {"size", {size.width, size.height}},   {"judged_block", view.picks().block()},
             {"device", deviceJson(device.info())}, {"build", buildIdentity()}};
-    if (truth != nullptr) json["truth"] = {{"noise", truth->truth.noise}, {"samples", truth->truth.samples}};
+    if (truth != nullptr)
+        json["truth"] = {{"noise", truth->truth.noise}, {"samples", truth->truth.samples}};
     Json list = Json::array();
     studio::ProgressLine line("judging " + view.id());
     for (const Parameters& point : points) {
@@ -197,7 +220,8 @@ VisibilityResult runVisibility(const VisibilityOptions& options, const std::vect
         renderer->renderFrame(view.inputs(), true);
         const auto vpls = readVpls(*renderer);
         const auto clusters = readClusters(*renderer);
-        result.last = judge.judge(vpls, clusters, readSeen(*renderer, view.picks(), size.height, clusters.size()));
+        result.last =
+            judge.judge(vpls, clusters, readSeen(*renderer, view.picks(), size.height, clusters.size()));
         list.push_back(pointJson(point, result.last, vpls.size(), clusters.size(),
                                  truth != nullptr ? &truth->truth.image : nullptr, layers));
     }

@@ -1,4 +1,5 @@
-// Measures what a technique of clustered VPLs takes to be visible against rays (studio's visibility_judge.h).
+// Measures what a technique of clustered VPLs takes to be visible against rays (studio's
+// visibility_judge.h).
 #pragma once
 
 #include <string>
@@ -27,8 +28,8 @@ constexpr const char* kClustersView = "clusters";
 constexpr const char* kVplClustersView = "vpl_clusters";
 constexpr const char* kVisibilityView = "visibility";
 
-// The points' parameters, with whatever coarsens the picture or goes beyond the pairs of one bounce off. UsageError for
-// assignments that the technique refuses or that are fixed here.
+// The points' parameters, with whatever coarsens the picture or goes beyond the pairs of one bounce off.
+// UsageError for assignments that the technique refuses or that are fixed here.
 std::vector<Parameters> visibilityPoints(const VisibilityOptions& options);
 
 struct VisibilityResult {

@@ -18,7 +18,9 @@ bool isSame(const VplRecord& a, const VplRecord& b) {
     return a.position == b.position && a.normal == b.normal && a.flux == b.flux && a.area == b.area;
 }
 
-double meanOf(const glm::dvec3& rgb) { return (rgb.x + rgb.y + rgb.z) / 3.0; }
+double meanOf(const glm::dvec3& rgb) {
+    return (rgb.x + rgb.y + rgb.z) / 3.0;
+}
 
 // Of one pair or a pixel's: what `seen` gives where `truth` is right.
 struct Wrong {
@@ -53,8 +55,8 @@ public:
         signed char& known = known_[2 * std::size_t(cluster) + (toMedoid ? 1 : 0)];
         if (known < 0) {
             const ClusterPlace& place = clusters_[std::size_t(cluster)];
-            const VplRecord end{toMedoid ? place.medoid : place.mean, toMedoid ? place.medoidNormal : place.meanNormal,
-                                glm::vec3(0.0f)};
+            const VplRecord end{toMedoid ? place.medoid : place.mean,
+                                toMedoid ? place.medoidNormal : place.meanNormal, glm::vec3(0.0f)};
             known = vplVisible(scene_, end, at_) ? 1 : 0;
         }
         return known == 1;
@@ -81,16 +83,18 @@ struct VisibilityJudge::Tally {
 VisibilityJudge::VisibilityJudge(const RayScene& scene, const GBuffer& pixels)
     : scene_(scene), width_(pixels.width), height_(pixels.height), pixels_(scene, pixels) {}
 
-void VisibilityJudge::check(const std::vector<ClusteredVpl>& vpls, const std::vector<ClusterPlace>& clusters,
+void VisibilityJudge::check(const std::vector<ClusteredVpl>& vpls,
+                            const std::vector<ClusterPlace>& clusters,
                             const std::vector<float>& seen) const {
     const std::size_t expected = clusters.size() * pixels_.surface.size();
     if (seen.size() != expected)
         throw std::runtime_error(
-            fmt::format("visibility: expected {} values, one for each pixel and cluster, got {}", expected, seen.size()));
+            fmt::format("visibility: expected {} values, one for each pixel and cluster, got {}",
+                        expected, seen.size()));
     for (const ClusteredVpl& v : vpls)
         if (v.cluster < 0 || std::size_t(v.cluster) >= clusters.size())
-            throw std::runtime_error(
-                fmt::format("cluster of a VPL: expected 0 to {}, got {}", int(clusters.size()) - 1, v.cluster));
+            throw std::runtime_error(fmt::format("cluster of a VPL: expected 0 to {}, got {}",
+                                                 int(clusters.size()) - 1, v.cluster));
     for (const float value : seen)
         if (!(value >= 0.0f && value <= 1.0f))
             throw std::runtime_error(fmt::format("visibility: expected values in [0,1], got {}", value));
@@ -101,8 +105,9 @@ bool VisibilityJudge::isVisible(std::size_t pixel, std::size_t vpl) const {
 }
 
 void VisibilityJudge::traceExact(const std::vector<ClusteredVpl>& vpls) {
-    const bool isKnown = std::equal(vpls.begin(), vpls.end(), traced_.begin(), traced_.end(),
-                                    [](const ClusteredVpl& a, const VplRecord& b) { return isSame(a.vpl, b); });
+    const bool isKnown =
+        std::equal(vpls.begin(), vpls.end(), traced_.begin(), traced_.end(),
+                   [](const ClusteredVpl& a, const VplRecord& b) { return isSame(a.vpl, b); });
     if (isKnown && !traced_.empty()) return;
     words_ = (vpls.size() + 63) / 64;
     exact_.assign(words_ * pixels_.surface.size(), 0);
@@ -115,13 +120,15 @@ void VisibilityJudge::traceExact(const std::vector<ClusteredVpl>& vpls) {
                 if (!pixels_.valid[pixel]) continue;
                 const Surface& at = pixels_.surface[pixel];
                 if (vplIrradiance(vpls[v].vpl, at) == glm::dvec3(0.0)) continue;
-                if (vplVisible(scene_, vpls[v].vpl, at)) exact_[pixel * words_ + v / 64] |= std::uint64_t(1) << (v % 64);
+                if (vplVisible(scene_, vpls[v].vpl, at))
+                    exact_[pixel * words_ + v / 64] |= std::uint64_t(1) << (v % 64);
             }
     });
     for (const ClusteredVpl& v : vpls) traced_.push_back(v.vpl);
 }
 
-VisibilityJudge::Tally VisibilityJudge::judgePixel(std::size_t pixel, const std::vector<ClusteredVpl>& vpls,
+VisibilityJudge::Tally VisibilityJudge::judgePixel(std::size_t pixel,
+                                                   const std::vector<ClusteredVpl>& vpls,
                                                    const std::vector<ClusterPlace>& clusters,
                                                    const std::vector<float>& seen) const {
     Tally tally;
@@ -157,7 +164,8 @@ VisibilityVerdict VisibilityJudge::sum(const std::vector<Tally>& tallies) const 
     for (std::size_t way = 0; way < kSightCount; ++way) {
         verdict.irradiance[way] = Image(width_, height_);
         const std::string name = kSightNames[way];
-        std::vector<float>&light = verdict.pictures.plane(name + ".light"), &shadow = verdict.pictures.plane(name + ".shadow");
+        std::vector<float>&light = verdict.pictures.plane(name + ".light"),
+        &shadow = verdict.pictures.plane(name + ".shadow");
         for (std::size_t i = 0; i < tallies.size(); ++i) {
             all.against[way] += tallies[i].against[way];
             light[i] = float(tallies[i].against[way].lightWeight);
@@ -165,7 +173,8 @@ VisibilityVerdict VisibilityJudge::sum(const std::vector<Tally>& tallies) const 
         }
         for (int channel = 0; channel < 3; ++channel) {
             std::vector<float>& plane = verdict.irradiance[way].plane(std::string(1, "RGB"[channel]));
-            for (std::size_t i = 0; i < tallies.size(); ++i) plane[i] = float(tallies[i].irradiance[way][channel]);
+            for (std::size_t i = 0; i < tallies.size(); ++i)
+                plane[i] = float(tallies[i].irradiance[way][channel]);
         }
     }
     for (const Tally& tally : tallies) {
@@ -180,12 +189,14 @@ VisibilityVerdict VisibilityJudge::sum(const std::vector<Tally>& tallies) const 
     const double pairs = double(all.pairs);
     verdict.lit = all.lit / pairs;
     verdict.litWeight = all.litWeight / all.weight;
-    for (std::size_t way = 0; way < kSightCount; ++way) verdict.against[way] = all.against[way].share(pairs, all.weight);
+    for (std::size_t way = 0; way < kSightCount; ++way)
+        verdict.against[way] = all.against[way].share(pairs, all.weight);
     verdict.mapAgainstMedoid = all.mapAgainstMedoid.share(pairs, all.weight);
     return verdict;
 }
 
-VisibilityVerdict VisibilityJudge::judge(const std::vector<ClusteredVpl>& vpls, const std::vector<ClusterPlace>& clusters,
+VisibilityVerdict VisibilityJudge::judge(const std::vector<ClusteredVpl>& vpls,
+                                         const std::vector<ClusterPlace>& clusters,
                                          const std::vector<float>& seen) {
     check(vpls, clusters, seen);
     traceExact(vpls);

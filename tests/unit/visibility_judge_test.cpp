@@ -1,4 +1,5 @@
-// What the judge of visibility finds where it is known without it: an empty room, a wall between, and counts by hand.
+// What the judge of visibility finds where it is known without it: an empty room, a wall between, and
+// counts by hand.
 #include <catch2/catch.hpp>
 
 #include <memory>
@@ -54,16 +55,21 @@ struct Rig {
 };
 
 // A lamp over the left half, and its twin over the right one, both looking down.
-VplRecord lamp(float x) { return {{x, 0.0f, 0.5f}, {0, 0, -1}, {3, 2, 1}, 0.0f}; }
-ClusterPlace placeOf(float x) { return {{x, 0.0f, 0.5f}, {0, 0, -1}, {x, 0.0f, 0.5f}, {0, 0, -1}}; }
+VplRecord lamp(float x) {
+    return {{x, 0.0f, 0.5f}, {0, 0, -1}, {3, 2, 1}, 0.0f};
+}
+ClusterPlace placeOf(float x) {
+    return {{x, 0.0f, 0.5f}, {0, 0, -1}, {x, 0.0f, 0.5f}, {0, 0, -1}};
+}
 
 }  // namespace
 
 TEST_CASE("with nothing between every ray arrives, and a map that says so is right") {
     const Rig rig(0.0f);
     VisibilityJudge judge(rig.rays, rig.view);
-    const auto verdict = judge.judge({{lamp(-0.4f), 0}, {lamp(0.4f), 1}}, {placeOf(-0.4f), placeOf(0.4f)},
-                                     std::vector<float>(2 * rig.pixels(), 1.0f));
+    const auto verdict =
+        judge.judge({{lamp(-0.4f), 0}, {lamp(0.4f), 1}}, {placeOf(-0.4f), placeOf(0.4f)},
+                    std::vector<float>(2 * rig.pixels(), 1.0f));
     CHECK(verdict.pairs == 2 * rig.pixels());
     CHECK(verdict.lit == 1.0);
     CHECK(verdict.litWeight == 1.0);
@@ -79,7 +85,8 @@ TEST_CASE("a wall between: each half sees its own lamp") {
     const Rig rig(0.5f);  // as high as the lamps: no ray passes over it
     VisibilityJudge judge(rig.rays, rig.view);
     const std::vector<ClusteredVpl> vpls{{lamp(-0.4f), 0}, {lamp(0.4f), 0}};
-    // One cluster for both, whose medoid is the left lamp; a map that takes everything for lit on the left, half on the right.
+    // One cluster for both, whose medoid is the left lamp; a map that takes everything for lit on the
+    // left, half on the right.
     std::vector<float> seen(rig.pixels());
     for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = i % kSize < kSize / 2 ? 1.0f : 0.5f;
     const auto verdict = judge.judge(vpls, {placeOf(-0.4f)}, seen);
@@ -92,7 +99,8 @@ TEST_CASE("a wall between: each half sees its own lamp") {
     const auto& medoid = verdict.against[int(Sight::medoid)];
     CHECK(medoid.falseLight == Approx(0.25).margin(kRounding));
     CHECK(medoid.falseShadow == Approx(0.25).margin(kRounding));
-    // The map: a quarter of the pairs wholly lit in vain, half of a quarter lit, half of a quarter dark on the right.
+    // The map: a quarter of the pairs wholly lit in vain, half of a quarter lit, half of a quarter dark
+    // on the right.
     const auto& map = verdict.against[int(Sight::map)];
     CHECK(map.falseLight == Approx(0.25 + 0.125).margin(kRounding));
     CHECK(map.falseShadow == Approx(0.125).margin(kRounding));
@@ -118,7 +126,9 @@ TEST_CASE("rays are traced anew when the VPLs change, and only answers change wi
     CHECK(left.against[int(Sight::map)].falseLight == Approx(1.0 - left.lit));
     const auto right = judge.judge({{lamp(0.4f), 0}}, {placeOf(0.4f)}, all);
     for (int i = 0; i < kSize; ++i) {
-        const auto exactOf = [&](const VisibilityVerdict& v) { return v.irradiance[int(Sight::exact)].plane("R")[std::size_t(i)]; };
+        const auto exactOf = [&](const VisibilityVerdict& v) {
+            return v.irradiance[int(Sight::exact)].plane("R")[std::size_t(i)];
+        };
         CHECK((exactOf(left) == 0.0f) != (exactOf(right) == 0.0f));
     }
 }
@@ -132,7 +142,8 @@ TEST_CASE("what does not fit is refused") {
     CHECK_THROWS_WITH(judge.judge({{lamp(0.0f), 0}}, {placeOf(0.0f), placeOf(0.1f)}, seen),
                       Catch::Matchers::Contains("expected 128 values"));
     seen[3] = 1.5f;
-    CHECK_THROWS_WITH(judge.judge({{lamp(0.0f), 0}}, {placeOf(0.0f)}, seen), Catch::Matchers::Contains("[0,1], got 1.5"));
+    CHECK_THROWS_WITH(judge.judge({{lamp(0.0f), 0}}, {placeOf(0.0f)}, seen),
+                      Catch::Matchers::Contains("[0,1], got 1.5"));
     seen[3] = 1.0f;
     CHECK(judge.judge({}, {placeOf(0.0f)}, seen).pairs == 0);
 }
