@@ -11,7 +11,7 @@ LW_FN lw_cluster no_cluster(void) {
     return cluster;
 }
 
-// One work-item = one chunk of slots and LW_WIDTH clusters: flux, spread and the member nearest to the mean, the first
+// One work-item = one chunk of slots and LW_WIDTH clusters: flux, area, spread and the member nearest to the mean, the first
 // of several, of the chunk's slots.
 __kernel void kmeans_members(__global const lw_vpl* vpls, int count, __global const float* sites, int stride,
                              __global const int* assignment, __global const float* means, int clusters, float2 weights,
@@ -21,15 +21,17 @@ __kernel void kmeans_members(__global const lw_vpl* vpls, int count, __global co
     const int begin = chunk * LW_KMEANS_CHUNK, end = min(begin + LW_KMEANS_CHUNK, count);
     const lanei cluster = first + lanei_iota();
     const lw_site mean = site_lanes(means, LW_KMEANS_MOST, first);
-    real spread = 0.0f, red = 0.0f, green = 0.0f, blue = 0.0f, nearest = LW_KMEANS_FAR, at = -1.0f;
+    real spread = 0.0f, red = 0.0f, green = 0.0f, blue = 0.0f, area = 0.0f, nearest = LW_KMEANS_FAR, at = -1.0f;
     for (int i = begin; i < end; ++i) {
         const mask mine = cluster == assignment[i];
         const float4 flux = vpls[i].flux;
+        const float itsArea = vpls[i].positionArea.w;
         const real d = squared_distance(site_splat(sites, stride, i), mean, weights);
         spread = select_(spread, spread + d, mine);
         red = select_(red, red + flux.x, mine);
         green = select_(green, green + flux.y, mine);
         blue = select_(blue, blue + flux.z, mine);
+        area = select_(area, area + itsArea, mine);
         const mask nearer = and_(mine, d < nearest);
         nearest = select_(nearest, d, nearer);
         at = select_(at, (real)((float)i), nearer);
@@ -40,6 +42,7 @@ __kernel void kmeans_members(__global const lw_vpl* vpls, int count, __global co
     store(red, out, LW_PARTIAL_FLUX * LW_KMEANS_MOST);
     store(green, out, (LW_PARTIAL_FLUX + 1) * LW_KMEANS_MOST);
     store(blue, out, (LW_PARTIAL_FLUX + 2) * LW_KMEANS_MOST);
+    store(area, out, LW_PARTIAL_AREA * LW_KMEANS_MOST);
     store(nearest, out, LW_PARTIAL_NEAREST * LW_KMEANS_MOST);
     store(at, out, LW_PARTIAL_SLOT * LW_KMEANS_MOST);
 }
@@ -58,6 +61,7 @@ __kernel void kmeans_finish(__global const lw_vpl* vpls, int stride, __global co
         flux.x += part[LW_PARTIAL_FLUX * LW_KMEANS_MOST];
         flux.y += part[(LW_PARTIAL_FLUX + 1) * LW_KMEANS_MOST];
         flux.z += part[(LW_PARTIAL_FLUX + 2) * LW_KMEANS_MOST];
+        flux.w += part[LW_PARTIAL_AREA * LW_KMEANS_MOST];
         const float d = part[LW_PARTIAL_NEAREST * LW_KMEANS_MOST];
         if (d < nearest) {
             nearest = d;
@@ -91,7 +95,7 @@ __kernel void kmeans_identity(__global const lw_vpl* vpls, int count, __global i
     if (lit) {
         cluster.position = (float4)(vpl.positionArea.xyz, 1.0f);
         cluster.normal = cluster.medoidNormal = (float4)(vpl.normal.xyz, 0.0f);
-        cluster.flux = (float4)(vpl.flux.xyz, 0.0f);
+        cluster.flux = (float4)(vpl.flux.xyz, vpl.positionArea.w);
         cluster.medoidPosition = (float4)(vpl.positionArea.xyz, (float)i);
     }
     assignment[i] = lit ? i : -1;

@@ -3,7 +3,9 @@
 // A cluster of flux Phi sends Phi/pi cos(theta) per solid angle about its normal. A direction drawn with density
 // pdf per solid angle meets a surface of albedo rho, which reflects in all
 //     Phi_2 = rho Phi cos / (pi pdf M),      of M samples,
-// from the area A_2 = r^2 / (c pdf M), r the distance and c the cosine at the surface.
+// from the area A_2 = (r^2 + A/pi) / (c pdf M), r the distance, c the cosine at the surface, A the members' area: what
+// is nearer to them than they are wide is lit by a disc, not by a point. By r^2 alone, a VPL beside the medoid
+// would send a large cluster's light from a spot of nothing: a bright stain around it.
 // The paper weighs all samples alike; by the densities below the mean is the map's integral whatever the pattern.
 #include "shared/cluster_types.h"
 #include "shared/hammersley.h"
@@ -119,7 +121,8 @@ __kernel void second_bounce_draw(__global const lw_cluster* clusters, __global c
     const float facing = fmax(-dot(met.normal.xyz, met.direction.xyz), LW_STEEPEST_COSINE);
     lw_vpl vpl;
     vpl.positionArea = met.position;
-    vpl.positionArea.w = met.distance * met.distance / (facing * drawn.density * (float)perCluster);
+    const float spread = met.distance * met.distance + cluster.flux.w * M_1_PI_F;
+    vpl.positionArea.w = spread / (facing * drawn.density * (float)perCluster);
     vpl.normal = met.normal;
     vpl.flux = met.albedo * cluster.flux * share;
     vpl.flux.w = 0.0f;

@@ -9,7 +9,7 @@
 typedef struct {
     lw_float4 position;        // m: mean of the members' positions; w: number of members, 0 for an empty cluster
     lw_float4 normal;          // unit: normalised sum of the members' normals; w: the members' squared distances summed
-    lw_float4 flux;            // W: sum of the members' flux; w unused
+    lw_float4 flux;            // W: sum of the members' flux; w: of their areas, m^2
     lw_float4 medoidPosition;  // m: of the member nearest to the mean; w: its index in the list, exact below 2^24
     lw_float4 medoidNormal;    // unit; w unused
 } lw_cluster;

@@ -23,12 +23,13 @@
 #define LW_MEAN_PLANES 8
 
 // Partials: one chunk's part in LW_KMEANS_MOST clusters. While means are sought: sums of sites, number of members. At the
-// end: sums of squared distances and flux, the member nearest to the mean and its squared distance.
+// end: sums of squared distances, flux and area, the member nearest to the mean and its squared distance.
 #define LW_PARTIAL_MEMBERS 6
 #define LW_PARTIAL_SPREAD 0
 #define LW_PARTIAL_FLUX 1
-#define LW_PARTIAL_NEAREST 4
-#define LW_PARTIAL_SLOT 5
+#define LW_PARTIAL_AREA 4
+#define LW_PARTIAL_NEAREST 5
+#define LW_PARTIAL_SLOT 6
 #define LW_PARTIAL_PLANES 7
 
 // The sites' frame: centre of the box and its diagonal.

@@ -143,3 +143,22 @@ TEST_CASE("the set is kept, and a seed turns it", "[second_bounce]") {
     CHECK(std::memcmp(first.data(), again.data(), first.size() * sizeof(lw_vpl)) == 0);
     CHECK(std::memcmp(first.data(), other.data(), first.size() * sizeof(lw_vpl)) != 0);
 }
+
+TEST_CASE("beside a wide cluster a VPL is as wide as the cluster makes the light", "[second_bounce]") {
+    ParaboloidRig rig(GENERATE(1u, 16u), 128);
+    std::vector<lw_cluster> clusters = {cluster({0.6, 0.0, 1.0}, {0, 1, 0}, 4.0)};
+    rig.draw(furnace(), clusters);
+    SecondBounceOptions options;
+    const std::vector<lw_vpl> points = drawn(rig, clusters, options);
+    constexpr double kArea = 2.5;
+    clusters[0].flux.s[3] = float(kArea);
+    const std::vector<lw_vpl> discs = drawn(rig, clusters, options);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const Vec way = reference::vecOf(points[i].positionArea) - reference::vecOf(clusters[0].medoidPosition);
+        const double r2 = reference::dot(way, way);
+        CHECK(discs[i].flux.s[0] == points[i].flux.s[0]);
+        // On the axis of a disc of area A, the light is (1 + A / (pi r^2)) times weaker than from a point.
+        CHECK(double(discs[i].positionArea.s[3]) ==
+              Approx(double(points[i].positionArea.s[3]) * (1.0 + kArea / (M_PI * r2))).epsilon(1e-3));
+    }
+}

@@ -68,7 +68,7 @@ inline double objective(const Clustered& clustered, const Vpls& vpls, const KMea
 
 // What holds of every result: members and flux add up, medoids are members, all is finite, the empty are empty.
 inline void checkSound(const Clustered& clustered, const Vpls& vpls) {
-    std::vector<double> members(clustered.clusters.size()), flux(clustered.clusters.size());
+    std::vector<double> members(clustered.clusters.size()), flux(clustered.clusters.size()), area(clustered.clusters.size());
     for (std::size_t i = 0; i < vpls.size(); ++i) {
         const int k = clustered.assignment[i];
         REQUIRE((k >= 0) == reference::KMeansTwin::lit(vpls[i]));
@@ -76,6 +76,7 @@ inline void checkSound(const Clustered& clustered, const Vpls& vpls) {
         if (k < 0) continue;
         members[std::size_t(k)] += 1;
         flux[std::size_t(k)] += double(vpls[i].flux.s[1]);
+        area[std::size_t(k)] += double(vpls[i].positionArea.s[3]);
     }
     for (const float x : numbers(clustered)) REQUIRE(std::isfinite(x));
     for (std::size_t k = 0; k < members.size(); ++k) {
@@ -84,6 +85,7 @@ inline void checkSound(const Clustered& clustered, const Vpls& vpls) {
         REQUIRE(double(c.position.s[3]) == members[k]);
         // 128 terms of a chunk, then the chunks: at most some 600 roundings of 6e-8, mostly of either sign.
         REQUIRE(std::abs(double(c.flux.s[1]) - flux[k]) <= 1e-5 * flux[k]);
+        REQUIRE(std::abs(double(c.flux.s[3]) - area[k]) <= 1e-5 * area[k]);
         REQUIRE(std::abs(std::hypot(double(c.normal.s[0]), double(c.normal.s[1]), double(c.normal.s[2])) - 1.0) < 1e-5);
         if (members[k] == 0) {
             REQUIRE((c.flux.s[0] == 0.0f && c.flux.s[2] == 0.0f && c.medoidPosition.s[3] == -1.0f));
