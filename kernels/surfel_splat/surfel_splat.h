@@ -75,11 +75,10 @@ LW_FN real disc_distance(float step, lw_disc d, lanei x, lanei y) {
 LW_FN laneu surfel_hash(real x, real y, real z, int map) {
     laneu h = (laneu)(0x9e3779b9u * (uint)(map + 1));
     const laneu bits[3] = {as_laneu_(x), as_laneu_(y), as_laneu_(z)};
-    for (int i = 0; i < 3; ++i) {  // Murmur3's rounds
-        laneu k = bits[i] * 0xcc9e2d51u;
-        k = ((k << 15) | (k >> 17)) * 0x1b873593u;
-        h = h ^ k;
-        h = ((h << 13) | (h >> 19)) * 5u + 0xe6546b64u;
+    // Without the rotations of Murmur's rounds, which become an instruction that Oclgrind lacks.
+    for (int i = 0; i < 3; ++i) {
+        h = (h ^ bits[i]) * 0xcc9e2d51u;
+        h = (h ^ (h >> 15)) * 0x1b873593u;
     }
     h = (h ^ (h >> 16)) * 0x85ebca6bu;
     h = (h ^ (h >> 13)) * 0xc2b2ae35u;
