@@ -20,9 +20,9 @@
 #define LW_FEW_TEXELS 16
 
 // Radius over that of a disc of the surfel's area. Discs of equal areas leave gaps: none on a square lattice from 1.26
-// (sqrt(pi / 2)) on, 2 % of a wall that surfel_sampling covers at 1.35 (13 % where its triangles are as small as the discs).
-// Raised, discs reach farther over edges and off curved surfaces (false shadow: on Crytek Sponza with 32 maps of 128^2 the
-// light was 45 % short at 1.5, 35 % at 1.26, 21 % at 1); lowered, more is seen through them.
+// (sqrt(pi / 2)) on; at 1.35 less than 4 % of a wall that surfel_sampling covers, 13 % where its triangles are as small as the
+// discs. Raised, discs reach farther over edges and off curved surfaces (false shadow: on Crytek Sponza with 32 maps of 128^2
+// the light was 45 % short at 1.5, 35 % at 1.26, 21 % at 1 with smaller least radii); lowered, more is seen through them.
 #define LW_SURFEL_OVERLAP 1.35f
 
 // Least radius as seen from the map, in texels: a far surfel smaller than that would fall between the texels' centres, and

@@ -112,7 +112,7 @@ TEST_CASE("surfels lie on their triangles, their areas are the mesh's, their den
 
 // Where triangles hold several surfels each. With about one for each, the curve that orders them decides: less than the
 // 0.16 that discs at independent places would leave.
-TEST_CASE("discs as large as they are splatted leave next to nothing of a wall open", "[surfel_sampling]") {
+TEST_CASE("discs as large as they are splatted leave less than 4 % of a wall open", "[surfel_sampling]") {
     SamplingRig rig(16);
     Mesh mesh;
     const int cells = GENERATE(1, 5, 40);
@@ -129,7 +129,7 @@ TEST_CASE("discs as large as they are splatted leave next to nothing of a wall o
             if (nearest > kOverlap * s.radius(0)) ++open;
         }
     CAPTURE(cells, count, open);
-    CHECK(open <= (cells == 40 ? 0.15 : 0.025) * kProbes * kProbes);
+    CHECK(open <= (cells == 40 ? 0.15 : 0.04) * kProbes * kProbes);
 }
 
 TEST_CASE("the same triangles, in whatever order, at whatever width: the same surfels, drawn once", "[surfel_sampling]") {
