@@ -3,9 +3,11 @@
 // A cluster of flux Phi sends Phi/pi cos(theta) per solid angle about its normal. A direction drawn with density
 // pdf per solid angle meets a surface of albedo rho, which reflects in all
 //     Phi_2 = rho Phi cos / (pi pdf M),      of M samples,
-// from the area A_2 = (r^2 + A/pi) / (c pdf M), r the distance, c the cosine at the surface, A the members' area: what
-// is nearer to them than they are wide is lit by a disc, not by a point. By r^2 alone, a VPL beside the medoid
-// would send a large cluster's light from a spot of nothing: a bright stain around it.
+// from the area A_2 = w max(r^2, A/4pi) / (c pdf M), r the distance, c the cosine at the surface. w: the cluster's share
+// of all clusters' flux. Each cluster's samples cover all that it sees; where all of them see the same, their VPLs
+// together must not stand for more than that area, or bounding takes light from each of them (with 32 clusters a
+// fifth of it). A: the members' area. What is nearer to them than they are wide is lit by a disc, not by a point; by
+// r^2 alone, a VPL beside the medoid would send a large cluster's light from a spot of nothing: a bright stain.
 // The paper weighs all samples alike; by the densities below the mean is the map's integral whatever the pattern.
 #include "shared/cluster_types.h"
 #include "shared/hammersley.h"
@@ -94,6 +96,16 @@ LW_FN lw_met surface_met(lw_paraboloid map, __global const float* records, __glo
     return met;
 }
 
+LW_FN float sum_of(float4 flux) { return flux.x + flux.y + flux.z; }
+
+// Where every VPL is a cluster, all of them count alike: summing up anew for each would cost the square of their number.
+LW_FN float flux_share(__global const lw_cluster* clusters, int clusterCount, lw_cluster cluster) {
+    if (clusterCount > LW_MOST_SORTED) return 1.0f / (float)clusterCount;
+    float all = 0.0f;
+    for (int c = 0; c < clusterCount; ++c) all += sum_of(clusters[c].flux);
+    return sum_of(cluster.flux) / all;
+}
+
 // One work-item = one VPL: sample i % perCluster of cluster i / perCluster. albedo: packed, one word per texel.
 __kernel void second_bounce_draw(__global const lw_cluster* clusters, __global const lw_paraboloid* frames,
                                  __global const float* records, __global const uint* albedo, int size, int clusterCount,
@@ -121,7 +133,8 @@ __kernel void second_bounce_draw(__global const lw_cluster* clusters, __global c
     const float facing = fmax(-dot(met.normal.xyz, met.direction.xyz), LW_STEEPEST_COSINE);
     lw_vpl vpl;
     vpl.positionArea = met.position;
-    const float spread = met.distance * met.distance + cluster.flux.w * M_1_PI_F;
+    const float spread = flux_share(clusters, clusterCount, cluster) *
+                         fmax(met.distance * met.distance, cluster.flux.w * (0.25f * M_1_PI_F));
     vpl.positionArea.w = spread / (facing * drawn.density * (float)perCluster);
     vpl.normal = met.normal;
     vpl.flux = met.albedo * cluster.flux * share;
