@@ -18,7 +18,7 @@ float shareOf(float error) { return error / std::sqrt(3.0f); }
 
 // Of the light, an error of `share` takes clusters whose members lie within so much of their middle (k-means' distance,
 // root mean square): docs/techniques/ssvp.md, "No more than the scene needs", has the measurements.
-constexpr float kSpreadOfError = 1.0f;
+constexpr float kSpreadOfError = 0.7f;
 float spreadOf(float error) {
     const float spread = kSpreadOfError * shareOf(error);
     return spread * spread;
