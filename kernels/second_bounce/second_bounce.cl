@@ -3,9 +3,12 @@
 // A cluster of flux Phi sends Phi/pi cos(theta) per solid angle about its normal. A direction drawn with density
 // pdf per solid angle meets a surface of albedo rho, which reflects in all
 //     Phi_2 = rho Phi cos / (pi pdf M),      of M samples,
-// from the area A_2 = (r^2 + A/pi) / (c pdf M), r the distance, c the cosine at the surface, A the members' area: what
-// is nearer to them than they are wide is lit by a disc, not by a point. By r^2 alone, a VPL beside the medoid
-// would send a large cluster's light from a spot of nothing: a bright stain around it.
+// and stands for the area that so much flux leaves: A_2 = Phi_2 / B, B the radiosity that all clusters together cause
+// at its place, as their maps see it. (The one cluster alone would make it r^2 / (c pdf M), c the cosine at the surface; but
+// where several clusters see the same surface, their VPLs together must not stand for more than there is of it, or
+// bounding takes light from each: with 32 clusters a fifth. And where others do not see it, smaller areas would be spots.)
+// A surface nearer to a cluster than it is wide is lit by a disc, not by a point: r^2 counts as A / 4 pi at least, A the
+// members' area. Without that, a VPL beside the medoid would send all its light from a bright stain of no size.
 // The paper weighs all samples alike; by the densities below the mean is the map's integral whatever the pattern.
 #include "shared/cluster_types.h"
 #include "shared/hammersley.h"
@@ -94,6 +97,31 @@ LW_FN lw_met surface_met(lw_paraboloid map, __global const float* records, __glo
     return met;
 }
 
+LW_FN float sum_of(float4 colour) { return colour.x + colour.y + colour.z; }
+
+// Radiosity at a surface, its channels summed up, that a cluster causes from a distance whose square is r2, under these
+// cosines.
+LW_FN float radiosity_from(lw_cluster cluster, lw_met met, float cosine, float facing, float r2) {
+    const float nearest = cluster.flux.w * (0.25f * M_1_PI_F);
+    return sum_of(met.albedo * cluster.flux) * cosine * facing * M_1_PI_F / fmax(r2, nearest);
+}
+
+// The same of another cluster, as far as its map sees the surface. A surface as far away as the texel's, give or take a
+// texel's slant, is the one that the texel saw.
+LW_FN float radiosity_of(lw_cluster cluster, lw_paraboloid map, __global const float* records, int size, lw_met met) {
+    const float slack = 1.05f;
+    float4 way = met.position - map.origin;
+    way.w = 0.0f;
+    const float r2 = dot(way, way), cosine = dot(way, map.axisZ) * rsqrt(fmax(r2, FLT_MIN));
+    const float facing = -dot(met.normal, way) * rsqrt(fmax(r2, FLT_MIN));
+    if (!(cluster.position.w > 0.0f && cosine > 0.0f && facing > 0.0f && r2 > 0.0f)) return 0.0f;
+    const float distance = sqrt(r2), step = 2.0f * LW_PARABOLOID_RIM / (float)size, scale = 1.0f / (distance * (1.0f + cosine));
+    const int x = clamp((int)((dot(way, map.axisX) * scale + LW_PARABOLOID_RIM) / step), 0, size - 1);
+    const int y = clamp((int)((dot(way, map.axisY) * scale + LW_PARABOLOID_RIM) / step), 0, size - 1);
+    if (distance > records[2 * (y * size + x)] * slack) return 0.0f;
+    return radiosity_from(cluster, met, cosine, facing, r2);
+}
+
 // One work-item = one VPL: sample i % perCluster of cluster i / perCluster. albedo: packed, one word per texel.
 __kernel void second_bounce_draw(__global const lw_cluster* clusters, __global const lw_paraboloid* frames,
                                  __global const float* records, __global const uint* albedo, int size, int clusterCount,
@@ -121,8 +149,14 @@ __kernel void second_bounce_draw(__global const lw_cluster* clusters, __global c
     const float facing = fmax(-dot(met.normal.xyz, met.direction.xyz), LW_STEEPEST_COSINE);
     lw_vpl vpl;
     vpl.positionArea = met.position;
-    const float spread = met.distance * met.distance + cluster.flux.w * M_1_PI_F;
-    vpl.positionArea.w = spread / (facing * drawn.density * (float)perCluster);
+    const float own = radiosity_from(cluster, met, drawn.direction.z, facing, met.distance * met.distance);
+    float all = own;
+    // Where every VPL is a cluster, all count as one: asking each for each would take the square of their number.
+    if (clusterCount > LW_MOST_SORTED) all = own * (float)clusterCount;
+    else
+        for (int other = 0; other < clusterCount; ++other)
+            if (other != c) all += radiosity_of(clusters[other], frames[other], records + 2 * other * size * size, size, met);
+    vpl.positionArea.w = sum_of(met.albedo * cluster.flux) * share / all;
     vpl.normal = met.normal;
     vpl.flux = met.albedo * cluster.flux * share;
     vpl.flux.w = 0.0f;

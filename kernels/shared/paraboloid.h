@@ -128,12 +128,13 @@ LW_FN mask paraboloid_texel_lit(__global const float* records, int firstRecord, 
     const real receiverSide = fma_(nx, r.qx, fma_(ny, r.qy, nz * r.qz)) * length;
     const real hitSide = hit * fma_(2.0f * u, nx, fma_(2.0f * v, ny, (1.0f - r2) * nz));
     const mask before = r.distance <= hit * (1.0f + LW_PARABOLOID_BIAS);
-    const mask onPlane = fabs(receiverSide - hitSide) <= LW_PARABOLOID_BIAS * r.distance * length;
+    const real off = fabs(receiverSide - hitSide), limit = LW_PARABOLOID_BIAS * r.distance * length;
     const real agreement = fma_(nx, r.nx, fma_(ny, r.ny, nz * r.nz));
-    const mask own = and_(onPlane, agreement >= LW_PARABOLOID_AGREES);
-    // The other side of a sheet, as near as the side that the texel saw.
-    const mask back = and_(onPlane, agreement <= -LW_PARABOLOID_AGREES);
-    return and_(or_(and_(before, not_(back)), own), r2 <= LW_PARABOLOID_RIM * LW_PARABOLOID_RIM);
+    const mask own = and_(off <= limit, agreement >= LW_PARABOLOID_AGREES);
+    // Not the other side of a sheet, as near as the side that the texel saw. (Not as the negation of its being that: Oclgrind
+    // misreads negated comparisons.)
+    const mask front = or_(off > limit, agreement > -LW_PARABOLOID_AGREES);
+    return and_(or_(and_(before, front), own), r2 <= LW_PARABOLOID_RIM * LW_PARABOLOID_RIM);
 }
 
 // Hard: the nearest texel decides. Where the map saw nothing: lit. Beyond the rim: dark, as behind the surface that the medoid

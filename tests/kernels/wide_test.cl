@@ -56,6 +56,7 @@ __kernel void wide_convert(__global const float* floats, __global const int* int
     store(as_real_(as_lanei_(x) ^ n), out + 2 * count, i);
     store(to_lanei(x), outInts, i);
     store(as_lanei_(x), outInts + count, i);
+    store(as_real_(as_laneu_(x) >> 1), out + 3 * count, i);
 }
 
 // One work-item = 2 * LW_WIDTH pixels; scalars: min_lane, max_lane of the first LW_WIDTH; integers likewise.

@@ -141,7 +141,7 @@ TEST_CASE("conversions at every width", "[wide]") {
     KernelRig rig(width);
     const auto floats = randomFloats(6, -1000.0f, 1000.0f);
     const auto ints = randomInts(7, -(1 << 22), 1 << 22);
-    const Guarded out = rig.make<float>(3 * kPixels), outInts = rig.make<cl_int>(2 * kPixels);
+    const Guarded out = rig.make<float>(4 * kPixels), outInts = rig.make<cl_int>(2 * kPixels);
     rig.run("test.convert", rig.kernel(kProgram, "wide_convert"), {kPixels / width, 1}, {1, 1},
             rig.upload(floats), rig.upload(ints), cl_int(kPixels), out, outInts);
     const auto values = rig.download<float>(out);
@@ -152,6 +152,8 @@ TEST_CASE("conversions at every width", "[wide]") {
     CHECK(bitDifference(plane(values, 2), forPixels<float>([&](std::size_t i) {
                             return asFloat(asBits(floats[i]) ^ std::uint32_t(ints[i]));
                         })) == "");
+    CHECK(bitDifference(plane(values, 3),
+                        forPixels<float>([&](std::size_t i) { return asFloat(asBits(floats[i]) >> 1); })) == "");
     CHECK(plane(integers, 0) == forPixels<cl_int>([&](std::size_t i) { return int(floats[i]); }));
     CHECK(plane(integers, 1) ==
           forPixels<cl_int>([&](std::size_t i) { return cl_int(asBits(floats[i])); }));
