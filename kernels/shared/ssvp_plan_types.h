@@ -9,7 +9,7 @@
 #define LW_PLAN_WHY_VPLS 3
 #define LW_PLAN_WHY_CLUSTERS 4
 #define LW_PLAN_WHY_BOUNCES 5
-// Float: flux of the bounces so far, in W, mean of the channels.
+// Float: flux of the bounces so far that arrives on surfaces, in W, mean of the channels.
 #define LW_PLAN_FLUX 6
 // 1 where the bounce after the first, the second, the third is used.
 #define LW_PLAN_USES 7

@@ -230,29 +230,35 @@ __kernel void ssvp_plan_clusters(__global const lw_cluster* clusters, int count,
 
 LW_FN float mean_flux(float4 flux) { return (flux.x + flux.y + flux.z) * (1.0f / 3.0f); }
 
-// One work-group of LW_PLAN_GROUP work-items in all: whether a bounce, whose VPLs `vpls` are, is used. `clusters`: those
-// of the bounce before; `index`: 0 for the second bounce; `left`: bounces from this one on.
-__kernel void ssvp_plan_bounce(__global const lw_cluster* clusters, int clusterCount, __global lw_vpl* vpls, int count,
+// One work-group of LW_PLAN_GROUP work-items in all: whether a bounce is used. vpls: its own, `perCluster` of each of the
+// `clusters` of the bounce before; `index`: 0 for the second bounce; `left`: bounces from this one on.
+//
+// What a picture shows of a bounce is the flux that arrives on surfaces: a sample that met one stands for its part of
+// its cluster's. (What is sent says less: of sunlight on open ground most goes to the sky, and what the rest lights is all that
+// there is to see. Samples are taken for alike, as by cosine they are.)
+__kernel void ssvp_plan_bounce(__global const lw_cluster* clusters, int perCluster, __global lw_vpl* vpls, int count,
                                int index, int left, float error, int restart, __global int* plan) {
-    __local float before[LW_PLAN_GROUP], after[LW_PLAN_GROUP];
+    __local float arrivals[LW_PLAN_GROUP], reflections[LW_PLAN_GROUP];
     __local int uses;
     const int item = (int)get_local_id(0);
-    float sum = 0.0f;
-    for (int k = item; k < clusterCount; k += LW_PLAN_GROUP) sum += mean_flux(clusters[k].flux);
-    before[item] = sum;
-    sum = 0.0f;
-    for (int i = item; i < count; i += LW_PLAN_GROUP) sum += mean_flux(vpls[i].flux);
-    after[item] = sum;
+    float arriving = 0.0f, reflecting = 0.0f;
+    for (int i = item; i < count; i += LW_PLAN_GROUP) {
+        const float flux = mean_flux(vpls[i].flux);
+        reflecting += flux;
+        if (flux > 0.0f) arriving += mean_flux(clusters[i / perCluster].flux) / (float)perCluster;
+    }
+    arrivals[item] = arriving;
+    reflections[item] = reflecting;
     barrier(CLK_LOCAL_MEM_FENCE);
     if (item == 0) {
-        float sent = 0.0f, next = 0.0f;
+        float arrived = 0.0f, next = 0.0f;
         for (int j = 0; j < LW_PLAN_GROUP; ++j) {
-            sent += before[j];
-            next += after[j];
+            arrived += arrivals[j];
+            next += reflections[j];
         }
-        const float so_far = (index ? as_float(plan[LW_PLAN_FLUX]) : 0.0f) + sent;
-        // What this bounce and all that follow it would bring, if each kept this one's share of the one before.
-        const float ratio = sent > 0.0f ? next / sent : 0.0f;
+        const float so_far = (index ? as_float(plan[LW_PLAN_FLUX]) : 0.0f) + arrived;
+        // What this bounce and all that follow it would bring, were nothing lost to the sky and reflectances the same.
+        const float ratio = arrived > 0.0f ? next / arrived : 0.0f;
         float rest = 0.0f, share = next;
         for (int b = 0; b < left; ++b, share *= ratio) rest += share;
         const int used = restart || plan[LW_PLAN_USES + index];

@@ -88,7 +88,7 @@ const ClusterSeeds* SsvpPlan::seeds(std::size_t stage) const {
 }
 
 void SsvpPlan::recordBounce(Executor& executor, std::size_t stage, const KMeans& clusters, const SecondBounce& next) {
-    executor.run("ssvp_plan.bounce", bounce_, kGroup, kGroup, clusters.clusters(), cl_int(clusters.clusterCount()), next.vpls(),
+    executor.run("ssvp_plan.bounce", bounce_, kGroup, kGroup, clusters.clusters(), cl_int(next.perCluster()), next.vpls(),
                  cl_int(next.vplCount()), cl_int(stage), cl_int(options_.bounces - stage - 1), shareOf(options_.error),
                  cl_int(restart_ ? 1 : 0), plan_);
 }

@@ -279,22 +279,24 @@ TEST_CASE("a bounce is used while it and what follows bring more than the target
     KMeans kmeans(rig.device(), most(4));
     const Vpls vpls = onTwoWalls(64, 3);
     const Guarded list = rig.upload(vpls);
-    // The kernel by itself: the VPLs of the next bounce are the test's. Those of the first carry 64 W.
+    // The kernel by itself: the VPLs of the next bounce are the test's, 25 of each cluster. Those of the first carry 64 W, of
+    // which `arriving` meets a surface.
     Kernel& kernel = rig.kernel("ssvp_plan/ssvp_plan", "ssvp_plan_bounce");
     kmeans.record(rig.executor(), list, std::uint32_t(vpls.size()), true);
     const Guarded words = rig.upload(std::vector<cl_int>(LW_PLAN_WORDS, 1));
-    const auto next = [&](double ratio, int left, int restart) {
+    const auto next = [&](double ratio, int left, int restart, double arriving = 1.0) {
         Vpls drawn(100, reference::makeVpl({0, 0, 0}, {0, 1, 0}, {1, 1, 1}, 0.01f));
-        for (lw_vpl& v : drawn)
-            for (int c = 0; c < 3; ++c) v.flux.s[c] = float(64.0 * ratio / 100.0);
+        const double each = 64.0 * ratio / 100.0;
+        for (std::size_t i = 0; i < drawn.size(); ++i)
+            for (int c = 0; c < 3; ++c) drawn[i].flux.s[c] = double(i % 25) < 25.0 * arriving ? float(each) : 0.0f;
         const Guarded buffer = rig.upload(drawn);
-        rig.run("ssvp_plan.bounce", kernel, {64, 1}, {64, 1}, kmeans.clusters(), cl_int(4), buffer, cl_int(drawn.size()), cl_int(0),
+        rig.run("ssvp_plan.bounce", kernel, {64, 1}, {64, 1}, kmeans.clusters(), cl_int(25), buffer, cl_int(drawn.size()), cl_int(0),
                 cl_int(left), cl_float(0.1f), cl_int(restart), words);
         double flux = 0.0;
         for (const lw_vpl& v : rig.download<lw_vpl>(buffer)) flux += double(v.flux.s[0]);
         const auto plan = rig.download<cl_int>(words);
         CHECK(plan[LW_PLAN_BOUNCES] == (plan[LW_PLAN_USES] ? 2 : 1));
-        CHECK(flux == Approx(plan[LW_PLAN_USES] ? 64.0 * ratio : 0.0).epsilon(1e-5));
+        CHECK(flux == Approx(plan[LW_PLAN_USES] ? 64.0 * ratio * arriving : 0.0).epsilon(1e-5));
         return plan[LW_PLAN_USES] != 0;
     };
     // Of one bounce in all, ratio / (1 + ratio) is the share: 0.09 at 0.0989, 0.11 at 0.1236, 0.07 at 0.0753.
@@ -307,4 +309,7 @@ TEST_CASE("a bounce is used while it and what follows bring more than the target
     // Three to come bring ratio + ratio^2 + ratio^3: 0.1111 of 0.1, which is a tenth of all.
     CHECK_FALSE(next(0.0995, 3, 0));
     CHECK(next(0.1015, 3, 0));
+    // Most goes to the sky: a fifth of the surfaces as bright as before count for as much as all of them did.
+    CHECK_FALSE(next(0.07, 1, 0, 0.2));
+    CHECK(next(0.1236, 1, 0, 0.2));
 }
