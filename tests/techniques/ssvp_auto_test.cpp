@@ -125,6 +125,26 @@ TEST_CASE("the picture is within about the target of that with the most of every
     CHECK(clusters < 32);
 }
 
+TEST_CASE("light that grows slowly changes the counts rarely", "[ssvp_auto]") {
+    TestDevice device(16);
+    TestTechnique technique(device, descOf(0.3f));
+    std::uint64_t last[3] = {0, 0, 0};
+    int changes[3] = {0, 0, 0};
+    for (int i = 0; i < 60; ++i) {
+        Lit lit(0.5, 0.1 + 0.9 * std::max(0, i - 10) / 50.0);
+        technique.update(lit.frame);
+        const std::uint64_t now[] = {technique.count("vpls_used"), technique.count("clusters_used"), technique.count("bounces_used")};
+        for (int k = 0; k < 3; ++k) {
+            if (i > 10) changes[k] += now[k] != last[k];
+            last[k] = now[k];
+        }
+    }
+    CAPTURE(changes[0], changes[1], changes[2]);
+    CHECK(changes[0] <= 3);
+    CHECK(changes[1] <= 6);
+    CHECK(changes[2] <= 1);
+}
+
 TEST_CASE("an error target takes no more memory than estimated, and compiles nothing late", "[ssvp_auto]") {
     TestDevice device(16);
     Lit lit(0.5);
