@@ -454,6 +454,9 @@ typedef struct LWSsvpDesc {
     LWResolution resolution; /**< as LWRsmDesc's */
     uint32_t seed;           /**< shifts the sample sets; 0: unshifted */
     LWOccluders occluders;   /**< what the maps show */
+    float autoError;         /**< above 0: `vpls`, `clusters` and `bounces` are the most there may be, and each frame takes
+                                  as many as an error of the picture of this much (relative, root mean square) asks for;
+                                  the stats say how many, and why. 0: always the most */
 } LWSsvpDesc;
 
 LW_API void lwDefaultSsvp(LWSsvpDesc* desc);

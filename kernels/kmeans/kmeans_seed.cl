@@ -28,9 +28,9 @@ LW_FN void mark_owners(lanei owner, laneu* low, laneu* high) {
     *high |= selectu_((laneu)(0u), bit, owner >= 32);
 }
 
-// The first of `clusters` whose bit is missing, or -1. `owners`: words of all lanes, those of clusters 0 to 31 first.
-LW_FN int first_without(__local const uint* owners, int clusters) {
-    uint low = 0u, high = 0u;
+// The first of `clusters` whose bit is missing, or -1. `owners`: words of all lanes, those of clusters 0 to 31 first; `low`
+// and `high`: clusters that shall have none.
+LW_FN int first_without(__local const uint* owners, int clusters, uint low, uint high) {
     for (int l = 0; l < LW_KMEANS_GROUP; ++l) {
         low |= owners[l];
         high |= owners[LW_KMEANS_GROUP + l];
@@ -78,9 +78,10 @@ LW_FN void capture(__global float* sites, int stride, __global int* assignment, 
     store(high, owners, LW_KMEANS_GROUP + item * LW_WIDTH);
 }
 
-// One work-group in all, of LW_KMEANS_GROUP / LW_WIDTH work-items.
+// One work-group in all, of LW_KMEANS_GROUP / LW_WIDTH work-items. dead: two words of clusters that stay empty, read if
+// hasDead.
 __kernel void kmeans_seed(__global float* sites, int stride, __global int* assignment, int clusters, float2 weights,
-                          __global float* means) {
+                          int hasDead, __global const int* dead, __global float* means) {
     __local uint owners[2 * LW_KMEANS_GROUP];
     __local float keys[LW_KMEANS_GROUP];
     __local int slots[LW_KMEANS_GROUP];
@@ -90,7 +91,8 @@ __kernel void kmeans_seed(__global float* sites, int stride, __global int* assig
     store(low, owners, item * LW_WIDTH);
     store(high, owners, LW_KMEANS_GROUP + item * LW_WIDTH);
     barrier(CLK_LOCAL_MEM_FENCE);
-    int seeded = first_without(owners, clusters);
+    const uint deadLow = hasDead ? as_uint(dead[0]) : 0u, deadHigh = hasDead ? as_uint(dead[1]) : 0u;
+    int seeded = first_without(owners, clusters, deadLow, deadHigh);
     int draw = 1;
     for (int l = 0; l < 2 * LW_KMEANS_GROUP; ++l) draw = draw && !owners[l];
 
@@ -119,6 +121,6 @@ __kernel void kmeans_seed(__global float* sites, int stride, __global int* assig
             capture(sites, stride, assignment, mean, seeded, weights, owners);
         }
         barrier(CLK_LOCAL_MEM_FENCE);
-        seeded = slot >= 0 ? first_without(owners, clusters) : -1;
+        seeded = slot >= 0 ? first_without(owners, clusters, deadLow, deadHigh) : -1;
     }
 }

@@ -68,23 +68,20 @@ LW_FN lw_vpl texel_vpl(__global const float* texels, int planeStride, int texel,
     return bounded(vpl);
 }
 
-// One work-item = one slot of the VPL list (order.subsets * order.capacity of them). Of the order's
-// `count` VPLs the first `sampleCount` are drawn from the texels, the rest are the host's own.
-// `shift`: Cranley-Patterson rotation of the set.
-__kernel void vpl_sampling_draw(__global const float* texels, int4 layout, __global const int4* rows,
-                                int rowCount, __global const float* texelSums, __global const float* rowSums,
-                                int uniformWeights, int sampleCount, float2 shift,
-                                __global const lw_vpl* authored, lw_subset_order order, __global lw_vpl* vpls) {
-    const int slot = lw_list_index();
+// One slot of the VPL list. Of the order's `count` VPLs the first `sampleCount` are for samples of the texels, of which
+// `live` are drawn and the others empty; the rest are the host's own.
+LW_FN void draw_slot(int slot, __global const float* texels, int4 layout, __global const int4* rows, int rowCount,
+                     __global const float* texelSums, __global const float* rowSums, int uniformWeights, int sampleCount,
+                     int live, float2 shift, __global const lw_vpl* authored, lw_subset_order order, __global lw_vpl* vpls) {
     if (slot >= order.subsets * order.capacity) return;
     const int k = lw_subset_index(order, slot);
     if (k < 0) { vpls[slot] = no_vpl(); return; }
     if (k >= sampleCount) { vpls[slot] = bounded(authored[k - sampleCount]); return; }
     const float total = rowSums[rowCount - 1];
-    if (!(total > 0.0f)) { vpls[slot] = no_vpl(); return; }
+    if (!(total > 0.0f) || k >= live) { vpls[slot] = no_vpl(); return; }
 
     // The middle of each stratum in u: with its start, texels at the map's edge would be favoured.
-    const float u = wrap_unit(((float)k + 0.5f) / (float)sampleCount + shift.x);
+    const float u = wrap_unit(((float)k + 0.5f) / (float)live + shift.x);
     const float v = wrap_unit(radical_inverse((uint)k) + shift.y);
     const int r = find_sum(rowSums, rowCount, u * total);
     const int4 row = rows[r];
@@ -92,12 +89,31 @@ __kernel void vpl_sampling_draw(__global const float* texels, int4 layout, __glo
     const int texel = row.x + find_sum(texelSums + row.x, row.y, v * rowTotal);
     __global const float* base = texels + layout.x;
     const float probability = texel_weight(base, layout.z, texel, uniformWeights) / total;
-    const lw_vpl vpl = texel_vpl(base, layout.z, texel, 1.0f / ((float)sampleCount * probability));
+    const lw_vpl vpl = texel_vpl(base, layout.z, texel, 1.0f / ((float)live * probability));
     // A texel with next to none of all flux (v = 0 falls on it nevertheless) would stand for an area beyond any: it
     // lights nothing, and its numbers leave float's range.
     const float largest = fmax(fmax(vpl.positionArea.w, vpl.flux.x), fmax(vpl.flux.y, vpl.flux.z));
     if (isfinite(largest)) vpls[slot] = vpl;
     else vpls[slot] = no_vpl();
+}
+
+// One work-item = one slot of the list (order.subsets * order.capacity of them). `shift`: Cranley-Patterson rotation of
+// the set.
+__kernel void vpl_sampling_draw(__global const float* texels, int4 layout, __global const int4* rows,
+                                int rowCount, __global const float* texelSums, __global const float* rowSums,
+                                int uniformWeights, int sampleCount, float2 shift,
+                                __global const lw_vpl* authored, lw_subset_order order, __global lw_vpl* vpls) {
+    draw_slot(lw_list_index(), texels, layout, rows, rowCount, texelSums, rowSums, uniformWeights, sampleCount, sampleCount,
+              shift, authored, order, vpls);
+}
+
+// The same of so many samples as another pass has chosen.
+__kernel void vpl_sampling_draw_live(__global const float* texels, int4 layout, __global const int4* rows,
+                                     int rowCount, __global const float* texelSums, __global const float* rowSums,
+                                     int uniformWeights, int sampleCount, float2 shift, __global const lw_vpl* authored,
+                                     lw_subset_order order, __global const int* live, __global lw_vpl* vpls) {
+    draw_slot(lw_list_index(), texels, layout, rows, rowCount, texelSums, rowSums, uniformWeights, sampleCount,
+              clamp(live[0], 1, sampleCount), shift, authored, order, vpls);
 }
 
 // The same list when every texel is a VPL of its own, with its flux and area as they are.

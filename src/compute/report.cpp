@@ -9,7 +9,7 @@
 namespace lightwell {
 
 Report::~Report() {
-    if (!pending_.empty()) clFinish(device_->queue());  // the device may still write the values
+    if (!pending_.empty() || !pendingChoices_.empty()) clFinish(device_->queue());  // the device may still write the values
 }
 
 std::size_t Report::indexOf(const char* name) {
@@ -22,11 +22,20 @@ std::size_t Report::indexOf(const char* name) {
 }
 
 void Report::read(Device& device, const char* name, const Buffer& buffer, std::size_t byteOffset) {
-    device_ = &device;
     pending_.push_back({indexOf(name), std::make_unique<cl_uint>(0)});
+    enqueueRead(device, buffer, byteOffset, pending_.back().value.get());
+}
+
+void Report::readChoice(Device& device, const char* name, const Buffer& buffer, std::size_t byteOffset,
+                        const char* const* reasons, std::uint32_t reasonCount) {
+    pendingChoices_.push_back({name, reasons, reasonCount, std::make_unique<cl_uint>(reasonCount)});
+    enqueueRead(device, buffer, byteOffset, pendingChoices_.back().value.get());
+}
+
+void Report::enqueueRead(Device& device, const Buffer& buffer, std::size_t byteOffset, cl_uint* value) {
+    device_ = &device;
     Profile untimed;
-    Executor(device, untimed)
-        .read("report.read", buffer.get(), byteOffset, sizeof(cl_uint), pending_.back().value.get());
+    Executor(device, untimed).read("report.read", buffer.get(), byteOffset, sizeof(cl_uint), value);
 }
 
 void Report::choose(const char* name, const char* reason) {
@@ -38,6 +47,9 @@ void Report::choose(const char* name, const char* reason) {
 void Report::resolve() {
     for (const Pending& pending : pending_) counts[pending.count].value += *pending.value;
     pending_.clear();
+    for (const PendingChoice& pending : pendingChoices_)
+        if (*pending.value < pending.reasonCount) choose(pending.name, pending.reasons[*pending.value]);
+    pendingChoices_.clear();
 }
 
 }  // namespace lightwell

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -26,6 +27,10 @@ public:
     // Adds the 32-bit count that `buffer` holds at `byteOffset`, as it stands when the commands enqueued so far
     // have run, to the count of this name.
     void read(Device& device, const char* name, const Buffer& buffer, std::size_t byteOffset);
+    // Adds a choice whose reason is the one of `reasons` (`reasonCount` string literals) that the 32-bit number there
+    // names; none where it names none.
+    void readChoice(Device& device, const char* name, const Buffer& buffer, std::size_t byteOffset,
+                    const char* const* reasons, std::uint32_t reasonCount);
     // Adds a choice, unless the same was made before (for another view).
     void choose(const char* name, const char* reason);
     // After the queue has got past the reads.
@@ -36,9 +41,17 @@ private:
         std::size_t count;  // index in counts
         std::unique_ptr<cl_uint> value;
     };
+    struct PendingChoice {
+        const char* name;
+        const char* const* reasons;
+        std::uint32_t reasonCount;
+        std::unique_ptr<cl_uint> value;
+    };
+    void enqueueRead(Device& device, const Buffer& buffer, std::size_t byteOffset, cl_uint* value);
     std::size_t indexOf(const char* name);
 
     std::vector<Pending> pending_;
+    std::vector<PendingChoice> pendingChoices_;
     Device* device_ = nullptr;  // set while something is pending
 };
 

@@ -28,6 +28,7 @@ public:
 
     const Buffer& vpls() const { return vpls_; }  // lw_vpl by cluster
     std::uint32_t vplCount() const { return count_; }
+    std::uint32_t perCluster() const { return options_.perCluster; }
     std::uint64_t bytes() const { return vpls_.bytes(); }
     static std::uint64_t estimateBytes(const SecondBounceOptions& options, std::uint32_t clusterCount);
 

@@ -20,6 +20,7 @@ VplSampling::VplSampling(Device& device, const VplSamplingOptions& options)
       rowSums_(device.programs().kernel(kProgram, "vpl_sampling_row_sums")),
       total_(device.programs().kernel(kProgram, "vpl_sampling_total")),
       draw_(device.programs().kernel(kProgram, "vpl_sampling_draw")),
+      drawLive_(device.programs().kernel(kProgram, "vpl_sampling_draw_live")),
       all_(device.programs().kernel(kProgram, "vpl_sampling_all")),
       planes_(device.programs().kernel(kProgram, "vpl_sampling_planes")) {}
 
@@ -40,15 +41,15 @@ void VplSampling::reserve(const RsmInput& rsms, std::uint32_t authoredCount) {
 }
 
 void VplSampling::record(Executor& executor, const RsmInput& rsms, const LWVpl* authored,
-                         std::uint32_t authoredCount) {
+                         std::uint32_t authoredCount, const VplPlan* plan) {
     reserve(rsms, authoredCount);
     static_assert(sizeof(LWVpl) == sizeof(lw_vpl), "LWVpl is uploaded as it is");
     if (authoredCount)
         executor.writeCopy("vpl_sampling.upload", authored_, 0, authoredCount * sizeof(lw_vpl), authored);
-    draw(executor, rsms, vplCount() - authoredCount);
+    draw(executor, rsms, vplCount() - authoredCount, plan);
 }
 
-void VplSampling::draw(Executor& executor, const RsmInput& rsms, std::uint32_t sampleCount) {
+void VplSampling::draw(Executor& executor, const RsmInput& rsms, std::uint32_t sampleCount, const VplPlan* plan) {
     const Range slots = gridOver(std::size_t(order_.subsets) * std::size_t(order_.capacity));
     if (options_.count == 0 || sampleCount == 0) {
         // Without texels the list holds the host's VPLs alone; the texel planes are then not read.
@@ -61,6 +62,13 @@ void VplSampling::draw(Executor& executor, const RsmInput& rsms, std::uint32_t s
     executor.run("vpl_sampling.row_sums", rowSums_, gridOver(rsms.rowCount), {4, 1}, rsms.texels, rsms.rows, rowCount,
                  uniform, texelSums_, rowTotals_);
     executor.run("vpl_sampling.total", total_, {1, 1}, {1, 1}, rowTotals_, rowCount, rowSumsBuffer_);
+    if (plan) {
+        plan->choose(texelSums_, rowTotals_);
+        executor.run("vpl_sampling.draw", drawLive_, slots, kGroup, rsms.texels, rsms.rows, rowCount, texelSums_,
+                     rowSumsBuffer_, uniform, cl_int(sampleCount), sampleRotation(options_.seed), authored_, order_,
+                     plan->live, vpls_);
+        return;
+    }
     executor.run("vpl_sampling.draw", draw_, slots, kGroup, rsms.texels, rsms.rows, rowCount, texelSums_,
                  rowSumsBuffer_, uniform, cl_int(sampleCount), sampleRotation(options_.seed), authored_, order_, vpls_);
 }

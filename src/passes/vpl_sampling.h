@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 
 #include "compute/buffer.h"
 #include "compute/executor.h"
@@ -20,13 +21,21 @@ struct VplSamplingOptions {
     std::uint32_t seed = 0;        // Cranley-Patterson rotation; 0: none
 };
 
+// What another pass has to say about how many are drawn: it is called once the texels are summed up, and leaves an int, from
+// 1 to `count`, in the memory. The others of the list then carry no flux.
+struct VplPlan {
+    const Buffer& live;
+    std::function<void(const Buffer& texelSums, const Buffer& rowTotals)> choose;
+};
+
 class VplSampling {
 public:
     VplSampling(Device& device, const VplSamplingOptions& options);
 
     // Records passes "vpl_sampling.*". `authored`: the host's own VPLs, appended to those drawn; read
-    // before the call returns.
-    void record(Executor& executor, const RsmInput& rsms, const LWVpl* authored, std::uint32_t authoredCount);
+    // before the call returns. `plan`: not asked where none are drawn.
+    void record(Executor& executor, const RsmInput& rsms, const LWVpl* authored, std::uint32_t authoredCount,
+                const VplPlan* plan = nullptr);
 
     const Buffer& vpls() const { return vpls_; }         // lw_vpl by slot
     lw_subset_order order() const { return order_; }
@@ -42,11 +51,11 @@ public:
 
 private:
     void reserve(const RsmInput& rsms, std::uint32_t authoredCount);
-    void draw(Executor& executor, const RsmInput& rsms, std::uint32_t sampleCount);
+    void draw(Executor& executor, const RsmInput& rsms, std::uint32_t sampleCount, const VplPlan* plan);
 
     Device& device_;
     VplSamplingOptions options_;
-    Kernel &rowSums_, &total_, &draw_, &all_, &planes_;
+    Kernel &rowSums_, &total_, &draw_, &drawLive_, &all_, &planes_;
     Buffer texelSums_, rowTotals_, rowSumsBuffer_, authored_, vpls_;
     lw_subset_order order_{};
 };

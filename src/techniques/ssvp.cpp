@@ -11,65 +11,16 @@
 #include "passes/clustered_gather.h"
 #include "passes/kmeans.h"
 #include "passes/second_bounce.h"
+#include "passes/ssvp_plan.h"
 #include "passes/vpl_sampling.h"
 #include "techniques/interleaved_view.h"
 #include "techniques/prewarm.h"
 #include "techniques/ssvp_maps.h"
+#include "techniques/ssvp_options.h"
 #include "techniques/ssvp_parameters.h"
 
 namespace lightwell {
 namespace {
-
-VplSamplingOptions samplingOptions(const LWSsvpDesc& desc) {
-    VplSamplingOptions options;
-    options.count = desc.vpls;
-    options.uniform = desc.sampling == LW_SAMPLING_UNIFORM;
-    options.subsets = 1;  // in their own order: clusters are dealt out, not this list
-    options.seed = desc.seed;
-    return options;
-}
-
-// Of bounce `stage` + 1. The first bounce's VPLs may have a cluster each; those of later ones would be too many.
-KMeansOptions clusterOptions(const LWSsvpDesc& desc, std::size_t stage) {
-    KMeansOptions options;
-    options.clusters = stage > 0 && desc.clusters == 0 ? LW_MOST_SORTED : desc.clusters;
-    options.warmStart = desc.warmStart != 0;
-    return options;
-}
-
-SecondBounceOptions nextOptions(const LWSsvpDesc& desc, std::size_t stage) {
-    SecondBounceOptions options;
-    options.perCluster = desc.secondVpls;
-    options.directions = std::uint32_t(desc.directions);
-    options.seed = desc.seed + std::uint32_t(stage);
-    return options;
-}
-
-InterleavedOptions interleavedOptions(const LWSsvpDesc& desc) {
-    return {desc.interleave, desc.filter != 0, desc.resolution == LW_RESOLUTION_HALF};
-}
-
-ClusterVisibility visibilityOf(const LWSsvpDesc& desc) {
-    switch (desc.visibility) {
-        case LW_VISIBILITY_NONE:
-            return ClusterVisibility::none;
-        case LW_VISIBILITY_SOFT:
-            return ClusterVisibility::soft;
-        default:
-            return ClusterVisibility::hard;
-    }
-}
-
-// As many groups as the interleave's window has pixels, at most.
-std::uint32_t groupsOf(const LWSsvpDesc& desc) { return std::min(desc.clusterGroups, desc.interleave * desc.interleave); }
-
-// Bounces whose VPLs are shadowed, and those whose VPLs have clusters: these and all that another bounce follows.
-std::size_t shadowedOf(const LWSsvpDesc& desc) {
-    return desc.visibility == LW_VISIBILITY_NONE ? 0 : std::min(desc.shadowedBounces, desc.bounces);
-}
-std::size_t stagesOf(const LWSsvpDesc& desc) {
-    return std::max<std::size_t>({1, shadowedOf(desc), desc.bounces - 1});
-}
 
 // A bounce whose VPLs have clusters, and the VPLs of the next one.
 struct Stage {
@@ -103,18 +54,22 @@ public:
           gather_(device, desc.interleave, groupsOf(desc), visibilityOf(desc)) {
         for (std::size_t i = 0; i < stagesOf(desc); ++i) stages_.emplace_back(device, desc, i);
         if (interleavedOptions(desc).half) bilateral_.emplace(device);
+        if (desc.autoError > 0.0f) plan_.emplace(device, planOptions(desc));
     }
 
     void update(Executor& executor, const LWFrame& frame) override {
         maps_.check(frame);
         rsms_.import(executor, frame);
         maps_.import(executor, frame, rsms_);
-        sampling_.record(executor, rsms_, frame.vpls, frame.vplCount);
+        if (plan_) plan_->begin(executor, frame.reset != 0);
+        recordVpls(executor, frame);
 
         std::vector<GatheredList> lists{{{sampling_.vpls(), sampling_.vplCount()}}};
         for (std::size_t i = 0; i < stages_.size(); ++i) {
             KMeans& clusters = stages_[i].clusters;
-            clusters.record(executor, lists[i].vpls.vpls, lists[i].vpls.count, frame.reset != 0);
+            clusters.record(executor, lists[i].vpls.vpls, lists[i].vpls.count, frame.reset != 0,
+                            plan_ ? plan_->seeds(i) : nullptr);
+            if (plan_) plan_->recordClusters(executor, i, clusters);
             maps_.record(executor, i, clusters.clusters(), clusters.clusterCount());
             if (i < std::max<std::size_t>(shadowedOf(desc_), 1)) {
                 lists[i].assignment = &clusters.assignment();
@@ -163,6 +118,13 @@ public:
     std::uint64_t bytes() const override;
 
 private:
+    void recordVpls(Executor& executor, const LWFrame& frame) {
+        if (!plan_ || !plan_->plansVpls()) return sampling_.record(executor, rsms_, frame.vpls, frame.vplCount);
+        const VplPlan plan{plan_->live(), [&](const Buffer& texelSums, const Buffer& rowTotals) {
+                               plan_->recordVpls(executor, rsms_, texelSums, rowTotals);
+                           }};
+        sampling_.record(executor, rsms_, frame.vpls, frame.vplCount, &plan);
+    }
     // The VPLs that the maps of a stage show lit.
     VplList recordNext(Executor& executor, std::size_t index) {
         Stage& stage = stages_[index];
@@ -170,6 +132,7 @@ private:
         stage.next.reserve(stage.clusters.clusterCount());
         stage.next.record(executor, stage.clusters.clusters(), stage.clusters.clusterCount(), maps.frames(), maps.records(),
                           maps.albedo(), maps.size());
+        if (plan_) plan_->recordBounce(executor, index, stage.clusters, stage.next);
         return {stage.next.vpls(), stage.next.vplCount()};
     }
     // Of what is shadowed.
@@ -188,6 +151,7 @@ private:
     LWSsvpDesc desc_;
     RsmInput rsms_;
     VplSampling sampling_;
+    std::optional<SsvpPlan> plan_;  // with an error target only
     std::deque<Stage> stages_;
     SsvpMaps maps_;
     std::vector<std::uint32_t> vplCounts_;  // of each bounce
@@ -208,6 +172,7 @@ Report SsvpTechnique::report() {
     for (std::size_t i = 1; i < desc_.bounces || i < 2; ++i)
         report.counts.push_back({kLater[i - 1], i < vplCounts_.size() ? vplCounts_[i] : 0});
     for (const LWChoice& choice : choices_) report.choose(choice.name, choice.reason);
+    if (plan_) plan_->report(report);
     report.counts.push_back({"rejected_pixels", 0});
     report.counts.push_back({"upsample_fallbacks", 0});
     report.counts.push_back({"saturated_pixels", 0});
@@ -249,7 +214,7 @@ std::vector<DebugView> SsvpTechnique::debugViews(const View* view) {
 }
 
 std::uint64_t SsvpTechnique::bytes() const {
-    std::uint64_t total = rsms_.bytes() + sampling_.bytes() + maps_.bytes() + gather_.bytes();
+    std::uint64_t total = rsms_.bytes() + sampling_.bytes() + maps_.bytes() + gather_.bytes() + (plan_ ? plan_->bytes() : 0);
     for (const Stage& stage : stages_) total += stage.clusters.bytes() + stage.next.bytes();
     states_.each([&](const InterleavedView& state) { total += state.bytes(); });
     return total;
@@ -261,25 +226,6 @@ void setDefaults(void* desc) { lwDefaultSsvp(static_cast<LWSsvpDesc*>(desc)); }
 
 std::unique_ptr<Technique> create(Device& device, const void* desc) {
     return std::make_unique<SsvpTechnique>(device, *static_cast<const LWSsvpDesc*>(desc));
-}
-
-std::uint64_t estimateBytes(const void* desc, const LWViewDesc& view, const FrameShape& shape) {
-    const LWSsvpDesc& ssvp = *static_cast<const LWSsvpDesc*>(desc);
-    std::vector<std::uint32_t> counts{std::uint32_t(VplSampling::orderOf(samplingOptions(ssvp), shape).count)}, clusterCounts;
-    std::uint64_t total = 0;
-    for (std::size_t i = 0; i < stagesOf(ssvp); ++i) {
-        const KMeansOptions options = clusterOptions(ssvp, i);
-        clusterCounts.push_back(options.clusters ? options.clusters : counts[i]);
-        total += KMeans::estimateBytes(options, counts[i]);
-        if (i + 1 >= ssvp.bounces) break;
-        counts.push_back(clusterCounts[i] * ssvp.secondVpls);
-        total += SecondBounce::estimateBytes(nextOptions(ssvp, i), clusterCounts[i]);
-    }
-    return total + RsmInput::estimateBytes(shape) + VplSampling::estimateBytes(samplingOptions(ssvp), shape) +
-           SsvpMaps::estimateBytes(ssvp, clusterCounts, shape) +
-           ClusteredGather::estimateBytes(counts, std::max<std::size_t>(shadowedOf(ssvp), 1), ssvp.interleave) +
-           InterleavedView::estimateBytes(interleavedOptions(ssvp), view, shape.uploads,
-                                          ClusteredGather::orderOf(counts, ssvp.interleave));
 }
 
 TechniqueEntry makeEntry() {
@@ -295,7 +241,7 @@ TechniqueEntry makeEntry() {
     entry.info.settings = ssvpSettings().data();
     entry.info.settingCount = std::uint32_t(ssvpSettings().size());
     entry.create = create;
-    entry.estimateBytes = estimateBytes;
+    entry.estimateBytes = estimateSsvpBytes;
     return entry;
 }
 

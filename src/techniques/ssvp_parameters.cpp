@@ -70,7 +70,9 @@ std::vector<LWParameter> makeTable() {
               kResolutionSweep),
         uint("seed", "shift of the sample sets; 0: unshifted", offsetof(LWSsvpDesc, seed), 0, 4294967295.0, 0),
         oneOf("occluders", "what the maps show: the best that the frame has, its triangles, its surfels (or else its triangles, sampled), or what RSMs and source views see",
-              offsetof(LWSsvpDesc, occluders), kOccludersNames, 3, LW_OCCLUDERS_AUTO)};
+              offsetof(LWSsvpDesc, occluders), kOccludersNames, 3, LW_OCCLUDERS_AUTO),
+        parameter("auto_error", "relative error of the picture for which vpls, clusters and bounces may be fewer, frame by frame: time falls as it is raised; 0: never fewer",
+                  LW_PARAMETER_FLOAT, offsetof(LWSsvpDesc, autoError), 0, 1, 0)};
 }
 
 }  // namespace

@@ -1,0 +1,97 @@
+// What technique ssvp's descriptor asks of each pass, and the memory that all of them take.
+#include "techniques/ssvp_options.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "inputs/rsm_input.h"
+#include "techniques/ssvp_maps.h"
+
+namespace lightwell {
+
+VplSamplingOptions samplingOptions(const LWSsvpDesc& desc) {
+    VplSamplingOptions options;
+    options.count = desc.vpls;
+    options.uniform = desc.sampling == LW_SAMPLING_UNIFORM;
+    options.subsets = 1;  // in their own order: clusters are dealt out, not this list
+    options.seed = desc.seed;
+    return options;
+}
+
+// Of bounce `stage` + 1. The first bounce's VPLs may have a cluster each; those of later ones would be too many.
+KMeansOptions clusterOptions(const LWSsvpDesc& desc, std::size_t stage) {
+    KMeansOptions options;
+    options.clusters = stage > 0 && desc.clusters == 0 ? LW_MOST_SORTED : desc.clusters;
+    options.warmStart = desc.warmStart != 0;
+    return options;
+}
+
+SecondBounceOptions nextOptions(const LWSsvpDesc& desc, std::size_t stage) {
+    SecondBounceOptions options;
+    options.perCluster = desc.secondVpls;
+    options.directions = std::uint32_t(desc.directions);
+    options.seed = desc.seed + std::uint32_t(stage);
+    return options;
+}
+
+InterleavedOptions interleavedOptions(const LWSsvpDesc& desc) {
+    return {desc.interleave, desc.filter != 0, desc.resolution == LW_RESOLUTION_HALF};
+}
+
+ClusterVisibility visibilityOf(const LWSsvpDesc& desc) {
+    switch (desc.visibility) {
+        case LW_VISIBILITY_NONE:
+            return ClusterVisibility::none;
+        case LW_VISIBILITY_SOFT:
+            return ClusterVisibility::soft;
+        default:
+            return ClusterVisibility::hard;
+    }
+}
+
+// As many groups as the interleave's window has pixels, at most.
+std::uint32_t groupsOf(const LWSsvpDesc& desc) { return std::min(desc.clusterGroups, desc.interleave * desc.interleave); }
+
+// Bounces whose VPLs are shadowed, and those whose VPLs have clusters: these and all that another bounce follows.
+std::size_t shadowedOf(const LWSsvpDesc& desc) {
+    return desc.visibility == LW_VISIBILITY_NONE ? 0 : std::min(desc.shadowedBounces, desc.bounces);
+}
+std::size_t stagesOf(const LWSsvpDesc& desc) {
+    return std::max<std::size_t>({1, shadowedOf(desc), desc.bounces - 1});
+}
+
+SsvpPlanOptions planOptions(const LWSsvpDesc& desc) {
+    SsvpPlanOptions options;
+    options.error = desc.autoError;
+    options.vpls = desc.vpls;
+    options.clusters = desc.clusters;
+    options.bounces = desc.bounces;
+    options.plansVpls = desc.sampling == LW_SAMPLING_FLUX;
+    // Without a warm start every frame seeds anew, and a count of one frame says nothing of the next's.
+    options.plansClusters = desc.clusters > 0 && desc.warmStart != 0;
+    options.stages = stagesOf(desc);
+    return options;
+}
+
+std::uint64_t estimateSsvpBytes(const void* desc, const LWViewDesc& view, const FrameShape& shape) {
+    const LWSsvpDesc& ssvp = *static_cast<const LWSsvpDesc*>(desc);
+    std::vector<std::uint32_t> counts{std::uint32_t(VplSampling::orderOf(samplingOptions(ssvp), shape).count)}, clusterCounts;
+    std::uint64_t total = 0;
+    for (std::size_t i = 0; i < stagesOf(ssvp); ++i) {
+        const KMeansOptions options = clusterOptions(ssvp, i);
+        clusterCounts.push_back(options.clusters ? options.clusters : counts[i]);
+        total += KMeans::estimateBytes(options, counts[i]);
+        if (i + 1 >= ssvp.bounces) break;
+        counts.push_back(clusterCounts[i] * ssvp.secondVpls);
+        total += SecondBounce::estimateBytes(nextOptions(ssvp, i), clusterCounts[i]);
+    }
+    if (ssvp.autoError > 0.0f)
+        total += SsvpPlan::estimateBytes(planOptions(ssvp), shape.texels ? shape.rows : 0);
+    return total + RsmInput::estimateBytes(shape) + VplSampling::estimateBytes(samplingOptions(ssvp), shape) +
+           SsvpMaps::estimateBytes(ssvp, clusterCounts, shape) +
+           ClusteredGather::estimateBytes(counts, std::max<std::size_t>(shadowedOf(ssvp), 1), ssvp.interleave) +
+           InterleavedView::estimateBytes(interleavedOptions(ssvp), view, shape.uploads,
+                                          ClusteredGather::orderOf(counts, ssvp.interleave));
+}
+
+}  // namespace lightwell

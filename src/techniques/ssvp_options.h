@@ -1,0 +1,32 @@
+// What technique ssvp's descriptor asks of each pass.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "inputs/frame_shape.h"
+#include "lightwell/lightwell.h"
+#include "passes/clustered_gather.h"
+#include "passes/kmeans.h"
+#include "passes/second_bounce.h"
+#include "passes/ssvp_plan.h"
+#include "passes/vpl_sampling.h"
+#include "techniques/interleaved_view.h"
+
+namespace lightwell {
+
+VplSamplingOptions samplingOptions(const LWSsvpDesc& desc);
+// Of bounce `stage` + 1.
+KMeansOptions clusterOptions(const LWSsvpDesc& desc, std::size_t stage);
+SecondBounceOptions nextOptions(const LWSsvpDesc& desc, std::size_t stage);
+InterleavedOptions interleavedOptions(const LWSsvpDesc& desc);
+ClusterVisibility visibilityOf(const LWSsvpDesc& desc);
+SsvpPlanOptions planOptions(const LWSsvpDesc& desc);  // of one with an error target
+std::uint32_t groupsOf(const LWSsvpDesc& desc);
+// Bounces whose VPLs are shadowed, and those whose VPLs have clusters.
+std::size_t shadowedOf(const LWSsvpDesc& desc);
+std::size_t stagesOf(const LWSsvpDesc& desc);
+// As TechniqueEntry::estimateBytes.
+std::uint64_t estimateSsvpBytes(const void* desc, const LWViewDesc& view, const FrameShape& shape);
+
+}  // namespace lightwell

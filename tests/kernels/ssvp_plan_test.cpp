@@ -1,0 +1,315 @@
+// How many VPLs, clusters and bounces a frame takes: against counts known by construction, at rest and in slow motion.
+#include "passes/ssvp_plan.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <functional>
+#include <random>
+#include <string>
+
+#include "support/kmeans_rig.h"
+
+using namespace lightwell;
+using namespace lightwell::test;
+using reference::Vec;
+
+namespace {
+
+struct Used {
+    std::uint32_t vpls = 0, clusters = 0, bounces = 0;
+    std::string whyVpls, whyClusters, whyBounces;
+};
+
+Used usedBy(KernelRig& rig, const SsvpPlan& plan) {
+    Report report;
+    plan.report(report);
+    rig.device().finish();
+    report.resolve();
+    Used used;
+    for (const LWCount& count : report.counts) {
+        if (std::string(count.name) == "vpls_used") used.vpls = std::uint32_t(count.value);
+        if (std::string(count.name) == "clusters_used") used.clusters = std::uint32_t(count.value);
+        if (std::string(count.name) == "bounces_used") used.bounces = std::uint32_t(count.value);
+    }
+    for (const LWChoice& choice : report.choices) {
+        if (std::string(choice.name) == "vpls_used") used.whyVpls = choice.reason;
+        if (std::string(choice.name) == "clusters_used") used.whyClusters = choice.reason;
+        if (std::string(choice.name) == "bounces_used") used.whyBounces = choice.reason;
+    }
+    return used;
+}
+
+SsvpPlanOptions optionsOf(float error) {
+    SsvpPlanOptions options;
+    options.error = error;
+    options.vpls = 256;
+    options.clusters = 32;
+    options.bounces = 4;
+    return options;
+}
+
+// An RSM of `side`^2 texels on a floor of one metre, with this flux.
+class LitTexels {
+public:
+    LitTexels(KernelRig& rig, std::uint32_t side, const std::function<double(double, double)>& flux)
+        : planes_(rig.upload(planesOf(side, flux))), rows_(rig.upload(rowsOf(side))) {
+        input.texels.memory = planes_.get();
+        input.texels.rowStride = input.texels.planeStride = input.texels.width = paddedWidth(side) * side;
+        input.texels.height = 1;
+        input.texels.count = RsmInput::kPlaneCount;
+        input.rows = Buffer::retained(rig.device(), rows_.get());
+        input.rowCount = side;
+        input.texelCount = side * side;
+    }
+    RsmInput input;
+
+private:
+    static std::vector<float> planesOf(std::uint32_t side, const std::function<double(double, double)>& flux) {
+        const std::size_t row = paddedWidth(side), count = row * side;
+        std::vector<float> planes(count * RsmInput::kPlaneCount, 0.0f);
+        for (std::size_t y = 0; y < side; ++y)
+            for (std::size_t x = 0; x < side; ++x) {
+                const std::size_t t = y * row + x;
+                const double u = (double(x) + 0.5) / side, v = (double(y) + 0.5) / side;
+                planes[std::size_t(RsmInput::kPositionX) * count + t] = float(u);
+                planes[(std::size_t(RsmInput::kPositionX) + 2) * count + t] = float(v);
+                planes[std::size_t(RsmInput::kNormalY) * count + t] = 1.0f;
+                for (std::size_t c = 0; c < 3; ++c)
+                    planes[(std::size_t(RsmInput::kFluxR) + c) * count + t] = float(flux(u, v));
+                planes[std::size_t(RsmInput::kArea) * count + t] = 1.0f / float(side * side);
+            }
+        return planes;
+    }
+    static std::vector<cl_int4> rowsOf(std::uint32_t side) {
+        std::vector<cl_int4> rows;
+        for (std::uint32_t y = 0; y < side; ++y) rows.push_back({{cl_int(y * paddedWidth(side)), cl_int(side), 0, 0}});
+        return rows;
+    }
+    Guarded planes_, rows_;
+};
+
+Used drawFrame(KernelRig& rig, SsvpPlan& plan, VplSampling& sampling, const RsmInput& input, bool restart = false) {
+    plan.begin(rig.executor(), restart);
+    const VplPlan choice{plan.live(), [&](const Buffer& texelSums, const Buffer& rowTotals) {
+                             plan.recordVpls(rig.executor(), input, texelSums, rowTotals);
+                         }};
+    sampling.record(rig.executor(), input, nullptr, 0, &choice);
+    return usedBy(rig, plan);
+}
+
+double fluxOf(const VplSampling& sampling, std::uint32_t* lit) {
+    std::vector<lw_vpl> vpls(std::size_t(sampling.order().subsets * sampling.order().capacity));
+    sampling.vpls().download(0, vpls.size() * sizeof(lw_vpl), vpls.data());
+    double sum = 0.0;
+    *lit = 0;
+    for (const lw_vpl& vpl : vpls) {
+        sum += double(vpl.flux.s[0]);
+        *lit += vpl.flux.s[0] > 0.0f;
+    }
+    return sum;
+}
+
+double fiveTexels(double u, double v) {  // of 32 x 32
+    const int x = int(u * 32.0), y = int(v * 32.0);
+    return (x == 3 && (y == 4 || y == 20)) || (x == 17 && (y == 4 || y == 9)) || (x == 30 && y == 30) ? 2e-4 : 0.0;
+}
+
+Used clusterFrames(KernelRig& rig, SsvpPlan& plan, KMeans& kmeans, const Vpls& vpls, int frames, bool restart = false) {
+    const Guarded list = rig.upload(vpls);
+    for (int i = 0; i < frames; ++i) {
+        plan.begin(rig.executor(), restart && i == 0);
+        kmeans.record(rig.executor(), list, std::uint32_t(vpls.size()), restart && i == 0, plan.seeds(0));
+        plan.recordClusters(rig.executor(), 0, kmeans);
+    }
+    return usedBy(rig, plan);
+}
+
+KMeansOptions most(std::uint32_t clusters) {
+    KMeansOptions options;
+    options.clusters = clusters;
+    return options;
+}
+
+std::vector<lw_cluster> clustersOf(const KMeans& kmeans) {
+    std::vector<lw_cluster> clusters(kmeans.clusterCount());
+    kmeans.clusters().download(0, clusters.size() * sizeof(lw_cluster), clusters.data());
+    return clusters;
+}
+
+// VPLs on the floor of a unit room and on a wall, at random.
+Vpls onTwoWalls(std::size_t count, unsigned seed, double shift = 0.0) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> u(0.0, 1.0);
+    Vpls vpls;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double a = 0.6 * u(random) + shift, b = u(random);
+        vpls.push_back(i % 2 ? reference::makeVpl({a, 0, b}, {0, 1, 0}, {1, 1, 1}, 0.01f)
+                             : reference::makeVpl({0, a, b}, {1, 0, 0}, {1, 1, 1}, 0.01f));
+    }
+    return vpls;
+}
+
+}  // namespace
+
+TEST_CASE("five lit texels take VPLs for five, an even light what the target asks for", "[ssvp_plan]") {
+    KernelRig rig(GENERATE(1u, 16u));
+    const float error = 0.3f;
+    const double share = double(error) / std::sqrt(3.0);
+    const LitTexels five(rig, 32, fiveTexels), even(rig, 32, [](double, double) { return 1e-3; });
+    SsvpPlan plan(rig.device(), optionsOf(error));
+    VplSamplingOptions sampled;
+    sampled.subsets = 1;
+    VplSampling sampling(rig.device(), sampled);
+    const Used first = drawFrame(rig, plan, sampling, five.input);
+    CHECK(first.vpls == 256);
+    CHECK(first.whyVpls.find("first frame") != std::string::npos);
+    const Used used = drawFrame(rig, plan, sampling, five.input);
+    const double needed = 1.5 * std::sqrt(5.0) / share;  // fewer than 5 times as many as there are texels
+    CHECK(used.vpls >= std::uint32_t(std::ceil(needed)));
+    CHECK(used.vpls <= std::uint32_t(1.2 * (needed + 1.0)) + 1);
+    CHECK(used.vpls < 25);
+    CHECK(used.whyVpls.find("few texels") != std::string::npos);
+    std::uint32_t lit = 0;
+    CHECK(fluxOf(sampling, &lit) == Approx(5.0 * 2e-4).epsilon(1e-5));
+    CHECK(lit == used.vpls);
+    const Used spread = drawFrame(rig, plan, sampling, even.input);
+    CHECK(spread.vpls > used.vpls);
+    CHECK(double(spread.vpls) >= std::floor(1.5 * 1.5 / (share * share)));
+    CHECK(fluxOf(sampling, &lit) == Approx(1024.0 * 1e-3).epsilon(1e-5));
+    const Used cut = drawFrame(rig, plan, sampling, even.input, true);
+    CHECK(cut.vpls == 256);
+}
+
+TEST_CASE("half the error never takes fewer VPLs; still light keeps its count, a slow sweep too", "[ssvp_plan]") {
+    KernelRig rig(16);
+    VplSamplingOptions sampled;
+    sampled.subsets = 1;
+    VplSampling sampling(rig.device(), sampled);
+    std::uint32_t last = 256;
+    for (const float error : {0.05f, 0.1f, 0.2f, 0.4f, 0.8f}) {
+        const LitTexels light(rig, 32, [](double u, double v) { return 1e-3 * std::exp(-20.0 * (u * u + v * v)); });
+        SsvpPlan plan(rig.device(), optionsOf(error));
+        drawFrame(rig, plan, sampling, light.input);
+        const std::uint32_t count = drawFrame(rig, plan, sampling, light.input).vpls;
+        CHECK(count <= last);
+        for (int i = 0; i < 5; ++i) CHECK(drawFrame(rig, plan, sampling, light.input).vpls == count);
+        last = count;
+    }
+    CHECK(last < 256);
+    // A spot that grows from 0.1 to 0.3 of the map: its texels, and so their root, grow ninefold and threefold.
+    SsvpPlan plan(rig.device(), optionsOf(0.2f));
+    int changes = 0;
+    for (int i = 0; i <= 60; ++i) {
+        const double radius = 0.1 + 0.2 * i / 60.0;
+        const LitTexels spot(rig, 32, [&](double u, double v) { return std::hypot(u - 0.5, v - 0.5) < radius ? 1e-3 : 0.0; });
+        const std::uint32_t count = drawFrame(rig, plan, sampling, spot.input).vpls;
+        if (i > 1) changes += count != last;
+        last = count;
+    }
+    CHECK(changes <= 6);  // each by a fifth or more
+}
+
+TEST_CASE("one place takes one cluster, two far blobs two", "[ssvp_plan]") {
+    KernelRig rig(GENERATE(1u, 16u));
+    KMeans kmeans(rig.device(), most(32));
+    SsvpPlan plan(rig.device(), optionsOf(0.3f));
+    const Used first = clusterFrames(rig, plan, kmeans, onTwoWalls(256, 1), 1);
+    CHECK(first.clusters == 32);
+    CHECK(first.whyClusters.find("first frame") != std::string::npos);
+    const Vpls place(64, reference::makeVpl({1, 2, 3}, {0, 1, 0}, {1, 1, 1}, 0.01f));
+    CHECK(clusterFrames(rig, plan, kmeans, place, 2, true).clusters == 1);
+    Vpls blobs;
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> u(-0.1, 0.1);
+    for (int i = 0; i < 128; ++i)
+        blobs.push_back(reference::makeVpl({(i % 2 ? 10.0 : 0.0) + u(random), 0, u(random)}, {0, 1, 0}, {1, 1, 1}, 0.01f));
+    // From one cluster it grows, from the most it shrinks.
+    for (const bool restart : {false, true}) {
+        const Used used = clusterFrames(rig, plan, kmeans, blobs, 6, restart);
+        CHECK(used.clusters == 2);
+        CHECK(used.whyClusters.find("spread") != std::string::npos);
+        for (const lw_cluster& c : clustersOf(kmeans))
+            if (c.position.s[3] > 0.0f) CHECK(c.position.s[3] == 64.0f);
+    }
+    // The light goes and comes again.
+    const Vpls dark(64, reference::makeVpl({1, 2, 3}, {0, 1, 0}, {0, 0, 0}, 0.01f));
+    CHECK(clusterFrames(rig, plan, kmeans, dark, 3).clusters == 0);
+    CHECK(clusterFrames(rig, plan, kmeans, blobs, 6).clusters == 2);
+}
+
+TEST_CASE("clusters come to rest in a still scene, and half the error never takes fewer", "[ssvp_plan]") {
+    KernelRig rig(16);
+    for (const unsigned seed : {1u, 2u, 3u, 4u}) {
+        const Vpls vpls = onTwoWalls(256, seed);
+        std::uint32_t last = 32;
+        for (const float error : {0.05f, 0.1f, 0.2f, 0.4f, 0.8f}) {
+            KMeans kmeans(rig.device(), most(32));
+            SsvpPlan plan(rig.device(), optionsOf(error));
+            const std::uint32_t count = clusterFrames(rig, plan, kmeans, vpls, 24).clusters;
+            CAPTURE(seed, error, count, last);
+            CHECK(count <= last);
+            CHECK(count >= 1);
+            for (int i = 0; i < 12; ++i) CHECK(clusterFrames(rig, plan, kmeans, vpls, 1).clusters == count);
+            last = count;
+        }
+        CHECK(last < 32);
+    }
+}
+
+TEST_CASE("in a slow sweep the number of clusters changes rarely; the same frames have the same bits", "[ssvp_plan]") {
+    KernelRig rig(16);
+    std::vector<std::uint32_t> before;
+    for (int run = 0; run < 2; ++run) {
+        KMeans kmeans(rig.device(), most(32));
+        SsvpPlan plan(rig.device(), optionsOf(0.3f));
+        std::vector<std::uint32_t> counts;
+        for (int i = 0; i < 120; ++i)
+            counts.push_back(clusterFrames(rig, plan, kmeans, onTwoWalls(256, 5, 0.4 * std::max(0, i - 20) / 100.0), 1).clusters);
+        int changes = 0;
+        for (std::size_t i = 20; i < counts.size(); ++i) changes += counts[i] != counts[i - 1];
+        CHECK(changes <= 8);
+        if (run) CHECK(counts == before);
+        before = counts;
+    }
+}
+
+TEST_CASE("a bounce is used while it and what follows bring more than the target", "[ssvp_plan]") {
+    KernelRig rig(GENERATE(1u, 16u));
+    KMeans kmeans(rig.device(), most(4));
+    const Vpls vpls = onTwoWalls(64, 3);
+    const Guarded list = rig.upload(vpls);
+    // The kernel by itself: the VPLs of the next bounce are the test's, 25 of each cluster. Those of the first carry 64 W, of
+    // which `arriving` meets a surface.
+    Kernel& kernel = rig.kernel("ssvp_plan/ssvp_plan", "ssvp_plan_bounce");
+    kmeans.record(rig.executor(), list, std::uint32_t(vpls.size()), true);
+    const Guarded words = rig.upload(std::vector<cl_int>(LW_PLAN_WORDS, 1));
+    const auto next = [&](double ratio, int left, int restart, double arriving = 1.0) {
+        Vpls drawn(100, reference::makeVpl({0, 0, 0}, {0, 1, 0}, {1, 1, 1}, 0.01f));
+        const double each = 64.0 * ratio / 100.0;
+        for (std::size_t i = 0; i < drawn.size(); ++i)
+            for (int c = 0; c < 3; ++c) drawn[i].flux.s[c] = double(i % 25) < 25.0 * arriving ? float(each) : 0.0f;
+        const Guarded buffer = rig.upload(drawn);
+        rig.run("ssvp_plan.bounce", kernel, {64, 1}, {64, 1}, kmeans.clusters(), cl_int(25), buffer, cl_int(drawn.size()), cl_int(0),
+                cl_int(left), cl_float(0.1f), cl_int(restart), words);
+        double flux = 0.0;
+        for (const lw_vpl& v : rig.download<lw_vpl>(buffer)) flux += double(v.flux.s[0]);
+        const auto plan = rig.download<cl_int>(words);
+        CHECK(plan[LW_PLAN_BOUNCES] == (plan[LW_PLAN_USES] ? 2 : 1));
+        CHECK(flux == Approx(plan[LW_PLAN_USES] ? 64.0 * ratio * arriving : 0.0).epsilon(1e-5));
+        return plan[LW_PLAN_USES] != 0;
+    };
+    // Of one bounce in all, ratio / (1 + ratio) is the share: 0.09 at 0.0989, 0.11 at 0.1236, 0.07 at 0.0753.
+    CHECK(next(0.0, 1, 1));  // a first frame
+    CHECK(next(0.0989, 1, 0));   // in use, it stays
+    CHECK_FALSE(next(0.07, 1, 0));
+    CHECK_FALSE(next(0.0989, 1, 0));  // out of use, it stays out
+    CHECK(next(0.1236, 1, 0));
+    CHECK_FALSE(next(0.0, 1, 0));  // black
+    // Three to come bring ratio + ratio^2 + ratio^3: 0.1111 of 0.1, which is a tenth of all.
+    CHECK_FALSE(next(0.0995, 3, 0));
+    CHECK(next(0.1015, 3, 0));
+    // Most goes to the sky: a fifth of the surfaces as bright as before count for as much as all of them did.
+    CHECK_FALSE(next(0.07, 1, 0, 0.2));
+    CHECK(next(0.1236, 1, 0, 0.2));
+}
