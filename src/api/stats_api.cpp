@@ -108,6 +108,7 @@ LWStatus lwReadDebugView(LWTechnique technique, LWView view, const char* name, f
             if (capacity < needed)
                 fail(LW_ERROR_INVALID_ARGUMENT, "capacity: expected at least ", needed, " floats, got ",
                      capacity);
+            if (needed == 0) return;  // nothing to show, e.g. maps where no light is shadowed
             FrameRecord scratch(device);  // its times belong to no frame
             Buffer made;                   // held until the reads are done
             try {

@@ -184,8 +184,8 @@ GeometryInput::Key GeometryInput::keyOf(const LWGeometry* g) {
     return {g->vertices, g->indices, g->triangleAlbedo, g->vertexCount, g->triangleCount, g->version};
 }
 
-void GeometryInput::check(const LWGeometry* geometry) {
-    if (geometry && geometry->triangleCount) checkArrays(*geometry);
+void GeometryInput::check(const LWGeometry* geometry) const {
+    if (geometry && geometry->triangleCount && !(keyOf(geometry) == key_)) checkArrays(*geometry);
 }
 
 void GeometryInput::import(Executor& executor, const LWGeometry* geometry) {

@@ -23,8 +23,8 @@ public:
         kPlaneCount = LW_TRIANGLE_PLANES
     };
 
-    // Throws what import() would say of this geometry (null: none) when it is new.
-    static void check(const LWGeometry* geometry);
+    // Throws what import() would say of this geometry (null: none). Of what is in force already nothing is read.
+    void check(const LWGeometry* geometry) const;
 
     // Brings the geometry to the device (pass "geometry_input.upload") when its version, a pointer or a count
     // differs from the last; host memory is read during the call only. Triangles are ordered by size and place, by

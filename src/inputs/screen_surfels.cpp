@@ -72,11 +72,12 @@ void ScreenSurfels::import(Executor& executor, const LWFrame& frame, const RsmIn
     views_.resize(frame.sourceViewCount);
     device_ = &device;
     if (count) {
-        // The last block's padding; everything else is written.
+        // The last block's padding, if any: drivers may refuse to fill nothing. Everything else is written.
         const Planes& planes = memory_.planes();
-        executor.fill("surfel_input.clear", memory_.memory(), 0,
-                      (LW_SURFEL_RADIUS * std::size_t(planes.planeStride) + count) * sizeof(float),
-                      (planes.width - std::size_t(count)) * sizeof(float));
+        if (planes.width > count)
+            executor.fill("surfel_input.clear", memory_.memory(), 0,
+                          (LW_SURFEL_RADIUS * std::size_t(planes.planeStride) + count) * sizeof(float),
+                          (planes.width - std::size_t(count)) * sizeof(float));
         drawTexels(executor, frame, rsms);
         std::uint32_t first = rsms.texels.width;
         for (std::uint32_t i = 0; i < frame.sourceViewCount; ++i) {

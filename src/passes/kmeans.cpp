@@ -41,6 +41,11 @@ std::size_t clusterBytes(const KMeansOptions& options, std::uint32_t count) {
 
 std::size_t assignmentBytes(std::uint32_t count) { return std::size_t(strideOf(count)) * sizeof(cl_int); }
 
+void checkSlots(std::uint32_t count) {
+    if (count > kMostSlots)
+        fail(LW_ERROR_UNSUPPORTED, "vpls: ", count, " slots, clusters take at most ", kMostSlots);
+}
+
 const KMeansOptions& checked(const KMeansOptions& options) {
     if (options.clusters > LW_KMEANS_MOST)
         fail(LW_ERROR_INVALID_ARGUMENT, "clusters: expected 0 to ", LW_KMEANS_MOST, ", got ", options.clusters);
@@ -68,8 +73,7 @@ KMeans::KMeans(Device& device, const KMeansOptions& options)
       planes_(device.programs().kernel("kmeans/kmeans_clusters", "kmeans_planes")) {}
 
 void KMeans::reserve(std::uint32_t count) {
-    if (count > kMostSlots)
-        fail(LW_ERROR_UNSUPPORTED, "vpls: ", count, " slots, clusters take at most ", kMostSlots);
+    checkSlots(count);
     // A list without slots has memory nevertheless: a kernel's argument must be some.
     assignment_.reserve(device_, assignmentBytes(count), "clusters of VPLs");
     clusters_.reserve(device_, clusterBytes(options_, count), "clusters");
@@ -147,6 +151,7 @@ std::uint64_t KMeans::bytes() const {
 }
 
 std::uint64_t KMeans::estimateBytes(const KMeansOptions& options, std::uint32_t count) {
+    checkSlots(count);
     const std::uint64_t list = assignmentBytes(count) + clusterBytes(options, count);
     return options.clusters ? list + siteBytes(count) + partialBytes(count) + kMeanBytes + kFrameBytes : list;
 }

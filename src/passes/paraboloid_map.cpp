@@ -140,6 +140,9 @@ Planes ParaboloidMap::debugShape() const {
 
 void ParaboloidMap::recordPlanes(Executor& executor, const Planes& planes) {
     if (mapCount_ == 0) return;
+    if (planes.planeStride * planes.count > std::numeric_limits<std::int32_t>::max())
+        fail(LW_ERROR_UNSUPPORTED, "debug view maps: ", mapCount_, " maps of ", size_, " x ", size_,
+             " texels exceed the 32-bit indices of the kernels");
     executor.run("paraboloid_map.planes", planes_, {std::size_t(size_) * size_ / planes_.width(), mapCount_},
                  rowGroup(device_), frames_, records_, albedo_, cl_int(size_), planes.memory,
                  cl_int(planes.planeStride));
@@ -159,9 +162,15 @@ std::uint64_t ParaboloidMap::bytes() const {
 std::uint64_t ParaboloidMap::estimateBytes(std::uint32_t size, std::uint32_t clusterCount, std::uint32_t triangleCount) {
     const std::uint64_t groups = groupsOf(triangleCount), maps = std::max(clusterCount, 1u);
     checkCount(size, maps, groups);
-    return maps * (sizeof(lw_paraboloid) + sizeof(cl_int) + std::uint64_t(size) * size * 12 +
-                   std::max<std::uint64_t>(groups, 16) * sizeof(cl_uint) + kLargePerMap * sizeof(lw_large_triangle)) +
-           LW_MAP_COUNTERS * sizeof(cl_uint) + sizeof(float);
+    return estimatePlacesBytes(size, clusterCount) + sizeof(float) +
+           maps * (std::max<std::uint64_t>(groups, 16) * sizeof(cl_uint) + kLargePerMap * sizeof(lw_large_triangle));
+}
+
+std::uint64_t ParaboloidMap::estimatePlacesBytes(std::uint32_t size, std::uint32_t clusterCount) {
+    const std::uint64_t maps = std::max(clusterCount, 1u);
+    checkCount(size, maps, 0);
+    return maps * (sizeof(lw_paraboloid) + sizeof(cl_int) + std::uint64_t(size) * size * 12) +
+           LW_MAP_COUNTERS * sizeof(cl_uint);
 }
 
 }  // namespace lightwell

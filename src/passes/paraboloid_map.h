@@ -54,6 +54,8 @@ public:
     void report(Report& report) const;  // maps_redrawn, inline_triangles
     std::uint64_t bytes() const;
     static std::uint64_t estimateBytes(std::uint32_t size, std::uint32_t clusterCount, std::uint32_t triangleCount);
+    // Where other passes draw into the maps.
+    static std::uint64_t estimatePlacesBytes(std::uint32_t size, std::uint32_t clusterCount);
 
 private:
     void reserve(std::uint32_t clusterCount);

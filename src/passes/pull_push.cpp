@@ -1,8 +1,10 @@
 #include "passes/pull_push.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "compute/device.h"
+#include "compute/error.h"
 #include "inputs/image_access.h"
 
 namespace lightwell {
@@ -19,7 +21,11 @@ std::uint64_t strideOf(std::uint32_t size, std::size_t level) {
 }
 
 std::uint64_t levelBytes(std::uint32_t size, std::size_t level, std::uint32_t maps) {
-    return strideOf(size, level) * LW_FILL_PLANES * std::max(maps, 1u) * sizeof(float);
+    const std::uint64_t floats = strideOf(size, level) * LW_FILL_PLANES * std::max(maps, 1u);
+    if (floats > std::uint64_t(std::numeric_limits<std::int32_t>::max()))
+        fail(LW_ERROR_UNSUPPORTED, "clusters: the levels that fill ", maps, " maps of ", size, " x ", size,
+             " texels exceed the 32-bit indices of the kernels");
+    return floats * sizeof(float);
 }
 
 }  // namespace

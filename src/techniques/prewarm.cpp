@@ -112,7 +112,7 @@ void exerciseTechnique(Executor& executor, Technique& technique) {
         technique.update(executor, frame);
         technique.render(executor, view, gbuffer, output);
         for (const DebugView& debug : technique.debugViews(view.get()))
-            if (debug.fill) {
+            if (debug.fill && debug.planes.width && debug.planes.height) {
                 Planes planes = debug.planes;
                 const Buffer made(executor.device(), std::size_t(planes.planeStride) * planes.count * sizeof(float),
                                   debug.name);

@@ -75,8 +75,8 @@ public:
                 lists[i].assignment = &clusters.assignment();
                 lists[i].clusterCount = clusters.clusterCount();
             }
-            if (i + 1 < desc_.bounces && clusters.clusterCount()) lists.push_back({recordNext(executor, i)});
-            if (lists.size() == i + 1) break;  // no VPLs, or the last bounce
+            // All stages, also in the dark: what is left of a lit frame would be shown, counted and warm the next clusters.
+            if (i + 1 < desc_.bounces) lists.push_back({recordNext(executor, i)});
         }
         gather_.recordOrder(executor, lists);
         vplCounts_.clear();
@@ -129,6 +129,8 @@ private:
     VplList recordNext(Executor& executor, std::size_t index) {
         Stage& stage = stages_[index];
         const ParaboloidMap& maps = maps_.maps(index);
+        // A kernel's argument must be some memory, also where none is read.
+        if (stage.clusters.clusterCount() == 0) return {sampling_.vpls(), 0};
         stage.next.reserve(stage.clusters.clusterCount());
         stage.next.record(executor, stage.clusters.clusters(), stage.clusters.clusterCount(), maps.frames(), maps.records(),
                           maps.albedo(), maps.size());

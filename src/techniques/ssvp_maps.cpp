@@ -73,7 +73,7 @@ void SsvpMaps::check(const LWFrame& frame) const {
         !hasRsm(frame))
         fail(LW_ERROR_INVALID_ARGUMENT, "frame: expected RSMs or sourceViews, as the technique's parameter "
              "occluders=screen asks for them, got neither");
-    if (drawsTriangles) GeometryInput::check(frame.geometry);
+    if (drawsTriangles) triangles_.check(frame.geometry);
     if (source == Source::surfels) SurfelInput::check(device_, frame.geometry);
     if (source == Source::screen) ScreenSurfels::check(device_, frame);
 }
@@ -159,13 +159,15 @@ std::uint64_t SsvpMaps::estimateBytes(const LWSsvpDesc& desc, const std::vector<
                                       const FrameShape& shape) {
     const Source source = chosenSource(desc, shape.triangles, shape.surfels);
     const std::uint32_t sampled = SurfelSplat::mostSurfels(desc.mapSize);
-    const auto mapsOf = [&](std::uint32_t clusters) { return source == Source::none ? 0 : clusters; };
     std::uint64_t total = 0;
-    for (const std::uint32_t clusters : clusterCounts)
-        total += ParaboloidMap::estimateBytes(desc.mapSize, mapsOf(clusters), source == Source::triangles ? shape.triangles : 0);
-    std::uint64_t surfels = 0;
     if (source == Source::triangles || source == Source::sampledTriangles) total += GeometryInput::estimateBytes(shape.triangles);
-    if (source == Source::none || source == Source::triangles) return total;
+    if (source == Source::none || source == Source::triangles) {
+        const bool draws = source == Source::triangles;
+        for (const std::uint32_t clusters : clusterCounts)
+            total += ParaboloidMap::estimateBytes(desc.mapSize, draws ? clusters : 0, draws ? shape.triangles : 0);
+        return total;
+    }
+    std::uint64_t surfels = 0;
     if (source == Source::surfels) {
         surfels = shape.surfels;
         total += SurfelInput::estimateBytes(shape.surfels, shape.uploads);
@@ -177,7 +179,8 @@ std::uint64_t SsvpMaps::estimateBytes(const LWSsvpDesc& desc, const std::vector<
         total += SurfelSampling::estimateBytes(shape.triangles, sampled);
     }
     for (const std::uint32_t clusters : clusterCounts)
-        total += SurfelSplat::estimateBytes(surfels, mapsOf(clusters)) + PullPush::estimateBytes(desc.mapSize, mapsOf(clusters));
+        total += ParaboloidMap::estimatePlacesBytes(desc.mapSize, clusters) + SurfelSplat::estimateBytes(surfels, clusters) +
+                 PullPush::estimateBytes(desc.mapSize, clusters);
     return total;
 }
 

@@ -152,6 +152,23 @@ TEST_CASE("uploaded again only when something changed; host memory is the host's
     CHECK(first[0] == scatter(40).vertices[9 * input.hostIndices[0]]);
 }
 
+TEST_CASE("of a geometry in force nothing is read again", "[geometry_input]") {
+    KernelRig rig(16);
+    const Mesh mesh = scatter(3);
+    std::vector<std::uint32_t> indices = {0, 1, 2, 3, 4, 5, 6, 7, 8};
+    LWGeometry g = mesh.geometry();
+    g.indices = indices.data();
+    GeometryInput input;
+    input.check(&g);
+    input.import(rig.executor(), &g);
+    indices[5] = 9;
+    input.check(&g);
+    input.import(rig.executor(), &g);
+    CHECK(input.revision == 1);
+    ++g.version;
+    CHECK(thrown([&] { input.check(&g); }).says("frame.geometry.indices[5]"));
+}
+
 TEST_CASE("what is wrong with a geometry is said, and the last one stays", "[geometry_input]") {
     KernelRig rig(16);
     const Mesh mesh = scatter(3);
@@ -166,7 +183,7 @@ TEST_CASE("what is wrong with a geometry is said, and the last one stays", "[geo
         change(g);
         const Thrown t = thrown([&] { input.import(rig.executor(), &g); });
         CHECK(t.status == LW_ERROR_INVALID_ARGUMENT);
-        CHECK(t.message == thrown([&] { GeometryInput::check(&g); }).message);
+        CHECK(t.message == thrown([&] { input.check(&g); }).message);
         CHECK(input.triangleCount == 3);
         CHECK(input.revision == 1);
         return t.message;

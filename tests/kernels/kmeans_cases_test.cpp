@@ -266,4 +266,5 @@ TEST_CASE("debug planes, bytes, refusals", "[kmeans]") {
     }
     const Guarded list = rig.upload(vpls);
     CHECK_THROWS_AS(pass.record(rig.executor(), list, (1u << 24) + 1, false), Error);
+    CHECK_THROWS_AS(KMeans::estimateBytes(optionsOf(8), (1u << 24) + 1), Error);
 }

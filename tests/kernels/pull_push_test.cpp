@@ -5,6 +5,7 @@
 #include <functional>
 #include <random>
 
+#include "compute/error.h"
 #include "support/surfel_rig.h"
 
 using namespace lightwell;
@@ -154,4 +155,7 @@ TEST_CASE("nothing known stays unknown", "[pull_push]") {
     const DrawnMaps maps = rig.filled(planeOf({0, 0, -1}, 1.0), [](std::uint32_t, std::uint32_t) { return false; });
     for (std::size_t t = 0; t < maps.albedo.size(); ++t) REQUIRE(!maps.hit(t));
     CHECK(rig.holes.bytes() == PullPush::estimateBytes(kSize, 1));
+    // Levels of 9 planes reach the kernels' indices before the maps do.
+    CHECK_NOTHROW(PullPush::estimateBytes(512, 3640));
+    CHECK_THROWS_AS(PullPush::estimateBytes(512, 3641), Error);
 }

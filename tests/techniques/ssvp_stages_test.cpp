@@ -1,0 +1,172 @@
+// Technique ssvp's stages from frame to frame: what a dark frame leaves of those that no VPL reaches, what is shown and
+// counted of them, and their memory.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <map>
+
+#include "support/lit_room.h"
+#include "support/scoped.h"
+#include "support/scoped_api.h"
+#include "support/walls.h"
+
+using namespace lightwell::test;
+
+namespace {
+
+constexpr std::uint32_t kWidth = 32, kHeight = 16;
+
+double plain(double, double) { return 0.5; }
+double slanted(double x, double z) { return x > 0.1 ? 0.05 : 0.1 + z; }
+
+LWSsvpDesc descOf(std::uint32_t clusters, std::uint32_t bounces, std::uint32_t shadowed) {
+    LWSsvpDesc desc;
+    lwDefaultSsvp(&desc);
+    desc.vpls = 32;
+    desc.clusters = clusters;
+    desc.bounces = bounces;
+    desc.shadowedBounces = shadowed;
+    desc.mapSize = 64;
+    return desc;
+}
+
+struct Frame {
+    std::vector<LWLight> lights;
+    LWFrame frame{};
+    Frame(const std::vector<LWLight>& lit, const LWGeometry* geometry, bool reset = false) : lights(lit) {
+        frame.structSize = sizeof frame;
+        frame.lights = lights.data();
+        frame.lightCount = std::uint32_t(lights.size());
+        frame.geometry = geometry;
+        frame.reset = reset;
+    }
+};
+
+// Output that outlives the reading of debug views, which show it in place.
+struct Canvas {
+    WallAndCeiling scene{kWidth, kHeight};
+    PlanarPixels irradiance{kWidth, kHeight, 3};
+    std::vector<float> render(LWDevice device, LWTechnique technique, LWView view) {
+        LWOutput output{};
+        output.structSize = sizeof output;
+        output.irradiance = irradiance.image();
+        REQUIRE(lwRender(technique, view, &scene.gbuffer, &output) == LW_SUCCESS);
+        REQUIRE(lwFinish(device) == LW_SUCCESS);
+        return irradiance.packed();
+    }
+};
+
+// All debug views by name; their pixels.
+std::map<std::string, std::vector<float>> viewsOf(LWDevice device, LWTechnique technique, LWView view) {
+    std::map<std::string, std::vector<float>> views;
+    std::uint32_t count = 0;
+    REQUIRE(lwCountDebugViews(technique, view, &count) == LW_SUCCESS);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        LWDebugView info{};
+        info.structSize = sizeof info;
+        REQUIRE(lwDescribeDebugView(technique, view, i, &info) == LW_SUCCESS);
+        const std::size_t size = std::size_t(info.width) * info.height * info.channels;
+        std::vector<float> pixels(size + 1, -7.0f);
+        const LWStatus status = lwReadDebugView(technique, view, info.name, pixels.data(), size);
+        CAPTURE(info.name, info.width, info.height, lastError(device));
+        REQUIRE(status == LW_SUCCESS);
+        CHECK(pixels.back() == -7.0f);
+        pixels.pop_back();
+        views[info.name] = pixels;
+    }
+    return views;
+}
+
+bool areZero(const std::vector<float>& values) {
+    return std::all_of(values.begin(), values.end(), [](float v) { return v == 0.0f; });
+}
+
+}  // namespace
+
+TEST_CASE("a dark frame leaves nothing of a lit one, in any stage", "[ssvp][stages]") {
+    TestDevice device(16);
+    LitFloor floor(64, plain), other(64, slanted);
+    Canvas canvas;
+    Walls room = Walls::room();
+    // Every VPL a cluster: without any there are no clusters of the first bounce, and no VPLs of the next.
+    const LWSsvpDesc desc = descOf(GENERATE(0u, 8u), 4, 2);
+    TestTechnique technique(device, desc), fresh(device, desc);
+    TestView view(device, kWidth, kHeight);
+    technique.update(Frame({floor.light}, room.describe()).frame);
+    canvas.render(device, technique, view);
+    viewsOf(device, technique, view);
+    CHECK(technique.count("fourth_vpls") > 0);
+    for (int i = 0; i < 2; ++i) {
+        technique.update(Frame({}, room.describe(), i == 1).frame);
+        CHECK(areZero(canvas.render(device, technique, view)));
+    }
+    fresh.update(Frame({}, room.describe()).frame);
+    CHECK(areZero(canvas.render(device, fresh, view)));
+    CHECK(technique.count("maps_redrawn") == 0);
+    const auto views = viewsOf(device, technique, view);
+    for (const auto& [name, pixels] : viewsOf(device, fresh, view)) {
+        CAPTURE(name);
+        CHECK(pixels == views.at(name));
+    }
+    for (const char* name : {"second_clusters", "third_clusters"}) {
+        const std::vector<float>& planes = views.at(name);
+        const std::size_t clusters = planes.size() / 16;
+        CHECK(areZero({planes.begin() + std::ptrdiff_t(6 * clusters), planes.begin() + std::ptrdiff_t(10 * clusters)}));
+    }
+    for (const char* name : {"maps", "second_maps", "third_maps"}) CHECK(areZero(views.at(name)));
+    // The cut came in the dark: clusters begin anew in every stage.
+    technique.update(Frame({other.light}, room.describe()).frame);
+    fresh.update(Frame({other.light}, room.describe()).frame);
+    CHECK(canvas.render(device, technique, view) == canvas.render(device, fresh, view));
+}
+
+TEST_CASE("without maps their debug view is empty, and prewarming goes through", "[ssvp][stages]") {
+    TestDevice device(16);
+    LitFloor floor(64, plain);
+    Canvas canvas;
+    LWSsvpDesc desc = descOf(GENERATE(0u, 8u), 1, 1);
+    desc.visibility = LW_VISIBILITY_NONE;
+    TestTechnique technique(device, desc);
+    TestView view(device, kWidth, kHeight);
+    const LWStatus status = lwPrewarm(technique, view);
+    CAPTURE(lastError(device));
+    REQUIRE(status == LW_SUCCESS);
+    technique.update(Frame({floor.light}, nullptr).frame);
+    canvas.render(device, technique, view);
+    CHECK(viewsOf(device, technique, view).at("maps").empty());
+}
+
+TEST_CASE("the estimate follows stages, clusters and occluders", "[ssvp][stages]") {
+    const ScopedVariable unified("LIGHTWELL_UNIFIED_MEMORY", GENERATE(as<const char*>{}, "1", "0"));
+    TestDevice device(16);
+    LitFloor floor(64, plain);
+    Canvas canvas;
+    Walls triangles = Walls::room(), surfels = Walls::room();
+    TestView view(device, kWidth, kHeight);
+    LWViewDesc viewDesc{};
+    viewDesc.structSize = sizeof viewDesc;
+    viewDesc.maxWidth = kWidth;
+    viewDesc.maxHeight = kHeight;
+    for (const LWOccluders occluders : {LW_OCCLUDERS_TRIANGLES, LW_OCCLUDERS_SURFELS, LW_OCCLUDERS_SCREEN}) {
+        const LWGeometry* geometry = occluders == LW_OCCLUDERS_SURFELS ? surfels.describeSurfels(0.05) : triangles.describe();
+        const Frame frame({floor.light}, geometry);
+        // What is read in place is in the estimate and not held: as much whatever is done with it.
+        std::int64_t inPlace = -1;
+        for (const std::uint32_t bounces : {1u, 2u, 3u, 4u})
+            for (const std::uint32_t shadowed : {1u, 2u})
+                for (const std::uint32_t clusters : {0u, 8u}) {
+                    LWSsvpDesc desc = descOf(clusters, bounces, shadowed);
+                    desc.occluders = occluders;
+                    TestTechnique technique(device, desc);
+                    technique.update(frame.frame);
+                    canvas.render(device, technique, view);
+                    std::uint64_t estimate = 0;
+                    REQUIRE(lwEstimateFrameMemory(device, "ssvp", &desc, &viewDesc, &frame.frame, &estimate) == LW_SUCCESS);
+                    const auto over = std::int64_t(estimate) - std::int64_t(technique.stats().deviceBytes);
+                    if (inPlace < 0) inPlace = over;
+                    CAPTURE(occluders, bounces, shadowed, clusters);
+                    CHECK(over >= 0);
+                    CHECK(over == inPlace);
+                }
+    }
+}
