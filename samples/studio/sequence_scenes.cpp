@@ -85,7 +85,7 @@ Camera makeCamera(const glm::vec3& position, const glm::vec3& target, float degr
 
 Camera yawed(const Camera& camera, float degrees) {
     Camera turned = camera;
-    const glm::quat rotation = glm::angleAxis(degrees * kDegree, glm::vec3(0.0f, 1.0f, 0.0f));
+    const glm::quat rotation = glm::angleAxis(degrees * kDegree, glm::normalize(camera.up));
     turned.target = camera.position + rotation * (camera.target - camera.position);
     return turned;
 }
