@@ -204,9 +204,9 @@ FailureSequence makeMovement(const Scene& scene, const std::string& name, const 
     }
     const std::shared_ptr<Scene> still = standStill(scene);
     if (std::none_of(still->lights.begin(), still->lights.end(), shines))
-        throw std::invalid_argument(fmt::format(
-            "scene \"{}\": expected a sun, spot or point light, got none that shines at 0 s",
-            scene.name));
+        throw std::invalid_argument(
+            fmt::format("scene \"{}\": expected a sun, spot or point light, got none that shines at 0 s",
+                        scene.name));
     FailureSequence sequence = movement->make(size, still);
     sequence.name = scene.name + "." + name;
     sequence.failure = movement->entry.failure + " in scene " + scene.name;

@@ -22,8 +22,7 @@ TEST_CASE("one pixel of every block, each place of a block as often as the other
             }
         // Of binomial numbers none is off its mean by five standard deviations.
         const double mean = double(picks.width() * picks.height()) / (block * block);
-        for (const int count : ofPlace)
-            CHECK(std::abs(count - mean) <= 5.0 * std::sqrt(mean));
+        for (const int count : ofPlace) CHECK(std::abs(count - mean) <= 5.0 * std::sqrt(mean));
     }
 }
 
@@ -34,7 +33,8 @@ TEST_CASE("where blocks do not divide a picture no border counts several times",
         REQUIRE(picks.width() == (kWidth + block - 1) / block);
         REQUIRE(picks.height() == (kHeight + block - 1) / block);
         // The columns and rows that blocks are found to reach: as many as a block has, or one less.
-        std::vector<std::set<int>> columns(std::size_t(picks.width())), rows(std::size_t(picks.height()));
+        std::vector<std::set<int>> columns(std::size_t(picks.width())),
+            rows(std::size_t(picks.height()));
         for (int y = 0; y < picks.height(); ++y)
             for (int x = 0; x < picks.width(); ++x) {
                 columns[std::size_t(x)].insert(int(picks.pixel(x, y) % kWidth));

@@ -213,8 +213,7 @@ TEST_CASE("lights count as they stand at 0 s") {
     Light dark = later.lights[0], bright = dark;
     dark.emitted = glm::vec3(0.0f);
     later.lightTracks = {{0, {{0.0f, dark}, {2.0f, bright}}}};
-    CHECK_THROWS_WITH(makeMovement(later, "light_sweep_slow", kSmall),
-                      Catch::Contains("shines at 0 s"));
+    CHECK_THROWS_WITH(makeMovement(later, "light_sweep_slow", kSmall), Catch::Contains("shines at 0 s"));
     early.lights[0] = dark;
     early.lightTracks = {{0, {{0.0f, bright}, {2.0f, dark}}}};
     const FailureSequence sweep = makeMovement(early, "light_sweep_slow", kSmall);
