@@ -1,10 +1,18 @@
 #include "pixel_picks.h"
 
-#include <algorithm>
+#include <cstdint>
 
 #include "sampler.h"
 
 namespace cli {
+namespace {
+
+// Where block i of `count` along a side of `length` begins.
+int startOf(int i, int count, int length) {
+    return int(std::int64_t(i) * length / count);
+}
+
+}  // namespace
 
 PixelPicks::PixelPicks(int width, int height, int block)
     : wholeWidth_(width),
@@ -14,12 +22,13 @@ PixelPicks::PixelPicks(int width, int height, int block)
       height_((height + block - 1) / block) {
     for (int y = 0; y < height_; ++y)
         for (int x = 0; x < width_; ++x) {
-            const int columns = std::min(block, width - x * block),
-                      rows = std::min(block, height - y * block);
+            const int left = startOf(x, width_, width), top = startOf(y, height_, height),
+                      columns = startOf(x + 1, width_, width) - left,
+                      rows = startOf(y + 1, height_, height) - top;
             const auto place = int(studio::mixBits(std::uint64_t(y) << 32 | std::uint64_t(x)) %
                                    std::uint64_t(columns * rows));
-            pixels_.push_back(std::size_t(y * block + place / columns) * std::size_t(width) +
-                              std::size_t(x * block + place % columns));
+            pixels_.push_back(std::size_t(top + place / columns) * std::size_t(width) +
+                              std::size_t(left + place % columns));
         }
 }
 

@@ -13,7 +13,8 @@ namespace cli {
 
 class PixelPicks {
 public:
-    // Blocks of block x block pixels, those at the right and lower border smaller; 1: every pixel. Which
+    // Blocks of block x block pixels; where a side is no multiple of that, some of them are a pixel
+    // shorter, evenly spread: a border of smaller ones would count several times. 1: every pixel. Which
     // pixel of its block is picked follows a hash, so that no pattern of the picture's own (an
     // interleaved gather has one) is met in step.
     PixelPicks(int width, int height, int block);

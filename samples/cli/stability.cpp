@@ -71,6 +71,11 @@ void complete(Arguments& arguments) {
 void reportComparison(const nlohmann::ordered_json& before, const nlohmann::ordered_json& now,
                       const std::string& path) {
     const StabilityComparison comparison = compareStability(before, now);
+    if (comparison.results == 0)  // nothing worse among nothing would pass for a check
+        throw UsageError(
+            fmt::format("--compare {}: expected results of the same techniques and sequences, got none "
+                        "in common",
+                        path));
     fmt::print("\nAgainst {}: {} figures compared, {} worse beyond noise, {} better\n", path,
                comparison.compared, comparison.regressions.size(), comparison.improvements.size());
     for (const std::string& text : comparison.regressions) fmt::print("WORSE   {}\n", text);

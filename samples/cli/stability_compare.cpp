@@ -88,6 +88,7 @@ StabilityComparison compareStability(const Json& before, const Json& now) {
             comparison.notes.push_back(id + ": not in the earlier results");
             continue;
         }
+        ++comparison.results;
         if (earlier->at("parameters") != result.at("parameters"))
             comparison.notes.push_back(id + ": its parameters are not the same");
         if (failsMore(*earlier, result))

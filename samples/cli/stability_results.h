@@ -42,7 +42,7 @@ std::string stabilityTable(const nlohmann::ordered_json& results);
 // what cannot be compared. UsageError where sizes or lengths of the two differ.
 struct StabilityComparison {
     std::vector<std::string> regressions, improvements, notes;
-    int compared = 0;  // figures
+    int results = 0, compared = 0;  // that both have; their figures
 };
 StabilityComparison compareStability(const nlohmann::ordered_json& before,
                                      const nlohmann::ordered_json& now);

@@ -28,12 +28,16 @@ constexpr int kTurnBack = 32;
 constexpr float kUsedWay = 0.5f;
 // relMSE of a frame's truth. Half as much doubles a run's time and lowers floors by a third.
 constexpr double kTruthNoise = 0.04;
-// Of the scene's diagonal: a camera with less way before it stands in a wall.
+// Of the scene's diagonal: a camera or lamp with less way before it stands in a wall.
 constexpr float kLeastWay = 1e-4f;
 
 int stepsAt(int frame) {
     const int along = frame % (2 * kTurnBack);
     return along <= kTurnBack ? along : 2 * kTurnBack - along;
+}
+
+bool shines(const Light& light) {
+    return light.emitted != glm::vec3(0.0f);
 }
 
 // A scene without time, its first camera at rest foremost.
@@ -92,6 +96,7 @@ FailureSequence makeSceneDolly(const SequenceSize& size, const std::shared_ptr<S
 struct LightStep {
     glm::vec3 move{0.0f}, side{0.0f};
     float angle = 0.0f;
+    bool isAny() const { return angle != 0.0f || move != glm::vec3(0.0f); }
     Light after(const Light& light, int steps) const {
         Light there = light;
         there.position += move * float(steps);
@@ -128,7 +133,7 @@ LightStep stepOf(const RayScene& rays, const Light& light, const Camera& camera)
         }
         const float most = kUsedWay * way / float(kTurnBack);
         if (most >= move || light.kind == LightKind::Point) {
-            step.move = step.side * std::min(move, most);
+            if (way >= kLeastWay * rays.diagonal()) step.move = step.side * std::min(move, most);
             return step;
         }
     }
@@ -139,14 +144,20 @@ LightStep stepOf(const RayScene& rays, const Light& light, const Camera& camera)
 FailureSequence makeSceneSweep(const SequenceSize& size, const std::shared_ptr<Scene>& scene) {
     const Camera camera = scene->cameras[0];
     const RayScene rays(scene, 0.0f);
+    bool moves = false;
     for (std::size_t i = 0; i < scene->lights.size(); ++i) {
         const LightStep step = stepOf(rays, scene->lights[i], camera);
+        moves = moves || (shines(scene->lights[i]) && step.isAny());
         Track<Light> track;
         track.target = int(i);
         for (int f = 0; f < size.frames; ++f)
             track.keys.emplace_back(float(f), step.after(scene->lights[i], stepsAt(f)));
         scene->lightTracks.push_back(std::move(track));
     }
+    if (!moves)  // light at rest would be called steady
+        throw std::invalid_argument(fmt::format(
+            "lights of scene \"{}\": expected one with room to move, got point lights between walls",
+            scene->name));
     FailureSequence sequence = makeFlight(size, scene, [&](int) { return camera; });
     sequence.sweeps = "lights' steps";
     // The camera rests: pixels keep points of their own as well as common ones from frame to frame, and
@@ -191,11 +202,11 @@ FailureSequence makeMovement(const Scene& scene, const std::string& name, const 
             fmt::format("sequence \"{}.{}\": expected after the scene's name one of: {}", scene.name,
                         name, fmt::join(names, ", ")));
     }
-    if (std::none_of(scene.lights.begin(), scene.lights.end(),
-                     [](const Light& light) { return light.emitted != glm::vec3(0.0f); }))
-        throw std::invalid_argument(fmt::format(
-            "scene \"{}\": expected a sun, spot or point light, got none that shines", scene.name));
     const std::shared_ptr<Scene> still = standStill(scene);
+    if (std::none_of(still->lights.begin(), still->lights.end(), shines))
+        throw std::invalid_argument(
+            fmt::format("scene \"{}\": expected a sun, spot or point light, got none that shines at 0 s",
+                        scene.name));
     FailureSequence sequence = movement->make(size, still);
     sequence.name = scene.name + "." + name;
     sequence.failure = movement->entry.failure + " in scene " + scene.name;

@@ -69,7 +69,7 @@ std::shared_ptr<Scene> roomsWithDoorAt(float time);
 void setLight(Scene& scene, const Light& light);
 Light makeSpot(const glm::vec3& position, const glm::vec3& target, float intensity, float outerDegrees);
 Camera makeCamera(const glm::vec3& position, const glm::vec3& target, float degrees);
-// Turned about the vertical axis through its position.
+// Turned about the vertical axis through its position: that of the world which its up is nearest to.
 Camera yawed(const Camera& camera, float degrees);
 Camera moved(const Camera& camera, const glm::vec3& by);
 

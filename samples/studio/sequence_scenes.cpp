@@ -41,6 +41,17 @@ void addYard(Scene& scene, int floor, int wall) {
     addBox(scene, "front", {-l, low, w}, {l, h, w + o}, wall);
 }
 
+// The axis of the world that its up is nearest to: y, but not where z is up, nor in a plan seen from
+// above, which a turn about y would leave as it is.
+glm::vec3 verticalOf(const Camera& camera) {
+    int nearest = 1;
+    for (const int axis : {0, 2})
+        if (std::abs(camera.up[axis]) > std::abs(camera.up[nearest])) nearest = axis;
+    glm::vec3 vertical(0.0f);
+    vertical[nearest] = camera.up[nearest] < 0.0f ? -1.0f : 1.0f;
+    return vertical;
+}
+
 }  // namespace
 
 std::shared_ptr<Scene> shippedScene(const std::string& name) {
@@ -85,7 +96,7 @@ Camera makeCamera(const glm::vec3& position, const glm::vec3& target, float degr
 
 Camera yawed(const Camera& camera, float degrees) {
     Camera turned = camera;
-    const glm::quat rotation = glm::angleAxis(degrees * kDegree, glm::vec3(0.0f, 1.0f, 0.0f));
+    const glm::quat rotation = glm::angleAxis(degrees * kDegree, verticalOf(camera));
     turned.target = camera.position + rotation * (camera.target - camera.position);
     return turned;
 }

@@ -101,6 +101,35 @@ TEST_CASE("the camera turns by a 72nd of its angle of view and goes ahead by a 2
     }
 }
 
+TEST_CASE("the camera turns about what is vertical to it") {
+    Scene scene = wallScene(5.0f);
+    for (const float y : {-9.0f, 8.0f}) addBlock(scene, {-9.0f, y, -9.0f}, {9.0f, y + 1.0f, 9.0f});
+    const auto targetsOf = [&](const glm::vec3& ahead, const glm::vec3& up) {
+        scene.cameras[0].target = ahead;
+        scene.cameras[0].up = up;
+        std::vector<glm::vec3> targets;
+        for (const SequenceFrame& frame : makeMovement(scene, "camera_pan", kSmall).frames)
+            targets.push_back(frame.camera.target);
+        return targets;
+    };
+    // A plan seen from above, and a scene whose z is up.
+    const glm::vec3 views[][2] = {{{0.0f, -1.0f, 0.0f}, {0.0f, 0.0f, -2.0f}},
+                                  {{0.0f, 1.0f, 0.0f}, {0.0f, 0.0f, 1.0f}}};
+    for (const auto& [ahead, up] : views) {
+        const std::vector<glm::vec3> targets = targetsOf(ahead, up);
+        for (std::size_t f = 1; f < 4; ++f) {
+            CHECK(std::atan2(glm::dot(targets[f], glm::cross(ahead, glm::normalize(up))),
+                             glm::dot(targets[f], ahead)) ==
+                  Approx(0.5f * kDegree * float(f)).epsilon(1e-3));
+            CHECK(targets[f].z == Approx(0.0f).margin(1e-6));
+        }
+    }
+    // Its own up tilted, as of glTF's cameras: the horizon stays.
+    const std::vector<glm::vec3> tilted = targetsOf({0.0f, -0.6f, -0.8f}, {0.0f, 0.8f, -0.6f});
+    CHECK(tilted[3].y == -0.6f);
+    CHECK(tilted[3].x > 0.0f);
+}
+
 TEST_CASE("a camera with something before it uses half of its way in 32 frames") {
     // Beside the axis, where the middle ray passes; its front is 1 m away.
     Scene scene = wallScene(5.0f);
@@ -177,6 +206,29 @@ TEST_CASE("a scene's own movements are stopped") {
     const SeenFrame open = seeFrame(RayScene(last.scene, 0.0f), last);
     const SeenFrame later = seeFrame(RayScene(last.scene, last.time), last);
     CHECK(open.position == later.position);
+}
+
+TEST_CASE("lights count as they stand at 0 s") {
+    Scene later = wallScene(5.0f), early = later;
+    Light dark = later.lights[0], bright = dark;
+    dark.emitted = glm::vec3(0.0f);
+    later.lightTracks = {{0, {{0.0f, dark}, {2.0f, bright}}}};
+    CHECK_THROWS_WITH(makeMovement(later, "light_sweep_slow", kSmall), Catch::Contains("shines at 0 s"));
+    early.lights[0] = dark;
+    early.lightTracks = {{0, {{0.0f, bright}, {2.0f, dark}}}};
+    const FailureSequence sweep = makeMovement(early, "light_sweep_slow", kSmall);
+    CHECK(lampOf(sweep.frames[3]).emitted == bright.emitted);
+}
+
+TEST_CASE("light that can't move is not called creeping light") {
+    Scene tight = wallScene(5.0f, LightKind::Point);
+    for (const float x : {-0.0002f, 0.0001f})
+        addBlock(tight, {x, 0.5f, -6.0f}, {x + 0.0001f, 1.5f, -4.0f});
+    CHECK_THROWS_WITH(makeMovement(tight, "light_sweep_slow", kSmall),
+                      Catch::Contains("\"wall\"") && Catch::Contains("room to move"));
+    CHECK_NOTHROW(makeMovement(tight, "camera_pan", kSmall));
+    tight.lights.push_back(wallScene(5.0f, LightKind::Sun).lights[0]);
+    CHECK_NOTHROW(makeMovement(tight, "light_sweep_slow", kSmall));
 }
 
 TEST_CASE("what a scene lacks is named") {

@@ -33,6 +33,7 @@ Json result(double flicker, double floor, double bias = 0.1) {
 TEST_CASE("equal results hold no regression") {
     const Json results = resultsWith(result(0.05, 0.004));
     const cli::StabilityComparison comparison = cli::compareStability(results, results);
+    CHECK(comparison.results == 1);
     CHECK(comparison.compared == 4);  // flicker, leak, relMSE, bias
     CHECK(comparison.regressions.empty());
     CHECK(comparison.improvements.empty());
@@ -88,6 +89,7 @@ TEST_CASE("light where there must be none is a regression; missing results are n
     const auto comparison = cli::compareStability(before, now);
     CHECK(comparison.regressions.empty());
     CHECK(comparison.notes.size() == 1);
+    CHECK(comparison.results == 0);
 }
 
 TEST_CASE("runs of another size or length are not compared") {
