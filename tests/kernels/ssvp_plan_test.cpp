@@ -16,6 +16,13 @@ using reference::Vec;
 
 namespace {
 
+// Oclgrind takes thousands of times as long: fewer clusters, VPLs, frames and targets there.
+bool isSlow() { return testSize({1024, 1}).first < 1024; }
+std::uint32_t mostClusters() { return isSlow() ? 6 : 32; }
+std::size_t someVpls() { return isSlow() ? 48 : 256; }
+int someFrames(int frames, int few) { return isSlow() ? few : frames; }
+std::vector<float> targets() { return isSlow() ? std::vector<float>{0.4f} : std::vector<float>{0.05f, 0.1f, 0.2f, 0.4f, 0.8f}; }
+
 struct Used {
     std::uint32_t vpls = 0, clusters = 0, bounces = 0;
     std::string whyVpls, whyClusters, whyBounces;
@@ -44,7 +51,7 @@ SsvpPlanOptions optionsOf(float error) {
     SsvpPlanOptions options;
     options.error = error;
     options.vpls = 256;
-    options.clusters = 32;
+    options.clusters = mostClusters();
     options.bounces = 4;
     return options;
 }
@@ -187,21 +194,22 @@ TEST_CASE("half the error never takes fewer VPLs; still light keeps its count, a
     sampled.subsets = 1;
     VplSampling sampling(rig.device(), sampled);
     std::uint32_t last = 256;
-    for (const float error : {0.05f, 0.1f, 0.2f, 0.4f, 0.8f}) {
+    for (const float error : targets()) {
         const LitTexels light(rig, 32, [](double u, double v) { return 1e-3 * std::exp(-20.0 * (u * u + v * v)); });
         SsvpPlan plan(rig.device(), optionsOf(error));
         drawFrame(rig, plan, sampling, light.input);
         const std::uint32_t count = drawFrame(rig, plan, sampling, light.input).vpls;
         CHECK(count <= last);
-        for (int i = 0; i < 5; ++i) CHECK(drawFrame(rig, plan, sampling, light.input).vpls == count);
+        for (int i = 0; i < someFrames(5, 1); ++i) CHECK(drawFrame(rig, plan, sampling, light.input).vpls == count);
         last = count;
     }
     CHECK(last < 256);
     // A spot that grows from 0.1 to 0.3 of the map: its texels, and so their root, grow ninefold and threefold.
     SsvpPlan plan(rig.device(), optionsOf(0.2f));
     int changes = 0;
-    for (int i = 0; i <= 60; ++i) {
-        const double radius = 0.1 + 0.2 * i / 60.0;
+    const int steps = someFrames(60, 3);
+    for (int i = 0; i <= steps; ++i) {
+        const double radius = 0.1 + 0.2 * i / steps;
         const LitTexels spot(rig, 32, [&](double u, double v) { return std::hypot(u - 0.5, v - 0.5) < radius ? 1e-3 : 0.0; });
         const std::uint32_t count = drawFrame(rig, plan, sampling, spot.input).vpls;
         if (i > 1) changes += count != last;
@@ -212,48 +220,48 @@ TEST_CASE("half the error never takes fewer VPLs; still light keeps its count, a
 
 TEST_CASE("one place takes one cluster, two far blobs two", "[ssvp_plan]") {
     KernelRig rig(GENERATE(1u, 16u));
-    KMeans kmeans(rig.device(), most(32));
+    KMeans kmeans(rig.device(), most(mostClusters()));
     SsvpPlan plan(rig.device(), optionsOf(0.3f));
-    const Used first = clusterFrames(rig, plan, kmeans, onTwoWalls(256, 1), 1);
-    CHECK(first.clusters == 32);
+    const Used first = clusterFrames(rig, plan, kmeans, onTwoWalls(someVpls(), 1), 1);
+    CHECK(first.clusters == mostClusters());
     CHECK(first.whyClusters.find("first frame") != std::string::npos);
-    const Vpls place(64, reference::makeVpl({1, 2, 3}, {0, 1, 0}, {1, 1, 1}, 0.01f));
+    const Vpls place(someVpls(), reference::makeVpl({1, 2, 3}, {0, 1, 0}, {1, 1, 1}, 0.01f));
     CHECK(clusterFrames(rig, plan, kmeans, place, 2, true).clusters == 1);
     Vpls blobs;
     std::mt19937 random(7);
     std::uniform_real_distribution<double> u(-0.1, 0.1);
-    for (int i = 0; i < 128; ++i)
+    for (std::size_t i = 0; i < someVpls(); ++i)
         blobs.push_back(reference::makeVpl({(i % 2 ? 10.0 : 0.0) + u(random), 0, u(random)}, {0, 1, 0}, {1, 1, 1}, 0.01f));
     // From one cluster it grows, from the most it shrinks.
     for (const bool restart : {false, true}) {
-        const Used used = clusterFrames(rig, plan, kmeans, blobs, 6, restart);
+        const Used used = clusterFrames(rig, plan, kmeans, blobs, someFrames(6, 4), restart);
         CHECK(used.clusters == 2);
         CHECK(used.whyClusters.find("spread") != std::string::npos);
         for (const lw_cluster& c : clustersOf(kmeans))
-            if (c.position.s[3] > 0.0f) CHECK(c.position.s[3] == 64.0f);
+            if (c.position.s[3] > 0.0f) CHECK(c.position.s[3] == float(someVpls() / 2));
     }
     // The light goes and comes again.
     const Vpls dark(64, reference::makeVpl({1, 2, 3}, {0, 1, 0}, {0, 0, 0}, 0.01f));
-    CHECK(clusterFrames(rig, plan, kmeans, dark, 3).clusters == 0);
-    CHECK(clusterFrames(rig, plan, kmeans, blobs, 6).clusters == 2);
+    CHECK(clusterFrames(rig, plan, kmeans, dark, 2).clusters == 0);
+    CHECK(clusterFrames(rig, plan, kmeans, blobs, someFrames(6, 4)).clusters == 2);
 }
 
 TEST_CASE("clusters come to rest in a still scene, and half the error never takes fewer", "[ssvp_plan]") {
     KernelRig rig(16);
-    for (const unsigned seed : {1u, 2u, 3u, 4u}) {
-        const Vpls vpls = onTwoWalls(256, seed);
-        std::uint32_t last = 32;
-        for (const float error : {0.05f, 0.1f, 0.2f, 0.4f, 0.8f}) {
-            KMeans kmeans(rig.device(), most(32));
+    for (unsigned seed = 1; seed <= unsigned(someFrames(4, 1)); ++seed) {
+        const Vpls vpls = onTwoWalls(someVpls(), seed);
+        std::uint32_t last = mostClusters();
+        for (const float error : targets()) {
+            KMeans kmeans(rig.device(), most(mostClusters()));
             SsvpPlan plan(rig.device(), optionsOf(error));
-            const std::uint32_t count = clusterFrames(rig, plan, kmeans, vpls, 24).clusters;
+            const std::uint32_t count = clusterFrames(rig, plan, kmeans, vpls, someFrames(24, 6)).clusters;
             CAPTURE(seed, error, count, last);
             CHECK(count <= last);
             CHECK(count >= 1);
-            for (int i = 0; i < 12; ++i) CHECK(clusterFrames(rig, plan, kmeans, vpls, 1).clusters == count);
+            for (int i = 0; i < someFrames(12, 2); ++i) CHECK(clusterFrames(rig, plan, kmeans, vpls, 1).clusters == count);
             last = count;
         }
-        CHECK(last < 32);
+        CHECK(last < mostClusters());
     }
 }
 
@@ -261,11 +269,11 @@ TEST_CASE("in a slow sweep the number of clusters changes rarely; the same frame
     KernelRig rig(16);
     std::vector<std::uint32_t> before;
     for (int run = 0; run < 2; ++run) {
-        KMeans kmeans(rig.device(), most(32));
+        KMeans kmeans(rig.device(), most(mostClusters()));
         SsvpPlan plan(rig.device(), optionsOf(0.3f));
         std::vector<std::uint32_t> counts;
-        for (int i = 0; i < 120; ++i)
-            counts.push_back(clusterFrames(rig, plan, kmeans, onTwoWalls(256, 5, 0.4 * std::max(0, i - 20) / 100.0), 1).clusters);
+        for (int i = 0; i < someFrames(120, 3); ++i)
+            counts.push_back(clusterFrames(rig, plan, kmeans, onTwoWalls(someVpls(), 5, 0.4 * std::max(0, i - 20) / 100.0), 1).clusters);
         int changes = 0;
         for (std::size_t i = 20; i < counts.size(); ++i) changes += counts[i] != counts[i - 1];
         CHECK(changes <= 8);
