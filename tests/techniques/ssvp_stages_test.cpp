@@ -139,6 +139,32 @@ TEST_CASE("without maps their debug view is empty, and prewarming goes through",
     CHECK(viewsOf(device, technique, view).at("maps").empty());
 }
 
+TEST_CASE("two million surfels compile nothing that prewarming has not", "[ssvp][stages]") {
+    TestDevice device(16);
+    LitFloor floor(64, plain);
+    Canvas canvas;
+    Walls room = Walls::room();
+    const LWGeometry* geometry = room.describeSurfels(0.00168);
+    REQUIRE(geometry->surfelCount > 65535u * 32u);
+    TestTechnique technique(device, descOf(1, 1, 1));
+    TestView view(device, kWidth, kHeight);
+    REQUIRE(lwPrewarm(technique, view) == LW_SUCCESS);
+    const LWDeviceInfo before = device.info();
+    technique.update(Frame({floor.light}, geometry).frame);
+    const auto many = canvas.render(device, technique, view);
+    CHECK(device.info().kernelsSpecialised == before.kernelsSpecialised);
+    // As a few of them: the room is convex, and nothing blocks.
+    Walls coarse = Walls::room();
+    technique.update(Frame({floor.light}, coarse.describeSurfels(0.05, 2)).frame);
+    const auto few = canvas.render(device, technique, view);
+    double sum = 0.0, off = 0.0;
+    for (std::size_t i = 0; i < many.size(); ++i) {
+        sum += double(few[i]);
+        off += std::abs(double(many[i]) - double(few[i]));
+    }
+    CHECK(off < 0.05 * sum);
+}
+
 TEST_CASE("the estimate follows stages, clusters and occluders", "[ssvp][stages]") {
     const ScopedVariable unified("LIGHTWELL_UNIFIED_MEMORY", GENERATE(as<const char*>{}, "1", "0"));
     TestDevice device(16);
