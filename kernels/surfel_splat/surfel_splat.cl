@@ -20,22 +20,23 @@ __kernel void surfel_splat_clear(__global const int* states, int texels, __globa
     if (texel < texels && (states[map] & LW_MAP_STALE)) albedo[map * texels + texel] = 0xffffffffu;
 }
 
-// One work-item = a block of surfels (x), on LW_MAPS_PER_ITEM maps (y): what it loads serves all of them.
+// One work-item = a block of surfels (x), on LW_MAPS_PER_ITEM maps (y): what it loads serves all of them. And the blocks that
+// lie the grid's width apart: a grid is never so wide that a driver compiles the kernel anew for it.
 __kernel void surfel_splat_depth(__global const float* surfels, int stride, int blocks, __global const lw_paraboloid* frames,
                                  __global const int* states, int mapCount, int size, uint threshold, float scale,
                                  volatile __global uint* records, volatile __global uint* albedo,
                                  __global uint* candidates) {
-    const int block = (int)get_global_id(0), firstMap = (int)get_global_id(1) * LW_MAPS_PER_ITEM;
-    if (block >= blocks) return;
-    for (int map = firstMap; map < min(firstMap + LW_MAPS_PER_ITEM, mapCount); ++map) {
-        if (!(states[map] & LW_MAP_DRAWN)) continue;
-        const lw_canvas canvas = canvas_of(frames, records, albedo, size, map);
-        uint reached = 0;
-        for (int i = 0; i < LW_SURFEL_BLOCK; i += LW_WIDTH)
-            reached |= draw_batch(canvas, surfels, stride, block * LW_SURFEL_BLOCK + i, 0xffffffffu, map, threshold, scale,
-                                  LW_DEPTH) << i;
-        candidates[map * blocks + block] = reached;
-    }
+    const int firstMap = (int)get_global_id(1) * LW_MAPS_PER_ITEM;
+    for (int block = (int)get_global_id(0); block < blocks; block += (int)get_global_size(0))
+        for (int map = firstMap; map < min(firstMap + LW_MAPS_PER_ITEM, mapCount); ++map) {
+            if (!(states[map] & LW_MAP_DRAWN)) continue;
+            const lw_canvas canvas = canvas_of(frames, records, albedo, size, map);
+            uint reached = 0;
+            for (int i = 0; i < LW_SURFEL_BLOCK; i += LW_WIDTH)
+                reached |= draw_batch(canvas, surfels, stride, block * LW_SURFEL_BLOCK + i, 0xffffffffu, map, threshold, scale,
+                                      LW_DEPTH) << i;
+            candidates[map * blocks + block] = reached;
+        }
 }
 
 // The same for the surfels that the first sweep noted; those that stay nearest are always among them.
@@ -43,17 +44,17 @@ LW_FN void draw_noted(__global const float* surfels, int stride, int blocks, __g
                       __global const int* states, int mapCount, int size, uint threshold, float scale,
                       volatile __global uint* records, volatile __global uint* albedo, __global const uint* candidates,
                       const int sweep) {
-    const int block = (int)get_global_id(0), firstMap = (int)get_global_id(1) * LW_MAPS_PER_ITEM;
-    if (block >= blocks) return;
-    for (int map = firstMap; map < min(firstMap + LW_MAPS_PER_ITEM, mapCount); ++map) {
-        if (!(states[map] & LW_MAP_DRAWN)) continue;
-        const uint noted = candidates[map * blocks + block];
-        if (!noted) continue;
-        const lw_canvas canvas = canvas_of(frames, records, albedo, size, map);
-        for (int i = 0; i < LW_SURFEL_BLOCK; i += LW_WIDTH)
-            if (noted >> i)
-                draw_batch(canvas, surfels, stride, block * LW_SURFEL_BLOCK + i, noted >> i, map, threshold, scale, sweep);
-    }
+    const int firstMap = (int)get_global_id(1) * LW_MAPS_PER_ITEM;
+    for (int block = (int)get_global_id(0); block < blocks; block += (int)get_global_size(0))
+        for (int map = firstMap; map < min(firstMap + LW_MAPS_PER_ITEM, mapCount); ++map) {
+            if (!(states[map] & LW_MAP_DRAWN)) continue;
+            const uint noted = candidates[map * blocks + block];
+            if (!noted) continue;
+            const lw_canvas canvas = canvas_of(frames, records, albedo, size, map);
+            for (int i = 0; i < LW_SURFEL_BLOCK; i += LW_WIDTH)
+                if (noted >> i)
+                    draw_batch(canvas, surfels, stride, block * LW_SURFEL_BLOCK + i, noted >> i, map, threshold, scale, sweep);
+        }
 }
 
 __kernel void surfel_splat_normal(__global const float* surfels, int stride, int blocks, __global const lw_paraboloid* frames,

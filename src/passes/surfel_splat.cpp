@@ -12,6 +12,10 @@ namespace {
 
 constexpr const char* kProgram = "surfel_splat/surfel_splat";
 
+// Groups side by side, at most: well below 65,535, from which on drivers may compile anew (Kernel::noteLaunch). Work-items take
+// several blocks then.
+constexpr std::size_t kMostGroups = 1u << 15;
+
 // Blocks of very different cost make a group on a CPU, where each group costs little.
 Range drawGroup(const Device& device) { return {device.width() == 1 ? std::size_t(64) : std::size_t(1), 1}; }
 
@@ -42,7 +46,7 @@ void SurfelSplat::record(Executor& executor, const SurfelSet& surfels, const Map
         const cl_uint threshold = share < 1.0 ? cl_uint(share * 4294967295.0) : 0xffffffffu;
         const cl_float scale = cl_float(std::sqrt(1.0 / share));
         const auto blocks = std::size_t(blocksOf(surfels.count));
-        const Range grid{blocks, (maps.mapCount + LW_MAPS_PER_ITEM - 1) / LW_MAPS_PER_ITEM};
+        const Range grid{std::min(blocks, kMostGroups * drawGroup(device_)[0]), (maps.mapCount + LW_MAPS_PER_ITEM - 1) / LW_MAPS_PER_ITEM};
         const auto sweep = [&](const char* pass, Kernel& kernel) {
             executor.run(pass, kernel, grid, drawGroup(device_), surfels.planes.memory, cl_int(surfels.planes.planeStride),
                          cl_int(blocks), maps.frames, maps.states, cl_int(maps.mapCount), cl_int(maps.size), threshold, scale,

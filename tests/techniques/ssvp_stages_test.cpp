@@ -1,10 +1,13 @@
 // Technique ssvp's stages from frame to frame: what a dark frame leaves of those that no VPL reaches, what is shown and
 // counted of them, and their memory.
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
+#include <random>
 
+#include "support/host_image.h"
 #include "support/lit_room.h"
 #include "support/scoped.h"
 #include "support/scoped_api.h"
@@ -136,6 +139,32 @@ TEST_CASE("without maps their debug view is empty, and prewarming goes through",
     CHECK(viewsOf(device, technique, view).at("maps").empty());
 }
 
+TEST_CASE("two million surfels compile nothing that prewarming has not", "[ssvp][stages]") {
+    TestDevice device(16);
+    LitFloor floor(64, plain);
+    Canvas canvas;
+    Walls room = Walls::room();
+    const LWGeometry* geometry = room.describeSurfels(0.00168);
+    REQUIRE(geometry->surfelCount > 65535u * 32u);
+    TestTechnique technique(device, descOf(1, 1, 1));
+    TestView view(device, kWidth, kHeight);
+    REQUIRE(lwPrewarm(technique, view) == LW_SUCCESS);
+    const LWDeviceInfo before = device.info();
+    technique.update(Frame({floor.light}, geometry).frame);
+    const auto many = canvas.render(device, technique, view);
+    CHECK(device.info().kernelsSpecialised == before.kernelsSpecialised);
+    // As a few of them: the room is convex, and nothing blocks.
+    Walls coarse = Walls::room();
+    technique.update(Frame({floor.light}, coarse.describeSurfels(0.05, 2)).frame);
+    const auto few = canvas.render(device, technique, view);
+    double sum = 0.0, off = 0.0;
+    for (std::size_t i = 0; i < many.size(); ++i) {
+        sum += double(few[i]);
+        off += std::abs(double(many[i]) - double(few[i]));
+    }
+    CHECK(off < 0.05 * sum);
+}
+
 TEST_CASE("the estimate follows stages, clusters and occluders", "[ssvp][stages]") {
     const ScopedVariable unified("LIGHTWELL_UNIFIED_MEMORY", GENERATE(as<const char*>{}, "1", "0"));
     TestDevice device(16);
@@ -168,5 +197,88 @@ TEST_CASE("the estimate follows stages, clusters and occluders", "[ssvp][stages]
                     CHECK(over >= 0);
                     CHECK(over == inPlace);
                 }
+    }
+}
+
+namespace {
+
+// Frames at random: lights and VPLs come and go, occluders of all kinds and none, surfels that are none.
+struct AnyFrame {
+    LitFloor floor{64, plain}, other{64, slanted};
+    Walls triangles = Walls::room(), surfels = Walls::room(), lid = Walls::room();
+    std::vector<LWVpl> vpls;
+    std::vector<LWLight> lights;
+    LWGeometry both{};
+    std::uint64_t version = 0;
+    LWFrame frame{};
+
+    AnyFrame() {
+        lid.add({-0.6, 0.05, -0.1}, {1.2, 0, 0}, {0, 0, 1.2});
+        surfels.describeSurfels(0.05);
+        both = surfels.geometry;
+    }
+    void choose(std::mt19937& random, const LWSourceView& source) {
+        const auto upTo = [&](unsigned n) { return unsigned(random() % n); };
+        lights.clear();
+        if (upTo(3)) lights.push_back(upTo(2) ? floor.light : other.light);
+        vpls.assign(std::array{0u, 0u, 1u, 40u}[upTo(4)], LWVpl{});
+        for (LWVpl& v : vpls) {
+            v.position[0] = float(upTo(100)) * 0.01f - 0.5f;
+            v.position[2] = float(upTo(100)) * 0.01f;
+            v.normal[1] = 1.0f;
+            v.area = upTo(4) ? 0.01f : 0.0f;
+            v.flux[upTo(3)] = upTo(4) ? 1.0f : 0.0f;
+        }
+        frame = Frame(lights, nullptr, upTo(4) == 0).frame;
+        frame.lights = lights.data();
+        frame.vpls = vpls.data();
+        frame.vplCount = std::uint32_t(vpls.size());
+        frame.sourceViews = &source;
+        frame.sourceViewCount = upTo(2);
+        ++version;
+        switch (upTo(5)) {
+            case 0: frame.geometry = triangles.describe(); break;
+            case 1: frame.geometry = lid.describe(version); break;
+            case 2: frame.geometry = &both; break;
+            case 3:
+                both.version = version;
+                both.surfelCount = 1 + upTo(surfels.geometry.surfelCount);
+                for (LWImage* image : {&both.surfelPosition, &both.surfelNormal, &both.surfelArea}) image->width = both.surfelCount;
+                frame.geometry = &both;
+                break;
+            default: break;
+        }
+    }
+};
+
+}  // namespace
+
+TEST_CASE("without a warm start no frame shows what came before it", "[ssvp][stages]") {
+    TestDevice device(16);
+    Canvas canvas;
+    TestView view(device, kWidth, kHeight);
+    const LWSourceView source{view, &canvas.scene.gbuffer};
+    const unsigned seed = GENERATE(range(1u, 4u));
+    std::mt19937 random(seed);
+    LWSsvpDesc desc = descOf(std::array{0u, 1u, 8u, 64u}[random() % 4], std::uint32_t(1 + random() % 4), std::uint32_t(1 + random() % 2));
+    desc.warmStart = 0;
+    desc.secondVpls = 8;
+    setEnum(desc.visibility, std::uint32_t(random() % 3));
+    TestTechnique technique(device, desc);
+    AnyFrame any;
+    for (int i = 0; i < 8; ++i) {
+        any.choose(random, source);
+        CAPTURE(seed, i, desc.clusters, desc.bounces, desc.shadowedBounces, int(desc.visibility));
+        technique.update(any.frame);
+        const auto e = canvas.render(device, technique, view);
+        CHECK(std::all_of(e.begin(), e.end(), [](float v) { return std::isfinite(v) && v >= 0.0f; }));
+        const auto views = viewsOf(device, technique, view);
+        TestTechnique fresh(device, desc);
+        fresh.update(any.frame);
+        CHECK(canvas.render(device, fresh, view) == e);
+        for (const auto& [name, pixels] : viewsOf(device, fresh, view)) {
+            CAPTURE(name);
+            CHECK(std::equal(pixels.begin(), pixels.end(), views.at(name).begin(), views.at(name).end()));
+        }
     }
 }
