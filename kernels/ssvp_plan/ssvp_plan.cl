@@ -91,6 +91,19 @@ LW_FN void store_part(lw_part p, __local float* parts, int k) {
     for (int c = 0; c < 7; ++c) parts[c * LW_PLAN_GROUP + k] = values[c];
 }
 
+// A cluster in the frame of k-means, `scale` being the inverse of its diagonal.
+LW_FN lw_part part_of(lw_cluster c, __global const float* frame, float scale) {
+    lw_part p;
+    p.x = (c.position.x - frame[0]) * scale;
+    p.y = (c.position.y - frame[1]) * scale;
+    p.z = (c.position.z - frame[2]) * scale;
+    p.nx = c.normal.x;
+    p.ny = c.normal.y;
+    p.nz = c.normal.z;
+    p.members = c.position.w;
+    return p;
+}
+
 // What the objective of k-means grows by when two clusters become one (Ward 1963): exact in the positions, and no less
 // than it is in the normals, whose sum is taken to be as long as there are members.
 LW_FN float merged_increase(lw_part a, lw_part b, float2 weights) {
@@ -175,15 +188,8 @@ __kernel void ssvp_plan_clusters(__global const lw_cluster* clusters, int count,
     lw_part own = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f};
     float mySpread = 0.0f;
     if (k < count && clusters[k].position.w > 0.0f) {
-        const lw_cluster c = clusters[k];
-        own.x = (c.position.x - frame[0]) * scale;
-        own.y = (c.position.y - frame[1]) * scale;
-        own.z = (c.position.z - frame[2]) * scale;
-        own.nx = c.normal.x;
-        own.ny = c.normal.y;
-        own.nz = c.normal.z;
-        own.members = c.position.w;
-        mySpread = c.normal.w;
+        own = part_of(clusters[k], frame, scale);
+        mySpread = clusters[k].normal.w;
     }
     store_part(own, parts, k);
     keys[k] = mySpread;

@@ -9,7 +9,8 @@
 namespace lightwell {
 
 Report::~Report() {
-    if (!pending_.empty() || !pendingChoices_.empty()) clFinish(device_->queue());  // the device may still write the values
+    if (!pending_.empty() || !pendingChoices_.empty())
+        clFinish(device_->queue());  // the device may still write the values
 }
 
 std::size_t Report::indexOf(const char* name) {

@@ -27,8 +27,8 @@ public:
     // Adds the 32-bit count that `buffer` holds at `byteOffset`, as it stands when the commands enqueued so far
     // have run, to the count of this name.
     void read(Device& device, const char* name, const Buffer& buffer, std::size_t byteOffset);
-    // Adds a choice whose reason is the one of `reasons` (`reasonCount` string literals) that the 32-bit number there
-    // names; none where it names none.
+    // Adds a choice whose reason is the one of `reasons` (`reasonCount` string literals) that the 32-bit
+    // number there names; none where it names none.
     void readChoice(Device& device, const char* name, const Buffer& buffer, std::size_t byteOffset,
                     const char* const* reasons, std::uint32_t reasonCount);
     // Adds a choice, unless the same was made before (for another view).

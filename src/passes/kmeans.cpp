@@ -86,7 +86,8 @@ void KMeans::reserve(std::uint32_t count) {
     clusterCount_ = options_.clusters ? options_.clusters : count;
 }
 
-void KMeans::record(Executor& executor, const Buffer& vpls, std::uint32_t count, bool restart, const ClusterSeeds* seeds) {
+void KMeans::record(Executor& executor, const Buffer& vpls, std::uint32_t count, bool restart,
+                    const ClusterSeeds* seeds) {
     reserve(count);
     if (options_.clusters == 0) {
         if (count)
@@ -99,8 +100,8 @@ void KMeans::record(Executor& executor, const Buffer& vpls, std::uint32_t count,
     const cl_float2 weights = this->weights();
     executor.run("kmeans.unpack", unpack_, gridOver(stride), kGroup, vpls, cl_int(count), cl_int(stride), sites_,
                  assignment_);
-    executor.run("kmeans.frame", frame_, groupOf(frame_), groupOf(frame_), sites_, cl_int(stride), seeds ? seeds->clusters : clusters_, clusters,
-                 keep, frameBuffer_, means_);
+    executor.run("kmeans.frame", frame_, groupOf(frame_), groupOf(frame_), sites_, cl_int(stride),
+                 seeds ? seeds->clusters : clusters_, clusters, keep, frameBuffer_, means_);
     iterate(executor, stride, keep == 0, keep ? seeds : nullptr);
     executor.run("kmeans.members", members_, gridOver(chunksOf(stride) * wideItems(clusterCount_, members_)),
                  groupOf(members_), vpls, cl_int(count), sites_, cl_int(stride), assignment_, means_, clusters, weights,
@@ -119,8 +120,9 @@ void KMeans::iterate(Executor& executor, std::uint32_t stride, bool seeding, con
         if (i || !seeding)
             executor.run("kmeans.assign", assign_, gridOver(wideItems(stride, assign_)), groupOf(assign_), sites_, slots,
                          means_, clusters, weights, assignment_);
-        executor.run("kmeans.seed", seed_, groupOf(seed_), groupOf(seed_), sites_, slots, assignment_, clusters, weights,
-                     cl_int(seeds ? 1 : 0), seeds ? seeds->dead : assignment_, means_);
+        executor.run("kmeans.seed", seed_, groupOf(seed_), groupOf(seed_), sites_, slots, assignment_,
+                     clusters, weights, cl_int(seeds ? 1 : 0), seeds ? seeds->dead : assignment_,
+                     means_);
         executor.run("kmeans.sums", sums_, chunks, groupOf(sums_), sites_, slots, assignment_, clusters, partials_);
         executor.run("kmeans.update", update_, {wideItems(clusterCount_, update_), 1}, groupOf(update_), sites_, slots,
                      assignment_, clusters, partials_, means_);

@@ -22,8 +22,8 @@ struct KMeansOptions {
     bool warmStart = true;  // seeds are the previous frame's means; otherwise every frame begins with k-means++
 };
 
-// Where another pass wants the clusters of this frame to start: lw_cluster each, of which normal, position and its w are
-// read, and a bit each (LW_KMEANS_MOST of them) set where there shall be none.
+// Where another pass wants the clusters of this frame to start: lw_cluster each, of which normal,
+// position and its w are read, and a bit each (LW_KMEANS_MOST of them) set where there shall be none.
 struct ClusterSeeds {
     const Buffer& clusters;
     const Buffer& dead;
@@ -34,17 +34,19 @@ public:
     // Throws INVALID_ARGUMENT for options out of range.
     KMeans(Device& device, const KMeansOptions& options);
 
-    // Records passes "kmeans.*". `vpls`: lw_vpl by slot, `count` of them (at most 2^24); a slot without flux belongs to no
-    // cluster. `restart`: forgets the previous frame (a cut). `seeds`: of a warm start, instead of the previous frame's
-    // clusters; not read by a restart.
-    void record(Executor& executor, const Buffer& vpls, std::uint32_t count, bool restart, const ClusterSeeds* seeds = nullptr);
+    // Records passes "kmeans.*". `vpls`: lw_vpl by slot, `count` of them (at most 2^24); a slot without
+    // flux belongs to no cluster. `restart`: forgets the previous frame (a cut). `seeds`: of a warm
+    // start, instead of the previous frame's clusters; not read by a restart.
+    void record(Executor& executor, const Buffer& vpls, std::uint32_t count, bool restart,
+                const ClusterSeeds* seeds = nullptr);
 
     // lw_cluster each, normal.w being the sum of the members' squared distances as above. Empty ones, as there are when
     // fewer places are lit than there are clusters: position.w = 0, flux 0, medoidPosition.w = -1, everything finite.
     const Buffer& clusters() const { return clusters_; }
     const Buffer& assignment() const { return assignment_; }  // int by slot: cluster, or -1
     std::uint32_t clusterCount() const { return clusterCount_; }
-    // Centre and diagonal of the box around the VPLs (LW_KMEANS_FRAME floats), and the squared distance's weights.
+    // Centre and diagonal of the box around the VPLs (LW_KMEANS_FRAME floats), and the squared
+    // distance's weights.
     const Buffer& frame() const { return frameBuffer_; }
     cl_float2 weights() const { return {{options_.positionWeight, options_.normalWeight}}; }
     // Planes without memory, of the clusters: position, normal, flux, members, the medoid's position and normal.

@@ -1,5 +1,5 @@
-// How many VPLs, clusters and bounces a frame of technique ssvp needs for an error target. Chosen on the device and read
-// there: the host neither waits for a count nor learns it before the stats.
+// How many VPLs, clusters and bounces a frame of technique ssvp needs for an error target. Chosen on the
+// device and read there: the host neither waits for a count nor learns it before the stats.
 #pragma once
 
 #include <cstdint>
@@ -17,11 +17,11 @@
 namespace lightwell {
 
 struct SsvpPlanOptions {
-    float error = 0.1f;            // relative, of the picture: above 0
+    float error = 0.1f;                                   // relative, of the picture: above 0
     std::uint32_t vpls = 256, clusters = 8, bounces = 2;  // the most
-    bool plansVpls = true;         // false: the most; only a set drawn by flux knows the light
-    bool plansClusters = true;     // false: the most
-    std::size_t stages = 1;        // lists that are clustered
+    bool plansVpls = true;      // false: the most; only a set drawn by flux knows the light
+    bool plansClusters = true;  // false: the most
+    std::size_t stages = 1;     // lists that are clustered
 };
 
 class SsvpPlan {
@@ -31,16 +31,19 @@ public:
     // Begins a frame; `restart`: the first after a cut, which takes the most of everything.
     void begin(Executor& executor, bool restart);
     // Pass "ssvp_plan.vpls": how many VPLs to draw, of the texels that are cumulated so far.
-    void recordVpls(Executor& executor, const RsmInput& rsms, const Buffer& texelSums, const Buffer& rowTotals);
+    void recordVpls(Executor& executor, const RsmInput& rsms, const Buffer& texelSums,
+                    const Buffer& rowTotals);
     bool plansVpls() const { return options_.plansVpls; }
     const Buffer& live() const { return plan_; }  // int: that number
-    // Pass "ssvp_plan.clusters", after the k-means of a stage: which clusters that will use in the next frame.
+    // Pass "ssvp_plan.clusters", after the k-means of a stage: which clusters that will use in the next
+    // frame.
     void recordClusters(Executor& executor, std::size_t stage, const KMeans& clusters);
     // What the k-means of a stage starts with; none where the most are used.
     const ClusterSeeds* seeds(std::size_t stage) const;
-    // Pass "ssvp_plan.bounce": whether bounce `stage` + 2, drawn from the clusters of `stage`, is used; if not, its VPLs
-    // lose their flux.
-    void recordBounce(Executor& executor, std::size_t stage, const KMeans& clusters, const SecondBounce& next);
+    // Pass "ssvp_plan.bounce": whether bounce `stage` + 2, drawn from the clusters of `stage`, is used;
+    // if not, its VPLs lose their flux.
+    void recordBounce(Executor& executor, std::size_t stage, const KMeans& clusters,
+                      const SecondBounce& next);
 
     // Counts and choices "vpls_used", "clusters_used", "bounces_used".
     void report(Report& report) const;

@@ -49,7 +49,8 @@ void VplSampling::record(Executor& executor, const RsmInput& rsms, const LWVpl* 
     draw(executor, rsms, vplCount() - authoredCount, plan);
 }
 
-void VplSampling::draw(Executor& executor, const RsmInput& rsms, std::uint32_t sampleCount, const VplPlan* plan) {
+void VplSampling::draw(Executor& executor, const RsmInput& rsms, std::uint32_t sampleCount,
+                       const VplPlan* plan) {
     const Range slots = gridOver(std::size_t(order_.subsets) * std::size_t(order_.capacity));
     if (options_.count == 0 || sampleCount == 0) {
         // Without texels the list holds the host's VPLs alone; the texel planes are then not read.
@@ -64,9 +65,9 @@ void VplSampling::draw(Executor& executor, const RsmInput& rsms, std::uint32_t s
     executor.run("vpl_sampling.total", total_, {1, 1}, {1, 1}, rowTotals_, rowCount, rowSumsBuffer_);
     if (plan) {
         plan->choose(texelSums_, rowTotals_);
-        executor.run("vpl_sampling.draw", drawLive_, slots, kGroup, rsms.texels, rsms.rows, rowCount, texelSums_,
-                     rowSumsBuffer_, uniform, cl_int(sampleCount), sampleRotation(options_.seed), authored_, order_,
-                     plan->live, vpls_);
+        executor.run("vpl_sampling.draw", drawLive_, slots, kGroup, rsms.texels, rsms.rows, rowCount,
+                     texelSums_, rowSumsBuffer_, uniform, cl_int(sampleCount),
+                     sampleRotation(options_.seed), authored_, order_, plan->live, vpls_);
         return;
     }
     executor.run("vpl_sampling.draw", draw_, slots, kGroup, rsms.texels, rsms.rows, rowCount, texelSums_,

@@ -21,8 +21,8 @@ struct VplSamplingOptions {
     std::uint32_t seed = 0;        // Cranley-Patterson rotation; 0: none
 };
 
-// What another pass has to say about how many are drawn: it is called once the texels are summed up, and leaves an int, from
-// 1 to `count`, in the memory. The others of the list then carry no flux.
+// What another pass has to say about how many are drawn: it is called once the texels are summed up, and
+// leaves an int, from 1 to `count`, in the memory. The others of the list then carry no flux.
 struct VplPlan {
     const Buffer& live;
     std::function<void(const Buffer& texelSums, const Buffer& rowTotals)> choose;
@@ -34,8 +34,8 @@ public:
 
     // Records passes "vpl_sampling.*". `authored`: the host's own VPLs, appended to those drawn; read
     // before the call returns. `plan`: not asked where none are drawn.
-    void record(Executor& executor, const RsmInput& rsms, const LWVpl* authored, std::uint32_t authoredCount,
-                const VplPlan* plan = nullptr);
+    void record(Executor& executor, const RsmInput& rsms, const LWVpl* authored,
+                std::uint32_t authoredCount, const VplPlan* plan = nullptr);
 
     const Buffer& vpls() const { return vpls_; }         // lw_vpl by slot
     lw_subset_order order() const { return order_; }

@@ -119,7 +119,8 @@ public:
 
 private:
     void recordVpls(Executor& executor, const LWFrame& frame) {
-        if (!plan_ || !plan_->plansVpls()) return sampling_.record(executor, rsms_, frame.vpls, frame.vplCount);
+        if (!plan_ || !plan_->plansVpls())
+            return sampling_.record(executor, rsms_, frame.vpls, frame.vplCount);
         const VplPlan plan{plan_->live(), [&](const Buffer& texelSums, const Buffer& rowTotals) {
                                plan_->recordVpls(executor, rsms_, texelSums, rowTotals);
                            }};
@@ -216,7 +217,8 @@ std::vector<DebugView> SsvpTechnique::debugViews(const View* view) {
 }
 
 std::uint64_t SsvpTechnique::bytes() const {
-    std::uint64_t total = rsms_.bytes() + sampling_.bytes() + maps_.bytes() + gather_.bytes() + (plan_ ? plan_->bytes() : 0);
+    std::uint64_t total = rsms_.bytes() + sampling_.bytes() + maps_.bytes() + gather_.bytes() +
+                          (plan_ ? plan_->bytes() : 0);
     for (const Stage& stage : stages_) total += stage.clusters.bytes() + stage.next.bytes();
     states_.each([&](const InterleavedView& state) { total += state.bytes(); });
     return total;

@@ -18,7 +18,8 @@ VplSamplingOptions samplingOptions(const LWSsvpDesc& desc) {
     return options;
 }
 
-// Of bounce `stage` + 1. The first bounce's VPLs may have a cluster each; those of later ones would be too many.
+// Of bounce `stage` + 1. The first bounce's VPLs may have a cluster each; those of later ones would be
+// too many.
 KMeansOptions clusterOptions(const LWSsvpDesc& desc, std::size_t stage) {
     KMeansOptions options;
     options.clusters = stage > 0 && desc.clusters == 0 ? LW_MOST_SORTED : desc.clusters;
@@ -50,9 +51,12 @@ ClusterVisibility visibilityOf(const LWSsvpDesc& desc) {
 }
 
 // As many groups as the interleave's window has pixels, at most.
-std::uint32_t groupsOf(const LWSsvpDesc& desc) { return std::min(desc.clusterGroups, desc.interleave * desc.interleave); }
+std::uint32_t groupsOf(const LWSsvpDesc& desc) {
+    return std::min(desc.clusterGroups, desc.interleave * desc.interleave);
+}
 
-// Bounces whose VPLs are shadowed, and those whose VPLs have clusters: these and all that another bounce follows.
+// Bounces whose VPLs are shadowed, and those whose VPLs have clusters: these and all that another bounce
+// follows.
 std::size_t shadowedOf(const LWSsvpDesc& desc) {
     return desc.visibility == LW_VISIBILITY_NONE ? 0 : std::min(desc.shadowedBounces, desc.bounces);
 }
@@ -75,7 +79,9 @@ SsvpPlanOptions planOptions(const LWSsvpDesc& desc) {
 
 std::uint64_t estimateSsvpBytes(const void* desc, const LWViewDesc& view, const FrameShape& shape) {
     const LWSsvpDesc& ssvp = *static_cast<const LWSsvpDesc*>(desc);
-    std::vector<std::uint32_t> counts{std::uint32_t(VplSampling::orderOf(samplingOptions(ssvp), shape).count)}, clusterCounts;
+    std::vector<std::uint32_t> counts{
+        std::uint32_t(VplSampling::orderOf(samplingOptions(ssvp), shape).count)},
+        clusterCounts;
     std::uint64_t total = 0;
     for (std::size_t i = 0; i < stagesOf(ssvp); ++i) {
         const KMeansOptions options = clusterOptions(ssvp, i);
@@ -87,9 +93,11 @@ std::uint64_t estimateSsvpBytes(const void* desc, const LWViewDesc& view, const 
     }
     if (ssvp.autoError > 0.0f)
         total += SsvpPlan::estimateBytes(planOptions(ssvp), shape.texels ? shape.rows : 0);
-    return total + RsmInput::estimateBytes(shape) + VplSampling::estimateBytes(samplingOptions(ssvp), shape) +
+    return total + RsmInput::estimateBytes(shape) +
+           VplSampling::estimateBytes(samplingOptions(ssvp), shape) +
            SsvpMaps::estimateBytes(ssvp, clusterCounts, shape) +
-           ClusteredGather::estimateBytes(counts, std::max<std::size_t>(shadowedOf(ssvp), 1), ssvp.interleave) +
+           ClusteredGather::estimateBytes(counts, std::max<std::size_t>(shadowedOf(ssvp), 1),
+                                          ssvp.interleave) +
            InterleavedView::estimateBytes(interleavedOptions(ssvp), view, shape.uploads,
                                           ClusteredGather::orderOf(counts, ssvp.interleave));
 }

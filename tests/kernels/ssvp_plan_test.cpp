@@ -1,14 +1,13 @@
-// How many VPLs, clusters and bounces a frame takes: against counts known by construction, at rest and in slow motion.
+// How many clusters and bounces a frame takes: against counts known by construction, at rest and in slow
+// motion.
 #include "passes/ssvp_plan.h"
 
-#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <functional>
 #include <random>
-#include <string>
 
 #include "support/kmeans_rig.h"
+#include "support/ssvp_plan_rig.h"
 
 using namespace lightwell;
 using namespace lightwell::test;
@@ -16,117 +15,13 @@ using reference::Vec;
 
 namespace {
 
-// Oclgrind takes thousands of times as long: fewer clusters, VPLs, frames and targets there.
-bool isSlow() { return testSize({1024, 1}).first < 1024; }
-std::uint32_t mostClusters() { return isSlow() ? 6 : 32; }
-std::size_t someVpls() { return isSlow() ? 48 : 256; }
-int someFrames(int frames, int few) { return isSlow() ? few : frames; }
-std::vector<float> targets() { return isSlow() ? std::vector<float>{0.4f} : std::vector<float>{0.05f, 0.1f, 0.2f, 0.4f, 0.8f}; }
-
-struct Used {
-    std::uint32_t vpls = 0, clusters = 0, bounces = 0;
-    std::string whyVpls, whyClusters, whyBounces;
-};
-
-Used usedBy(KernelRig& rig, const SsvpPlan& plan) {
-    Report report;
-    plan.report(report);
-    rig.device().finish();
-    report.resolve();
-    Used used;
-    for (const LWCount& count : report.counts) {
-        if (std::string(count.name) == "vpls_used") used.vpls = std::uint32_t(count.value);
-        if (std::string(count.name) == "clusters_used") used.clusters = std::uint32_t(count.value);
-        if (std::string(count.name) == "bounces_used") used.bounces = std::uint32_t(count.value);
-    }
-    for (const LWChoice& choice : report.choices) {
-        if (std::string(choice.name) == "vpls_used") used.whyVpls = choice.reason;
-        if (std::string(choice.name) == "clusters_used") used.whyClusters = choice.reason;
-        if (std::string(choice.name) == "bounces_used") used.whyBounces = choice.reason;
-    }
-    return used;
-}
-
-SsvpPlanOptions optionsOf(float error) {
-    SsvpPlanOptions options;
-    options.error = error;
-    options.vpls = 256;
-    options.clusters = mostClusters();
-    options.bounces = 4;
-    return options;
-}
-
-// An RSM of `side`^2 texels on a floor of one metre, with this flux.
-class LitTexels {
-public:
-    LitTexels(KernelRig& rig, std::uint32_t side, const std::function<double(double, double)>& flux)
-        : planes_(rig.upload(planesOf(side, flux))), rows_(rig.upload(rowsOf(side))) {
-        input.texels.memory = planes_.get();
-        input.texels.rowStride = input.texels.planeStride = input.texels.width = paddedWidth(side) * side;
-        input.texels.height = 1;
-        input.texels.count = RsmInput::kPlaneCount;
-        input.rows = Buffer::retained(rig.device(), rows_.get());
-        input.rowCount = side;
-        input.texelCount = side * side;
-    }
-    RsmInput input;
-
-private:
-    static std::vector<float> planesOf(std::uint32_t side, const std::function<double(double, double)>& flux) {
-        const std::size_t row = paddedWidth(side), count = row * side;
-        std::vector<float> planes(count * RsmInput::kPlaneCount, 0.0f);
-        for (std::size_t y = 0; y < side; ++y)
-            for (std::size_t x = 0; x < side; ++x) {
-                const std::size_t t = y * row + x;
-                const double u = (double(x) + 0.5) / side, v = (double(y) + 0.5) / side;
-                planes[std::size_t(RsmInput::kPositionX) * count + t] = float(u);
-                planes[(std::size_t(RsmInput::kPositionX) + 2) * count + t] = float(v);
-                planes[std::size_t(RsmInput::kNormalY) * count + t] = 1.0f;
-                for (std::size_t c = 0; c < 3; ++c)
-                    planes[(std::size_t(RsmInput::kFluxR) + c) * count + t] = float(flux(u, v));
-                planes[std::size_t(RsmInput::kArea) * count + t] = 1.0f / float(side * side);
-            }
-        return planes;
-    }
-    static std::vector<cl_int4> rowsOf(std::uint32_t side) {
-        std::vector<cl_int4> rows;
-        for (std::uint32_t y = 0; y < side; ++y) rows.push_back({{cl_int(y * paddedWidth(side)), cl_int(side), 0, 0}});
-        return rows;
-    }
-    Guarded planes_, rows_;
-};
-
-Used drawFrame(KernelRig& rig, SsvpPlan& plan, VplSampling& sampling, const RsmInput& input, bool restart = false) {
-    plan.begin(rig.executor(), restart);
-    const VplPlan choice{plan.live(), [&](const Buffer& texelSums, const Buffer& rowTotals) {
-                             plan.recordVpls(rig.executor(), input, texelSums, rowTotals);
-                         }};
-    sampling.record(rig.executor(), input, nullptr, 0, &choice);
-    return usedBy(rig, plan);
-}
-
-double fluxOf(const VplSampling& sampling, std::uint32_t* lit) {
-    std::vector<lw_vpl> vpls(std::size_t(sampling.order().subsets * sampling.order().capacity));
-    sampling.vpls().download(0, vpls.size() * sizeof(lw_vpl), vpls.data());
-    double sum = 0.0;
-    *lit = 0;
-    for (const lw_vpl& vpl : vpls) {
-        sum += double(vpl.flux.s[0]);
-        *lit += vpl.flux.s[0] > 0.0f;
-    }
-    return sum;
-}
-
-double fiveTexels(double u, double v) {  // of 32 x 32
-    const int x = int(u * 32.0), y = int(v * 32.0);
-    return (x == 3 && (y == 4 || y == 20)) || (x == 17 && (y == 4 || y == 9)) || (x == 30 && y == 30) ? 2e-4 : 0.0;
-}
-
-Used clusterFrames(KernelRig& rig, SsvpPlan& plan, KMeans& kmeans, const Vpls& vpls, int frames, bool restart = false) {
+Used clusterFrames(KernelRig& rig, SsvpPlan& plan, KMeans& kmeans, const Vpls& vpls, int frames,
+                   bool restart = false) {
     const Guarded list = rig.upload(vpls);
     for (int i = 0; i < frames; ++i) {
         plan.begin(rig.executor(), restart && i == 0);
-        kmeans.record(rig.executor(), list, std::uint32_t(vpls.size()), restart && i == 0, plan.seeds(0));
+        kmeans.record(rig.executor(), list, std::uint32_t(vpls.size()), restart && i == 0,
+                      plan.seeds(0));
         plan.recordClusters(rig.executor(), 0, kmeans);
     }
     return usedBy(rig, plan);
@@ -159,65 +54,6 @@ Vpls onTwoWalls(std::size_t count, unsigned seed, double shift = 0.0) {
 
 }  // namespace
 
-TEST_CASE("five lit texels take VPLs for five, an even light what the target asks for", "[ssvp_plan]") {
-    KernelRig rig(GENERATE(1u, 16u));
-    const float error = 0.3f;
-    const double share = double(error) / std::sqrt(3.0);
-    const LitTexels five(rig, 32, fiveTexels), even(rig, 32, [](double, double) { return 1e-3; });
-    SsvpPlan plan(rig.device(), optionsOf(error));
-    VplSamplingOptions sampled;
-    sampled.subsets = 1;
-    VplSampling sampling(rig.device(), sampled);
-    const Used first = drawFrame(rig, plan, sampling, five.input);
-    CHECK(first.vpls == 256);
-    CHECK(first.whyVpls.find("first frame") != std::string::npos);
-    const Used used = drawFrame(rig, plan, sampling, five.input);
-    const double needed = 1.5 * std::sqrt(5.0) / share;  // fewer than 5 times as many as there are texels
-    CHECK(used.vpls >= std::uint32_t(std::ceil(needed)));
-    CHECK(used.vpls <= std::uint32_t(1.2 * (needed + 1.0)) + 1);
-    CHECK(used.vpls < 25);
-    CHECK(used.whyVpls.find("few texels") != std::string::npos);
-    std::uint32_t lit = 0;
-    CHECK(fluxOf(sampling, &lit) == Approx(5.0 * 2e-4).epsilon(1e-5));
-    CHECK(lit == used.vpls);
-    const Used spread = drawFrame(rig, plan, sampling, even.input);
-    CHECK(spread.vpls > used.vpls);
-    CHECK(double(spread.vpls) >= std::floor(1.5 * 1.5 / (share * share)));
-    CHECK(fluxOf(sampling, &lit) == Approx(1024.0 * 1e-3).epsilon(1e-5));
-    const Used cut = drawFrame(rig, plan, sampling, even.input, true);
-    CHECK(cut.vpls == 256);
-}
-
-TEST_CASE("half the error never takes fewer VPLs; still light keeps its count, a slow sweep too", "[ssvp_plan]") {
-    KernelRig rig(16);
-    VplSamplingOptions sampled;
-    sampled.subsets = 1;
-    VplSampling sampling(rig.device(), sampled);
-    std::uint32_t last = 256;
-    for (const float error : targets()) {
-        const LitTexels light(rig, 32, [](double u, double v) { return 1e-3 * std::exp(-20.0 * (u * u + v * v)); });
-        SsvpPlan plan(rig.device(), optionsOf(error));
-        drawFrame(rig, plan, sampling, light.input);
-        const std::uint32_t count = drawFrame(rig, plan, sampling, light.input).vpls;
-        CHECK(count <= last);
-        for (int i = 0; i < someFrames(5, 1); ++i) CHECK(drawFrame(rig, plan, sampling, light.input).vpls == count);
-        last = count;
-    }
-    CHECK(last < 256);
-    // A spot that grows from 0.1 to 0.3 of the map: its texels, and so their root, grow ninefold and threefold.
-    SsvpPlan plan(rig.device(), optionsOf(0.2f));
-    int changes = 0;
-    const int steps = someFrames(60, 3);
-    for (int i = 0; i <= steps; ++i) {
-        const double radius = 0.1 + 0.2 * i / steps;
-        const LitTexels spot(rig, 32, [&](double u, double v) { return std::hypot(u - 0.5, v - 0.5) < radius ? 1e-3 : 0.0; });
-        const std::uint32_t count = drawFrame(rig, plan, sampling, spot.input).vpls;
-        if (i > 1) changes += count != last;
-        last = count;
-    }
-    CHECK(changes <= 6);  // each by a fifth or more
-}
-
 TEST_CASE("one place takes one cluster, two far blobs two", "[ssvp_plan]") {
     KernelRig rig(GENERATE(1u, 16u));
     KMeans kmeans(rig.device(), most(mostClusters()));
@@ -231,7 +67,8 @@ TEST_CASE("one place takes one cluster, two far blobs two", "[ssvp_plan]") {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> u(-0.1, 0.1);
     for (std::size_t i = 0; i < someVpls(); ++i)
-        blobs.push_back(reference::makeVpl({(i % 2 ? 10.0 : 0.0) + u(random), 0, u(random)}, {0, 1, 0}, {1, 1, 1}, 0.01f));
+        blobs.push_back(reference::makeVpl({(i % 2 ? 10.0 : 0.0) + u(random), 0, u(random)}, {0, 1, 0},
+                                           {1, 1, 1}, 0.01f));
     // From one cluster it grows, from the most it shrinks.
     for (const bool restart : {false, true}) {
         const Used used = clusterFrames(rig, plan, kmeans, blobs, someFrames(6, 4), restart);
@@ -246,7 +83,8 @@ TEST_CASE("one place takes one cluster, two far blobs two", "[ssvp_plan]") {
     CHECK(clusterFrames(rig, plan, kmeans, blobs, someFrames(6, 4)).clusters == 2);
 }
 
-TEST_CASE("clusters come to rest in a still scene, and half the error never takes fewer", "[ssvp_plan]") {
+TEST_CASE("clusters come to rest in a still scene, and half the error never takes fewer",
+          "[ssvp_plan]") {
     KernelRig rig(16);
     for (unsigned seed = 1; seed <= unsigned(someFrames(4, 1)); ++seed) {
         const Vpls vpls = onTwoWalls(someVpls(), seed);
@@ -254,18 +92,21 @@ TEST_CASE("clusters come to rest in a still scene, and half the error never take
         for (const float error : targets()) {
             KMeans kmeans(rig.device(), most(mostClusters()));
             SsvpPlan plan(rig.device(), optionsOf(error));
-            const std::uint32_t count = clusterFrames(rig, plan, kmeans, vpls, someFrames(24, 6)).clusters;
+            const std::uint32_t count =
+                clusterFrames(rig, plan, kmeans, vpls, someFrames(24, 6)).clusters;
             CAPTURE(seed, error, count, last);
             CHECK(count <= last);
             CHECK(count >= 1);
-            for (int i = 0; i < someFrames(12, 2); ++i) CHECK(clusterFrames(rig, plan, kmeans, vpls, 1).clusters == count);
+            for (int i = 0; i < someFrames(12, 2); ++i)
+                CHECK(clusterFrames(rig, plan, kmeans, vpls, 1).clusters == count);
             last = count;
         }
         CHECK(last < mostClusters());
     }
 }
 
-TEST_CASE("in a slow sweep the number of clusters changes rarely; the same frames have the same bits", "[ssvp_plan]") {
+TEST_CASE("in a slow sweep the number of clusters changes rarely; the same frames have the same bits",
+          "[ssvp_plan]") {
     KernelRig rig(16);
     std::vector<std::uint32_t> before;
     for (int run = 0; run < 2; ++run) {
@@ -273,7 +114,10 @@ TEST_CASE("in a slow sweep the number of clusters changes rarely; the same frame
         SsvpPlan plan(rig.device(), optionsOf(0.3f));
         std::vector<std::uint32_t> counts;
         for (int i = 0; i < someFrames(120, 3); ++i)
-            counts.push_back(clusterFrames(rig, plan, kmeans, onTwoWalls(someVpls(), 5, 0.4 * std::max(0, i - 20) / 100.0), 1).clusters);
+            counts.push_back(clusterFrames(rig, plan, kmeans,
+                                           onTwoWalls(someVpls(), 5, 0.4 * std::max(0, i - 20) / 100.0),
+                                           1)
+                                 .clusters);
         int changes = 0;
         for (std::size_t i = 20; i < counts.size(); ++i) changes += counts[i] != counts[i - 1];
         CHECK(changes <= 8);
@@ -287,8 +131,8 @@ TEST_CASE("a bounce is used while it and what follows bring more than the target
     KMeans kmeans(rig.device(), most(4));
     const Vpls vpls = onTwoWalls(64, 3);
     const Guarded list = rig.upload(vpls);
-    // The kernel by itself: the VPLs of the next bounce are the test's, 25 of each cluster. Those of the first carry 64 W, of
-    // which `arriving` meets a surface.
+    // The kernel by itself: the VPLs of the next bounce are the test's, 25 of each cluster. Those of the
+    // first carry 64 W, of which `arriving` meets a surface.
     Kernel& kernel = rig.kernel("ssvp_plan/ssvp_plan", "ssvp_plan_bounce");
     kmeans.record(rig.executor(), list, std::uint32_t(vpls.size()), true);
     const Guarded words = rig.upload(std::vector<cl_int>(LW_PLAN_WORDS, 1));
@@ -296,10 +140,11 @@ TEST_CASE("a bounce is used while it and what follows bring more than the target
         Vpls drawn(100, reference::makeVpl({0, 0, 0}, {0, 1, 0}, {1, 1, 1}, 0.01f));
         const double each = 64.0 * ratio / 100.0;
         for (std::size_t i = 0; i < drawn.size(); ++i)
-            for (int c = 0; c < 3; ++c) drawn[i].flux.s[c] = double(i % 25) < 25.0 * arriving ? float(each) : 0.0f;
+            for (int c = 0; c < 3; ++c)
+                drawn[i].flux.s[c] = double(i % 25) < 25.0 * arriving ? float(each) : 0.0f;
         const Guarded buffer = rig.upload(drawn);
-        rig.run("ssvp_plan.bounce", kernel, {64, 1}, {64, 1}, kmeans.clusters(), cl_int(25), buffer, cl_int(drawn.size()), cl_int(0),
-                cl_int(left), cl_float(0.1f), cl_int(restart), words);
+        rig.run("ssvp_plan.bounce", kernel, {64, 1}, {64, 1}, kmeans.clusters(), cl_int(25), buffer,
+                cl_int(drawn.size()), cl_int(0), cl_int(left), cl_float(0.1f), cl_int(restart), words);
         double flux = 0.0;
         for (const lw_vpl& v : rig.download<lw_vpl>(buffer)) flux += double(v.flux.s[0]);
         const auto plan = rig.download<cl_int>(words);
@@ -307,9 +152,10 @@ TEST_CASE("a bounce is used while it and what follows bring more than the target
         CHECK(flux == Approx(plan[LW_PLAN_USES] ? 64.0 * ratio * arriving : 0.0).epsilon(1e-5));
         return plan[LW_PLAN_USES] != 0;
     };
-    // Of one bounce in all, ratio / (1 + ratio) is the share: 0.09 at 0.0989, 0.11 at 0.1236, 0.07 at 0.0753.
-    CHECK(next(0.0, 1, 1));  // a first frame
-    CHECK(next(0.0989, 1, 0));   // in use, it stays
+    // Of one bounce in all, ratio / (1 + ratio) is the share: 0.09 at 0.0989, 0.11 at 0.1236, 0.07 at
+    // 0.0753.
+    CHECK(next(0.0, 1, 1));     // a first frame
+    CHECK(next(0.0989, 1, 0));  // in use, it stays
     CHECK_FALSE(next(0.07, 1, 0));
     CHECK_FALSE(next(0.0989, 1, 0));  // out of use, it stays out
     CHECK(next(0.1236, 1, 0));
@@ -317,7 +163,8 @@ TEST_CASE("a bounce is used while it and what follows bring more than the target
     // Three to come bring ratio + ratio^2 + ratio^3: 0.1111 of 0.1, which is a tenth of all.
     CHECK_FALSE(next(0.0995, 3, 0));
     CHECK(next(0.1015, 3, 0));
-    // Most goes to the sky: a fifth of the surfaces as bright as before count for as much as all of them did.
+    // Most goes to the sky: a fifth of the surfaces as bright as before count for as much as all of them
+    // did.
     CHECK_FALSE(next(0.07, 1, 0, 0.2));
     CHECK(next(0.1236, 1, 0, 0.2));
 }

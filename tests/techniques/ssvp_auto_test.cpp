@@ -1,4 +1,5 @@
-// Technique ssvp with an error target: what it leaves out, what that does to the picture, what it says of it.
+// Technique ssvp with an error target: what it leaves out, what that does to the picture, what it says
+// of it.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -29,7 +30,8 @@ LWSsvpDesc descOf(float error) {
 // A room of one albedo whose floor is lit, or a part of it.
 struct Lit {
     explicit Lit(double albedo, double reach = 1.0)
-        : floor(64, [reach](double x, double z) { return std::abs(x) < 0.5 * reach && z < reach ? 0.6 : 0.0; }),
+        : floor(64, [reach](double x,
+                            double z) { return std::abs(x) < 0.5 * reach && z < reach ? 0.6 : 0.0; }),
           colours(room.vertices.size() / 3, float(albedo)),
           lights{floor.light} {
         room.geometry.triangleAlbedo = colours.data();
@@ -107,7 +109,8 @@ TEST_CASE("the picture is within about the target of that with the most of every
         CHECK(technique.count("vpls_used") == 256);  // a first frame takes the most
         CHECK(technique.count("bounces_used") == 4);
         const auto picture = settled(technique, view, lit);
-        const std::uint64_t now[] = {technique.count("vpls_used"), technique.count("clusters_used"), technique.count("bounces_used")};
+        const std::uint64_t now[] = {technique.count("vpls_used"), technique.count("clusters_used"),
+                                     technique.count("bounces_used")};
         CAPTURE(albedo, reach, error, now[0], now[1], now[2]);
         const double off = nrmse(picture, full);
         CHECK(off < 1.5 * double(error));
@@ -133,7 +136,8 @@ TEST_CASE("light that grows slowly changes the counts rarely", "[ssvp_auto]") {
     for (int i = 0; i < 60; ++i) {
         Lit lit(0.5, 0.1 + 0.9 * std::max(0, i - 10) / 50.0);
         technique.update(lit.frame);
-        const std::uint64_t now[] = {technique.count("vpls_used"), technique.count("clusters_used"), technique.count("bounces_used")};
+        const std::uint64_t now[] = {technique.count("vpls_used"), technique.count("clusters_used"),
+                                     technique.count("bounces_used")};
         for (int k = 0; k < 3; ++k) {
             if (i > 10) changes[k] += now[k] != last[k];
             last[k] = now[k];
@@ -145,7 +149,8 @@ TEST_CASE("light that grows slowly changes the counts rarely", "[ssvp_auto]") {
     CHECK(changes[2] <= 1);
 }
 
-TEST_CASE("an error target takes no more memory than estimated, and compiles nothing late", "[ssvp_auto]") {
+TEST_CASE("an error target takes no more memory than estimated, and compiles nothing late",
+          "[ssvp_auto]") {
     TestDevice device(16);
     Lit lit(0.5);
     TestView view(device, kWidth, kHeight);
@@ -162,7 +167,8 @@ TEST_CASE("an error target takes no more memory than estimated, and compiles not
     viewDesc.maxWidth = kWidth;
     viewDesc.maxHeight = kHeight;
     std::uint64_t estimate = 0;
-    REQUIRE(lwEstimateFrameMemory(device, "ssvp", &desc, &viewDesc, &lit.frame, &estimate) == LW_SUCCESS);
+    REQUIRE(lwEstimateFrameMemory(device, "ssvp", &desc, &viewDesc, &lit.frame, &estimate) ==
+            LW_SUCCESS);
     CHECK(technique.stats().deviceBytes <= estimate);
     desc.autoError = -1.0f;
     LWTechnique none = nullptr;
