@@ -107,6 +107,10 @@ public:
 
     void update(Executor& executor, const LWFrame& frame) override {
         maps_.check(frame);
+        // Commands of an earlier frame may have been lost: what it should have left of geometry, maps and clusters is not there.
+        const bool lost = device_.failures() != failures_;
+        if (lost) maps_.forget();
+        failures_ = device_.failures();
         rsms_.import(executor, frame);
         maps_.import(executor, frame, rsms_);
         sampling_.record(executor, rsms_, frame.vpls, frame.vplCount);
@@ -114,7 +118,7 @@ public:
         std::vector<GatheredList> lists{{{sampling_.vpls(), sampling_.vplCount()}}};
         for (std::size_t i = 0; i < stages_.size(); ++i) {
             KMeans& clusters = stages_[i].clusters;
-            clusters.record(executor, lists[i].vpls.vpls, lists[i].vpls.count, frame.reset != 0);
+            clusters.record(executor, lists[i].vpls.vpls, lists[i].vpls.count, lost || frame.reset != 0);
             maps_.record(executor, i, clusters.clusters(), clusters.clusterCount());
             if (i < std::max<std::size_t>(shadowedOf(desc_), 1)) {
                 lists[i].assignment = &clusters.assignment();
@@ -188,6 +192,7 @@ private:
 
     Device& device_;
     LWSsvpDesc desc_;
+    std::uint64_t failures_ = 0;  // that the device had seen when the last update began
     RsmInput rsms_;
     VplSampling sampling_;
     std::deque<Stage> stages_;
