@@ -677,8 +677,8 @@ LW_API LWStatus lwCountDebugViews(LWTechnique technique, LWView view, uint32_t* 
 LW_API LWStatus lwDescribeDebugView(LWTechnique technique, LWView view, uint32_t index,
                                     LWDebugView* info);
 /** Waits for what was enqueued before this call, then copies `channels` planes of width * height floats,
- *  packed. `capacity` counts floats. Host memory that the last frame used in place (inputs and outputs) must
- *  still be valid. */
+ *  packed; of a view without pixels nothing. `capacity` counts floats. Host memory that the last frame used
+ *  in place (inputs and outputs) must still be valid. */
 LW_API LWStatus lwReadDebugView(LWTechnique technique, LWView view, const char* name, float* pixels,
                                 uint64_t capacity);
 

@@ -32,6 +32,7 @@ public:
     // finite or beyond LW_LARGEST_DISTANCE are left out and counted, those without area left out. Refused
     // geometry leaves the last one in force.
     void import(Executor& executor, const LWGeometry* geometry);
+    void forget() { key_ = Key{}; }  // the next import() brings all again, whatever its key
 
     Planes triangles;  // kPlaneCount planes, height 1, width = triangles padded; none without triangles
     Buffer groups;     // planes of centre xyz and radius per group of LW_TRIANGLE_GROUP triangles; radius -1: empty

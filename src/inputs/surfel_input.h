@@ -20,6 +20,7 @@ public:
     // differs from the last. Surfels without a normal are none; those with a position out of reach, a normal that cannot be
     // normalised, an area that is not above 0 or an albedo beyond 0 .. 1 are left out and counted.
     void import(Executor& executor, const LWGeometry* geometry);
+    void forget() { key_ = Key{}; }  // the next import() brings all again, whatever its key
 
     SurfelSet surfels() const { return memory_.set(); }
     void report(Report& report) const;  // surfels, rejected_surfels

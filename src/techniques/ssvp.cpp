@@ -59,15 +59,20 @@ public:
 
     void update(Executor& executor, const LWFrame& frame) override {
         maps_.check(frame);
+        // Commands of an earlier frame may have been lost: what it should have left of geometry, maps and clusters is not there.
+        const bool lost = device_.failures() != failures_;
+        if (lost) maps_.forget();
+        failures_ = device_.failures();
+        const bool restart = lost || frame.reset != 0;
         rsms_.import(executor, frame);
         maps_.import(executor, frame, rsms_);
-        if (plan_) plan_->begin(executor, frame.reset != 0);
+        if (plan_) plan_->begin(executor, restart);
         recordVpls(executor, frame);
 
         std::vector<GatheredList> lists{{{sampling_.vpls(), sampling_.vplCount()}}};
         for (std::size_t i = 0; i < stages_.size(); ++i) {
             KMeans& clusters = stages_[i].clusters;
-            clusters.record(executor, lists[i].vpls.vpls, lists[i].vpls.count, frame.reset != 0,
+            clusters.record(executor, lists[i].vpls.vpls, lists[i].vpls.count, restart,
                             plan_ ? plan_->seeds(i) : nullptr);
             if (plan_) plan_->recordClusters(executor, i, clusters);
             maps_.record(executor, i, clusters.clusters(), clusters.clusterCount());
@@ -152,6 +157,7 @@ private:
 
     Device& device_;
     LWSsvpDesc desc_;
+    std::uint64_t failures_ = 0;  // that the device had seen when the last update began
     RsmInput rsms_;
     VplSampling sampling_;
     std::optional<SsvpPlan> plan_;  // with an error target only

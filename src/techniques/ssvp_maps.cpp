@@ -78,6 +78,12 @@ void SsvpMaps::check(const LWFrame& frame) const {
     if (source == Source::screen) ScreenSurfels::check(device_, frame);
 }
 
+void SsvpMaps::forget() {
+    triangles_.forget();
+    hostSurfels_.forget();
+    for (Stage& stage : stages_) stage.maps.redrawAll();
+}
+
 void SsvpMaps::import(Executor& executor, const LWFrame& frame, const RsmInput& rsms) {
     const Source source = sourceOf(frame);
     if (source != source_)  // revisions count within a source

@@ -28,6 +28,8 @@ public:
     // Throws what import() would say of this frame, whose RSMs are RsmInput's to check.
     void check(const LWFrame& frame) const;
     void import(Executor& executor, const LWFrame& frame, const RsmInput& rsms);
+    // After commands failed on the device: the next import() and record() do all anew.
+    void forget();
     // The maps of a stage's clusters (lw_cluster each); drawn anew only where a medoid or what is drawn has moved. What the
     // screen shows moves with every frame.
     void record(Executor& executor, std::size_t stage, const Buffer& clusters, std::uint32_t clusterCount);
