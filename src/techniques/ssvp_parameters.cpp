@@ -84,7 +84,8 @@ const std::vector<LWParameter>& ssvpParameters() {
 
 // Aranha et al. 2020: 256 VPLs of each bounce, 8 clusters, second-bounce samples evenly on the map's disc.
 const std::vector<LWSetting>& ssvpSettings() {
-    static const std::vector<LWSetting> settings = {{"Aranha 2020", "sampling=uniform directions=disc"}};
+    static const std::vector<LWSetting> settings = {{"Aranha 2020", "sampling=uniform directions=disc"},
+                                                    {"both bounces shadowed", "clusters=32 shadowed_bounces=2"}};
     return settings;
 }
 
