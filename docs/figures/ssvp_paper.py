@@ -32,10 +32,15 @@ def main():
         return json.loads(call("render", scene, "--technique", "ssvp", *sets, "--size", size, "--frames", frames, "--warmup", warmup,
                                "--out", options.work / f"{name}.exr", "--json"))
 
+    rendered = set()
+
     def difference(scene, settings, reference):
-        render(scene, reference, name="paper_reference")
+        name = "_".join(["paper", scene, *reference]).replace("=", "")
+        if name not in rendered:
+            render(scene, reference, name=name)
+        rendered.add(name)
         render(scene, settings)
-        return json.loads(call("compare", options.work / "paper.exr", options.work / "paper_reference.exr", "--json"))
+        return json.loads(call("compare", options.work / "paper.exr", options.work / f"{name}.exr", "--json"))
 
     totals = {}
     lines = [f"Load average {os.getloadavg()[0]:.1f} at the start.", ""] + time_table(options, render, totals) + [""]
