@@ -115,7 +115,8 @@ def rivalry(results):
         rows = [row for row in (rivalry_row(results, view, technique) for view in results.shared) if row]
         if not rows:
             continue
-        lines += [f"**{technique} and the rival.** Against the light of one bounce, {technique} by its defaults and the rival's sweep of one bounce:", "",
+        count = {1: "one bounce", 2: "two bounces"}.get(rows[0][1]["bounces"], "all bounces")
+        lines += [f"**{technique} and the rival.** Against the light of {count}, {technique} by its defaults and the rival's sweep of {count}:", "",
                   f"| view | {technique}: ms | relMSE | rival in no more time: ms | relMSE | rival with no more error: ms | relMSE |",
                   "| --- | ---: | ---: | ---: | ---: | ---: | ---: |"]
         for view, ours, quick, accurate in rows:
