@@ -11,6 +11,7 @@
 #include "techniques/interleaved_view.h"
 #include "techniques/prewarm.h"
 #include "techniques/rsm_parameters.h"
+#include "techniques/technique_entry.h"
 
 namespace lightwell {
 namespace {
@@ -134,12 +135,6 @@ std::uint64_t RsmTechnique::bytes() const {
 
 // ------------------------------------------------------------------------------------- registration
 
-void setDefaults(void* desc) { lwDefaultRsm(static_cast<LWRsmDesc*>(desc)); }
-
-std::unique_ptr<Technique> create(Device& device, const void* desc) {
-    return std::make_unique<RsmTechnique>(device, *static_cast<const LWRsmDesc*>(desc));
-}
-
 std::uint64_t estimateBytes(const void* desc, const LWViewDesc& view, const FrameShape& shape) {
     const LWRsmDesc& rsm = *static_cast<const LWRsmDesc*>(desc);
     return RsmInput::estimateBytes(shape) + VplSampling::estimateBytes(samplingOptions(rsm), shape) +
@@ -147,27 +142,12 @@ std::uint64_t estimateBytes(const void* desc, const LWViewDesc& view, const Fram
                                           VplSampling::orderOf(samplingOptions(rsm), shape));
 }
 
-TechniqueEntry makeEntry() {
-    TechniqueEntry entry{};
-    entry.info.structSize = sizeof(LWTechniqueInfo);
-    entry.info.descSize = sizeof(LWRsmDesc);
-    entry.info.name = "rsm";
-    entry.info.summary = "virtual point lights from reflective shadow maps, gathered without visibility";
-    entry.info.parameters = rsmParameters().data();
-    entry.info.parameterCount = std::uint32_t(rsmParameters().size());
-    entry.info.setDefaults = setDefaults;
-    entry.info.bounces = 1;
-    entry.info.settings = rsmSettings().data();
-    entry.info.settingCount = std::uint32_t(rsmSettings().size());
-    entry.create = create;
-    entry.estimateBytes = estimateBytes;
-    return entry;
-}
-
 }  // namespace
 
 const TechniqueEntry& rsmEntry() {
-    static const TechniqueEntry entry = makeEntry();
+    static const TechniqueEntry entry = techniqueEntry<RsmTechnique, LWRsmDesc, lwDefaultRsm>(
+        "rsm", "virtual point lights from reflective shadow maps, gathered without visibility", 1, rsmParameters(),
+        rsmSettings(), estimateBytes);
     return entry;
 }
 

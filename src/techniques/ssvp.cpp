@@ -18,6 +18,7 @@
 #include "techniques/ssvp_maps.h"
 #include "techniques/ssvp_options.h"
 #include "techniques/ssvp_parameters.h"
+#include "techniques/technique_entry.h"
 
 namespace lightwell {
 namespace {
@@ -230,35 +231,12 @@ std::uint64_t SsvpTechnique::bytes() const {
     return total;
 }
 
-// ------------------------------------------------------------------------------------- registration
-
-void setDefaults(void* desc) { lwDefaultSsvp(static_cast<LWSsvpDesc*>(desc)); }
-
-std::unique_ptr<Technique> create(Device& device, const void* desc) {
-    return std::make_unique<SsvpTechnique>(device, *static_cast<const LWSsvpDesc*>(desc));
-}
-
-TechniqueEntry makeEntry() {
-    TechniqueEntry entry{};
-    entry.info.structSize = sizeof(LWTechniqueInfo);
-    entry.info.descSize = sizeof(LWSsvpDesc);
-    entry.info.name = "ssvp";
-    entry.info.summary = "clustered virtual point lights with visibility from paraboloid maps, and a second bounce";
-    entry.info.parameters = ssvpParameters().data();
-    entry.info.parameterCount = std::uint32_t(ssvpParameters().size());
-    entry.info.setDefaults = setDefaults;
-    entry.info.bounces = 2;
-    entry.info.settings = ssvpSettings().data();
-    entry.info.settingCount = std::uint32_t(ssvpSettings().size());
-    entry.create = create;
-    entry.estimateBytes = estimateSsvpBytes;
-    return entry;
-}
-
 }  // namespace
 
 const TechniqueEntry& ssvpEntry() {
-    static const TechniqueEntry entry = makeEntry();
+    static const TechniqueEntry entry = techniqueEntry<SsvpTechnique, LWSsvpDesc, lwDefaultSsvp>(
+        "ssvp", "clustered virtual point lights with visibility from paraboloid maps, and a second bounce", 2, ssvpParameters(),
+        ssvpSettings(), estimateSsvpBytes);
     return entry;
 }
 

@@ -5,6 +5,7 @@
 
 #include "support/host_image.h"
 #include "support/lit_room.h"
+#include "support/packed_light.h"
 #include "support/scoped_api.h"
 #include "support/walls.h"
 
@@ -44,25 +45,7 @@ struct Frame {
     }
 };
 
-// Without the rows that show places above y = 1, and those that the filter mixes with them.
-std::vector<float> inRoom(const std::vector<float>& values) {
-    std::vector<float> kept;
-    for (std::size_t i = 0; i < values.size(); ++i)
-        if (i / kWidth % kHeight >= kHeight / 8) kept.push_back(values[i]);
-    return kept;
-}
-
-double meanOf(const std::vector<float>& values) {
-    double sum = 0.0;
-    for (const float v : values) sum += double(v);
-    return sum / double(values.size());
-}
-
-double difference(const std::vector<float>& a, const std::vector<float>& b) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < a.size(); ++i) sum += std::pow(double(a[i]) - double(b[i]), 2.0);
-    return std::sqrt(sum / double(a.size())) / meanOf(b);
-}
+std::vector<float> inRoom(const std::vector<float>& values) { return lightwell::test::inRoom(values, kWidth, kHeight); }
 
 std::string choiceOf(TestTechnique& technique, const std::string& name) {
     const LWStats stats = technique.stats();
