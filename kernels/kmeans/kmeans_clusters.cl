@@ -11,16 +11,25 @@ LW_FN lw_cluster no_cluster(void) {
     return cluster;
 }
 
+// The medoids that clusters had in the frame before, by slot; -1 where a cluster had none, or begins.
+LW_FN real former_medoids(__global const lw_cluster* before, lanei cluster, int clusters, int keep) {
+    if (!keep) return (real)-1.0f;
+    const lanei k = min(cluster, (lanei)(clusters - 1));
+    return gather((__global const float*)before, k * (lanei)LW_CLUSTER_FLOATS + (lanei)LW_CLUSTER_MEDOID);
+}
+
 // One work-item = one chunk of slots and LW_WIDTH clusters: flux, area, spread and the member nearest to the mean, the first
-// of several, of the chunk's slots.
+// of several, of the chunk's slots. A medoid of the frame before counts as nearer than it is.
 __kernel void kmeans_members(__global const lw_vpl* vpls, int count, __global const float* sites, int stride,
-                             __global const int* assignment, __global const float* means, int clusters, float2 weights,
+                             __global const int* assignment, __global const float* means,
+                             __global const lw_cluster* before, int clusters, int keep, float2 weights,
                              __global float* partials) {
     int chunk, first;
     chunk_and_clusters(clusters, &chunk, &first);
     const int begin = chunk * LW_KMEANS_CHUNK, end = min(begin + LW_KMEANS_CHUNK, count);
     const lanei cluster = first + lanei_iota();
     const lw_site mean = site_lanes(means, LW_KMEANS_MOST, first);
+    const real former = former_medoids(before, cluster, clusters, keep);
     real spread = 0.0f, red = 0.0f, green = 0.0f, blue = 0.0f, area = 0.0f, nearest = LW_KMEANS_FAR, at = -1.0f;
     for (int i = begin; i < end; ++i) {
         const mask mine = cluster == assignment[i];
@@ -32,9 +41,11 @@ __kernel void kmeans_members(__global const lw_vpl* vpls, int count, __global co
         green = select_(green, green + flux.y, mine);
         blue = select_(blue, blue + flux.z, mine);
         area = select_(area, area + itsArea, mine);
-        const mask nearer = and_(mine, d < nearest);
-        nearest = select_(nearest, d, nearer);
-        at = select_(at, (real)((float)i), nearer);
+        const real slot = (real)((float)i);
+        const real weighed = select_(d, d * LW_MEDOID_STAYS, slot == former);
+        const mask nearer = and_(mine, weighed < nearest);
+        nearest = select_(nearest, weighed, nearer);
+        at = select_(at, slot, nearer);
     }
     if (begin >= stride) return;
     __global float* out = partials + chunk * LW_PARTIAL_PLANES * LW_KMEANS_MOST + first;

@@ -14,6 +14,8 @@ typedef struct {
     lw_float4 medoidNormal;    // unit; w unused
 } lw_cluster;
 LW_SIZE_CHECK(lw_cluster, 80);
+#define LW_CLUSTER_FLOATS 20
+#define LW_CLUSTER_MEDOID 15  // the float that holds the medoid's index
 
 // VPLs are sorted by cluster if there are no more clusters than this; with more, they keep their order: hardly two
 // neighbours share one anyway.

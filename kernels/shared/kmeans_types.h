@@ -36,6 +36,12 @@
 #define LW_KMEANS_DIAGONAL 3
 #define LW_KMEANS_FRAME 4
 
+// What the squared distance of a cluster's former medoid is multiplied with before the nearest member is sought. A medoid is
+// one point light for all its cluster's shadows, and each change of it a jump of those: it stays until another is nearer
+// by this much. At 1 shadows jump to and fro between two members about as near; at 0 a cluster keeps a medoid at
+// its very rim.
+#define LW_MEDOID_STAYS 0.25f
+
 // Beyond every squared distance (weights reach to 1e6), and a quotient by the smallest variate stays finite.
 #define LW_KMEANS_FAR 1e30f
 

@@ -104,8 +104,8 @@ void KMeans::record(Executor& executor, const Buffer& vpls, std::uint32_t count,
                  seeds ? seeds->clusters : clusters_, clusters, keep, frameBuffer_, means_);
     iterate(executor, stride, keep == 0, keep ? seeds : nullptr);
     executor.run("kmeans.members", members_, gridOver(chunksOf(stride) * wideItems(clusterCount_, members_)),
-                 groupOf(members_), vpls, cl_int(count), sites_, cl_int(stride), assignment_, means_, clusters, weights,
-                 partials_);
+                 groupOf(members_), vpls, cl_int(count), sites_, cl_int(stride), assignment_, means_,
+                 seeds ? seeds->clusters : clusters_, clusters, keep, weights, partials_);
     executor.run("kmeans.finish", finish_, {clusterCount_, 1}, kGroup, vpls, cl_int(stride), partials_, means_,
                  frameBuffer_, clusters, clusters_);
     warm_ = true;
