@@ -461,13 +461,29 @@ typedef struct LWSsvpDesc {
 
 LW_API void lwDefaultSsvp(LWSsvpDesc* desc);
 
+/** Technique "fallback": E = E1 + (1 - v1) E2, where v1 is the share of a pixel's hemisphere that the first technique
+ *  vouches for (its output `validity`) and E2 is what the second one would make of the whole hemisphere: its light is
+ *  taken to come evenly from all directions. Validity of the sum: v1 + (1 - v1) v2.
+ *
+ *  It keeps both alive, and drives them: its lwUpdate and lwRender are theirs with the same arguments. A host that updates
+ *  or renders them itself in between changes what the next lwRender sees. Stats and debug views have their names
+ *  behind "first." and "second.". */
+typedef struct LWFallbackDesc {
+    uint32_t structSize;
+    LWTechnique first, second; /**< of the same device; two different ones. Neither has a default */
+} LWFallbackDesc;
+
+LW_API void lwDefaultFallback(LWFallbackDesc* desc);
+
 /* A technique's parameters, described for tools: the command line's --set and every chart read them
  * here, so a new technique needs no other registration. */
 typedef enum LWParameterKind {
     LW_PARAMETER_UINT = 0,  /**< uint32_t */
     LW_PARAMETER_FLOAT = 1, /**< float */
     LW_PARAMETER_ENUM = 2,  /**< int32_t; `choices` lists the names, the value is the index */
-    LW_PARAMETER_BOOL = 3   /**< uint32_t, 0 or 1 */
+    LW_PARAMETER_BOOL = 3,  /**< uint32_t, 0 or 1 */
+    LW_PARAMETER_TECHNIQUE = 4 /**< LWTechnique; `choices` lists techniques that a tool may make for it, `defaultValue` is
+                                    the index of the one to begin with */
 } LWParameterKind;
 
 typedef struct LWParameter {
@@ -476,10 +492,10 @@ typedef struct LWParameter {
     LWParameterKind kind;
     uint32_t byteOffset;       /**< of the field in the descriptor */
     double minimum, maximum, defaultValue;
-    const char* const* choices; /**< ENUM: null-terminated names; BOOL, UINT, FLOAT: null */
+    const char* const* choices; /**< ENUM, TECHNIQUE: null-terminated names; BOOL, UINT, FLOAT: null */
     const double* allowed;     /**< UINT: the only valid values, or null for the whole range */
     uint32_t allowedCount;
-    const double* sweep;       /**< values worth charting (of an ENUM the indices), or null: the default */
+    const double* sweep;       /**< values worth charting (of an ENUM or TECHNIQUE the indices), or null: the default */
     uint32_t sweepCount;
 } LWParameter;
 
@@ -515,6 +531,7 @@ LW_API LWStatus lwCreateTechnique(LWDevice device, const char* name, const void*
                                   LWTechnique* technique);
 LW_API LWStatus lwCreateRsm(LWDevice device, const LWRsmDesc* desc, LWTechnique* technique);
 LW_API LWStatus lwCreateSsvp(LWDevice device, const LWSsvpDesc* desc, LWTechnique* technique);
+LW_API LWStatus lwCreateFallback(LWDevice device, const LWFallbackDesc* desc, LWTechnique* technique);
 LW_API LWStatus lwRetainTechnique(LWTechnique technique);
 LW_API LWStatus lwReleaseTechnique(LWTechnique technique);
 

@@ -43,11 +43,12 @@ LibraryRenderer::LibraryRenderer(const lightwell::Device& device, const Paramete
                                  const RenderInputs& inputs)
     : device_(device),
       view_(device, std::uint32_t(inputs.gbuffer().width), std::uint32_t(inputs.gbuffer().height)),
-      technique_(device, parameters.technique().c_str(), parameters.descriptor()),
+      descriptor_(device, parameters),
+      technique_(device, parameters.technique().c_str(), descriptor_.get()),
       irradiance_(inputs.gbuffer().width, inputs.gbuffer().height, 3),
       validity_(inputs.gbuffer().width, inputs.gbuffer().height, 1),
       estimatedBytes_(device.estimateMemory(
-          parameters.technique().c_str(), parameters.descriptor(), std::uint32_t(inputs.gbuffer().width),
+          parameters.technique().c_str(), descriptor_.get(), std::uint32_t(inputs.gbuffer().width),
           std::uint32_t(inputs.gbuffer().height), inputs.rsmTexelCount())) {
     technique_.prewarm(view_);
     info_ = device_.info();

@@ -24,6 +24,7 @@ private:
     lightwell::Device device_;
     LWDeviceInfo info_{};
     lightwell::View view_;
+    Descriptor descriptor_;
     lightwell::Technique technique_;
     studio::PlanarBuffer irradiance_, validity_;
     std::uint64_t estimatedBytes_ = 0, frameIndex_ = 0;

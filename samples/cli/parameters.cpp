@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cstring>
+#include <sstream>
+#include <stdexcept>
 
 #include "cli.h"
 #include "open_device.h"
@@ -21,7 +23,7 @@ std::vector<std::string> choicesOf(const LWParameter& parameter) {
 }
 
 std::string validValues(const LWParameter& parameter) {
-    if (parameter.kind == LW_PARAMETER_ENUM)
+    if (parameter.kind == LW_PARAMETER_ENUM || parameter.kind == LW_PARAMETER_TECHNIQUE)
         return fmt::format("{}", fmt::join(choicesOf(parameter), ", "));
     if (parameter.kind == LW_PARAMETER_BOOL) return "on, off, true, false, 1, 0";
     if (parameter.allowedCount > 0)
@@ -61,7 +63,7 @@ double parseValue(const LWParameter& parameter, const std::string& text) {
 }
 
 std::string defaultText(const LWParameter& parameter) {
-    if (parameter.kind == LW_PARAMETER_ENUM)
+    if (parameter.kind == LW_PARAMETER_ENUM || parameter.kind == LW_PARAMETER_TECHNIQUE)
         return choicesOf(parameter).at(std::size_t(parameter.defaultValue));
     if (parameter.kind == LW_PARAMETER_BOOL) return parameter.defaultValue != 0.0 ? "on" : "off";
     return fmt::format("{}", parameter.defaultValue);
@@ -102,6 +104,9 @@ Parameters::Parameters(const std::string& technique) : technique_(technique) {
         if (technique == info.name) info_ = info;
     bytes_.resize((info_.descSize + sizeof(std::uint64_t) - 1) / sizeof(std::uint64_t));
     info_.setDefaults(bytes_.data());
+    for (std::uint32_t i = 0; i < info_.parameterCount; ++i)
+        if (info_.parameters[i].kind == LW_PARAMETER_TECHNIQUE)
+            parts_.emplace(info_.parameters[i].name, Parameters(defaultText(info_.parameters[i])));
 }
 
 bool Parameters::needsDevice() const {
@@ -116,17 +121,28 @@ const LWParameter* Parameters::find(const std::string& name) const {
 
 void Parameters::set(const std::string& assignment) {
     const auto [name, value] = splitAssignment("--set", assignment);
+    const std::size_t dot = name.find('.');
+    if (const auto part = parts_.find(name.substr(0, dot)); dot != std::string::npos && part != parts_.end()) {
+        part->second.set(assignment.substr(dot + 1));
+        return;
+    }
     const LWParameter* parameter = find(name);
     if (parameter == nullptr) {
         std::vector<std::string> names;
         for (std::uint32_t i = 0; i < info_.parameterCount; ++i)
             names.emplace_back(info_.parameters[i].name);
+        for (const auto& [part, parameters] : parts_) names.push_back(part + ".KEY");
         requireOneOf(fmt::format("--set key of technique {}", info_.name), name, names);
     }
     assign(*parameter, value);
 }
 
 void Parameters::assign(const LWParameter& parameter, const std::string& text) {
+    if (parameter.kind == LW_PARAMETER_TECHNIQUE) {
+        requireOneOf(fmt::format("--set {}", parameter.name), text, choicesOf(parameter));
+        parts_.at(parameter.name) = Parameters(text);
+        return;
+    }
     const double value = parseValue(parameter, text);
     char* field = reinterpret_cast<char*>(bytes_.data()) + parameter.byteOffset;
     if (parameter.kind == LW_PARAMETER_FLOAT) {
@@ -138,33 +154,63 @@ void Parameters::assign(const LWParameter& parameter, const std::string& text) {
     }
 }
 
+ParameterValue Parameters::valueOf(const LWParameter& parameter) const {
+    const char* field = reinterpret_cast<const char*>(bytes_.data()) + parameter.byteOffset;
+    float real = 0.0f;
+    std::uint32_t whole = 0;
+    std::memcpy(&real, field, sizeof real);
+    std::memcpy(&whole, field, sizeof whole);
+    switch (parameter.kind) {
+        case LW_PARAMETER_UINT:
+            return std::uint64_t(whole);
+        case LW_PARAMETER_FLOAT:
+            return double(real);
+        case LW_PARAMETER_ENUM:
+            return choicesOf(parameter).at(whole);
+        case LW_PARAMETER_BOOL:
+            return whole != 0;
+        case LW_PARAMETER_TECHNIQUE:
+            return parts_.at(parameter.name).technique();
+    }
+    throw std::logic_error("a parameter of unknown kind");
+}
+
 std::vector<std::pair<std::string, ParameterValue>> Parameters::resolved() const {
     std::vector<std::pair<std::string, ParameterValue>> values;
     for (std::uint32_t i = 0; i < info_.parameterCount; ++i) {
         const LWParameter& parameter = info_.parameters[i];
-        const char* field = reinterpret_cast<const char*>(bytes_.data()) + parameter.byteOffset;
-        float real = 0.0f;
-        std::uint32_t whole = 0;
-        std::memcpy(&real, field, sizeof real);
-        std::memcpy(&whole, field, sizeof whole);
-        ParameterValue value;
-        switch (parameter.kind) {
-            case LW_PARAMETER_UINT:
-                value = std::uint64_t(whole);
-                break;
-            case LW_PARAMETER_FLOAT:
-                value = double(real);
-                break;
-            case LW_PARAMETER_ENUM:
-                value = choicesOf(parameter).at(whole);
-                break;
-            case LW_PARAMETER_BOOL:
-                value = whole != 0;
-                break;
-        }
-        values.emplace_back(parameter.name, std::move(value));
+        values.emplace_back(parameter.name, valueOf(parameter));
+        if (parameter.kind != LW_PARAMETER_TECHNIQUE) continue;
+        for (auto& [name, value] : parts_.at(parameter.name).resolved())
+            values.emplace_back(std::string(parameter.name) + "." + name, std::move(value));
     }
     return values;
+}
+
+Parameters Parameters::defaults() const {
+    Parameters result(technique_);
+    for (const auto& [name, part] : parts_) result.parts_.at(name) = part.defaults();
+    return result;
+}
+
+Parameters parseVariant(const std::string& text) {
+    std::istringstream words(text);
+    std::string word;
+    std::getline(words, word, ',');
+    Parameters parameters(word);
+    while (std::getline(words, word, ',')) parameters.set(word);
+    return parameters;
+}
+
+Descriptor::Descriptor(const lightwell::Device& device, const Parameters& parameters) : bytes_(parameters.bytes_) {
+    for (std::uint32_t i = 0; i < parameters.info_.parameterCount; ++i) {
+        const LWParameter& parameter = parameters.info_.parameters[i];
+        if (parameter.kind != LW_PARAMETER_TECHNIQUE) continue;
+        const Parameters& part = parameters.parts_.at(parameter.name);
+        parts_.emplace_back(device, part.technique().c_str(), Descriptor(device, part).get());
+        const LWTechnique handle = parts_.back().get();
+        std::memcpy(reinterpret_cast<char*>(bytes_.data()) + parameter.byteOffset, &handle, sizeof handle);
+    }
 }
 
 }  // namespace cli

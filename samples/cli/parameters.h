@@ -3,11 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <variant>
 #include <vector>
 
-#include "lightwell/lightwell.h"
+#include "lightwell/lightwell.hpp"
 
 namespace cli {
 
@@ -25,23 +26,46 @@ public:
     // The technique's defaults. UsageError listing the techniques when there is none of this name.
     explicit Parameters(const std::string& technique);
 
-    // "vpls=4096". UsageError naming the key, the range or the choices.
+    // "vpls=4096", and "second.vpls=4096" of a technique that is a parameter. UsageError naming the key, the range or
+    // the choices.
     void set(const std::string& assignment);
     const std::string& technique() const { return technique_; }
     bool needsDevice() const;  // false: the host's own technique
     bool has(const std::string& name) const { return find(name) != nullptr; }
-    // For lwCreateTechnique and lwEstimateMemory.
+    // Of a technique of the host's own.
     const void* descriptor() const { return bytes_.data(); }
-    // Every parameter as it stands, in the table's order.
+    // Every parameter as it stands, in the table's order; those of a technique that is a parameter behind it.
     std::vector<std::pair<std::string, ParameterValue>> resolved() const;
+    // By the parameter's name.
+    const std::map<std::string, Parameters>& parts() const { return parts_; }
+    // The defaults, with the same techniques as parts.
+    Parameters defaults() const;
 
 private:
+    friend class Descriptor;
     const LWParameter* find(const std::string& name) const;
     void assign(const LWParameter& parameter, const std::string& text);
+    ParameterValue valueOf(const LWParameter& parameter) const;
 
     std::string technique_;
     LWTechniqueInfo info_{};
-    std::vector<std::uint64_t> bytes_;  // of the descriptor, aligned
+    std::vector<std::uint64_t> bytes_;  // of the descriptor, aligned; techniques in it are null
+    std::map<std::string, Parameters> parts_;
+};
+
+// "ssvp", or "ssvp,warm_start=off,clusters=16". UsageError as of Parameters.
+Parameters parseVariant(const std::string& text);
+
+// For lwCreateTechnique and lwEstimateMemory: with the techniques that are parameters made on this device. What is created
+// with it keeps them.
+class Descriptor {
+public:
+    Descriptor(const lightwell::Device& device, const Parameters& parameters);
+    const void* get() const { return bytes_.data(); }
+
+private:
+    std::vector<std::uint64_t> bytes_;
+    std::vector<lightwell::Technique> parts_;
 };
 
 }  // namespace cli

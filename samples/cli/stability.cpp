@@ -49,7 +49,7 @@ void complete(Arguments& arguments) {
     StabilityOptions& options = arguments.stability;
     if (options.techniques.empty()) options.techniques = techniqueNames();
     for (const std::string& technique : options.techniques)
-        requireOneOf("technique", technique, techniqueNames());
+        parseVariant(technique);
     options.sequences = chooseSequences(arguments.scenes, arguments.sequences, options.quick);
     const bool hasScene = std::any_of(options.sequences.begin(), options.sequences.end(),
                                       [](const SequenceChoice& c) { return !c.scene.empty(); });
@@ -122,7 +122,7 @@ void addStability(CLI::App& app) {
         ->add_option("--out", options.folder,
                      "Folder (made when missing) of stability.json and the worst frames' pictures")
         ->required();
-    command->add_option("--techniques", options.techniques, "Techniques by name; default: all");
+    command->add_option("--techniques", options.techniques, "Techniques by name, with other parameters as NAME,KEY=VALUE,...; default: all");
     command->add_option("--scenes", arguments->scenes,
                         "Scenes by name or path: instead of the catalogue their first cameras and "
                         "lights, moved");

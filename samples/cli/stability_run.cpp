@@ -38,13 +38,14 @@ constexpr const char* kProtocol = "1";  // part of every key: raise it when the 
 
 // One technique on its way through one sequence.
 struct Runner {
+    std::string technique;  // or a variant, as the user wrote it
     Parameters parameters;
     int bounces = 1;
     std::unique_ptr<IndirectRenderer> renderer;
     std::vector<JudgedFrame> frames;
 
-    explicit Runner(const std::string& technique)
-        : parameters(technique), bounces(modelledBounces(parameters)) {}
+    explicit Runner(const std::string& variant)
+        : technique(variant), parameters(parseVariant(variant)), bounces(modelledBounces(parameters)) {}
 };
 
 class Stability {
@@ -166,7 +167,7 @@ std::string Stability::keyOf(const FailureSequence& sequence, const Runner& runn
 std::vector<Runner*> Stability::dueIn(const FailureSequence& sequence) {
     std::vector<Runner*> due;
     for (Runner& runner : runners_)
-        if (options_.onlyTruths || !results_.isFresh(runner.parameters.technique() + "/" + sequence.name,
+        if (options_.onlyTruths || !results_.isFresh(runner.technique + "/" + sequence.name,
                                                      keyOf(sequence, runner)))
             due.push_back(&runner);
     return due;
@@ -265,7 +266,7 @@ void Stability::renderFrame(const FailureSequence& sequence, const FrameScene& n
 }
 
 void Stability::judge(const FailureSequence& sequence, Runner& runner) {
-    const std::string technique = runner.parameters.technique();
+    const std::string& technique = runner.technique;
     const Verdict verdict = judgeSequence(runner.frames);
     Json json;
     json["id"] = technique + "/" + sequence.name;

@@ -24,7 +24,8 @@ std::string sweepAssignment(const LWParameter& parameter, std::uint32_t index) {
     const double value = parameter.sweep[index];
     std::string text = fmt::format("{}", value);
     if (parameter.kind == LW_PARAMETER_UINT) text = fmt::format("{:.0f}", value);  // no exponent
-    if (parameter.kind == LW_PARAMETER_ENUM) text = parameter.choices[std::size_t(value)];
+    if (parameter.kind == LW_PARAMETER_ENUM || parameter.kind == LW_PARAMETER_TECHNIQUE)
+        text = parameter.choices[std::size_t(value)];
     if (parameter.kind == LW_PARAMETER_BOOL) text = value != 0.0 ? "on" : "off";
     return fmt::format("{}={}", parameter.name, text);
 }
@@ -79,6 +80,12 @@ Assignments splitWords(const char* text) {
     return words;
 }
 
+// Whether a value is the name of a technique that is not the usual one in its place.
+bool isOther(const Parameters& parameters, const std::pair<std::string, ParameterValue>& value,
+             const std::vector<std::pair<std::string, ParameterValue>>& usual) {
+    return parameters.parts().count(value.first) != 0 && std::find(usual.begin(), usual.end(), value) == usual.end();
+}
+
 }  // namespace
 
 std::string valueText(const ParameterValue& value) {
@@ -103,14 +110,22 @@ int modelledBounces(const Parameters& parameters) {
         if (const auto* count = std::get_if<std::uint64_t>(&value);
             name == "bounces" && count != nullptr)
             return *count > 2 ? 0 : int(*count);
-    return int(infoOf(parameters.technique()).bounces);
+    if (parameters.parts().empty()) return int(infoOf(parameters.technique()).bounces);
+    // Of techniques joined: the most that one of them models. 0, all of them, is the most of all.
+    int most = 1;
+    for (const auto& [name, part] : parameters.parts()) {
+        const int bounces = modelledBounces(part);
+        most = bounces == 0 || most == 0 ? 0 : std::max(most, bounces);
+    }
+    return most;
 }
 
 std::string describeDifference(const Parameters& parameters) {
-    const auto defaults = Parameters(parameters.technique()).resolved(), values = parameters.resolved();
+    const auto defaults = parameters.defaults().resolved(), values = parameters.resolved();
+    const auto usual = Parameters(parameters.technique()).resolved();
     std::string text;
     for (std::size_t i = 0; i < values.size(); ++i)
-        if (!(values[i] == defaults[i]))
+        if (!(values[i] == defaults[i]) || isOther(parameters, values[i], usual))
             text += fmt::format("{}{}={}", text.empty() ? "" : " ", values[i].first,
                                 valueText(values[i].second));
     return text.empty() ? "defaults" : text;

@@ -45,6 +45,13 @@ std::shared_ptr<TechniqueObject> Call::technique(LWTechnique handle) {
     return object;
 }
 
+std::shared_ptr<TechniqueObject> Call::techniqueOfDevice(LWTechnique handle, const char* argument) {
+    auto object = findTechnique(handle, argument);
+    if (object->device != device_)
+        fail(LW_ERROR_INVALID_HANDLE, argument, ": expected a technique of the same device, got another device's");
+    return object;
+}
+
 std::shared_ptr<View> Call::viewOfDevice(LWView handle, const char* argument, bool optional) {
     if (!handle && optional) return nullptr;
     const auto object = findView(handle, argument);

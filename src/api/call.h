@@ -20,6 +20,8 @@ public:
     // A second handle: must belong to the device that is locked. Null stays null where `optional`.
     std::shared_ptr<View> viewOfDevice(LWView handle, const char* argument, bool optional = false);
 
+    std::shared_ptr<TechniqueObject> techniqueOfDevice(LWTechnique handle, const char* argument);
+
     // Waits for what is enqueued so far, with the lock open, so that other threads' calls go on meanwhile. Objects
     // may change while the lock is open: take what is to be reported before. Throws before it waits, or not at all.
     void wait();

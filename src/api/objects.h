@@ -61,6 +61,11 @@ struct TechniqueObject : Object {
     std::uint64_t failures = 0;  // that the device had seen at the last lwUpdate
     std::uint64_t frameIndex = 0;
 
+    // What it was made of, to estimate its memory again as a part of another.
+    const TechniqueEntry* entry = nullptr;
+    std::vector<std::uint64_t> descriptor;
+    std::vector<std::shared_ptr<TechniqueObject>> parts;
+
     // Whether the world part is what the last lwUpdate recorded. A command that failed may have been one of it.
     bool current() const { return updated && failures == device->device.failures(); }
 

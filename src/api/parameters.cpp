@@ -5,6 +5,7 @@
 #include <cstring>
 #include <string>
 
+#include "api/call.h"
 #include "compute/error.h"
 
 namespace lightwell {
@@ -80,12 +81,27 @@ std::vector<std::uint64_t> readDescriptor(const TechniqueEntry& entry, const voi
     const char* defaultFields = reinterpret_cast<const char*>(defaults.data());
     for (std::uint32_t i = 0; i < info.parameterCount; ++i) {
         const LWParameter& parameter = info.parameters[i];
+        if (parameter.kind == LW_PARAMETER_TECHNIQUE) continue;  // partsOf's
         const double value = valueOf(fields, parameter);
         if (allows(parameter, value)) continue;
         if (value != 0.0) refuse(parameter, value);
         std::memcpy(fields + parameter.byteOffset, defaultFields + parameter.byteOffset, 4);
     }
     return result;
+}
+
+std::vector<std::shared_ptr<TechniqueObject>> partsOf(Call& call, const TechniqueEntry& entry,
+                                                      const std::vector<std::uint64_t>& descriptor) {
+    std::vector<std::shared_ptr<TechniqueObject>> parts;
+    for (std::uint32_t i = 0; i < entry.info.parameterCount; ++i) {
+        const LWParameter& parameter = entry.info.parameters[i];
+        if (parameter.kind != LW_PARAMETER_TECHNIQUE) continue;
+        const auto handle = fieldAs<LWTechnique>(reinterpret_cast<const char*>(descriptor.data()), parameter);
+        const std::string argument = std::string("desc.") + parameter.name;
+        if (!handle) fail(LW_ERROR_INVALID_ARGUMENT, argument, ": expected a technique, got null");
+        parts.push_back(call.techniqueOfDevice(handle, argument.c_str()));
+    }
+    return parts;
 }
 
 }  // namespace lightwell

@@ -22,7 +22,12 @@ LWStatus createTechnique(const char* function, LWDevice device, const char* name
         const auto descriptor = readDescriptor(entry, desc);
         auto object = std::make_shared<TechniqueObject>();
         object->device = call.owner();
-        object->technique = entry.create(own, descriptor.data());
+        object->entry = &entry;
+        object->descriptor = descriptor;
+        object->parts = partsOf(call, entry, descriptor);
+        std::vector<std::shared_ptr<Technique>> parts;  // each keeps its handle's object alive
+        for (const auto& part : object->parts) parts.emplace_back(part, part->technique.get());
+        object->technique = entry.join ? entry.join(own, parts) : entry.create(own, descriptor.data());
         *technique = static_cast<LWTechnique>(addHandle(HandleKind::kTechnique, std::move(object)));
     });
 }
@@ -43,6 +48,14 @@ void checkOutput(const LWOutput& output) {
 
 constexpr std::uint32_t kMaxSide = 16384;  // of views and RSMs
 
+std::uint64_t estimateWith(const TechniqueEntry& entry, const std::vector<std::uint64_t>& descriptor,
+                           const std::vector<std::shared_ptr<TechniqueObject>>& parts, const LWViewDesc& view,
+                           const FrameShape& shape) {
+    std::uint64_t total = entry.estimateBytes(descriptor.data(), view, shape);
+    for (const auto& part : parts) total += estimateWith(*part->entry, part->descriptor, part->parts, view, shape);
+    return total;
+}
+
 void estimate(Call& call, const char* name, const void* desc, const LWViewDesc* view, FrameShape shape,
               std::uint64_t* bytes) {
     if (!bytes) fail(LW_ERROR_INVALID_ARGUMENT, "bytes: expected an address, got null");
@@ -53,7 +66,7 @@ void estimate(Call& call, const char* name, const void* desc, const LWViewDesc* 
         fail(LW_ERROR_INVALID_ARGUMENT, "view: expected 1 .. ", kMaxSide, " pixels a side, got ",
              own.maxWidth, " x ", own.maxHeight);
     shape.uploads = !call.owner()->device.unifiedMemory();
-    *bytes = entry.estimateBytes(descriptor.data(), own, shape);
+    *bytes = estimateWith(entry, descriptor, partsOf(call, entry, descriptor), own, shape);
 }
 
 }  // namespace
@@ -83,6 +96,10 @@ LWStatus lwCreateRsm(LWDevice device, const LWRsmDesc* desc, LWTechnique* techni
 
 LWStatus lwCreateSsvp(LWDevice device, const LWSsvpDesc* desc, LWTechnique* technique) {
     return createTechnique("lwCreateSsvp", device, "ssvp", desc, technique);
+}
+
+LWStatus lwCreateFallback(LWDevice device, const LWFallbackDesc* desc, LWTechnique* technique) {
+    return createTechnique("lwCreateFallback", device, "fallback", desc, technique);
 }
 
 LWStatus lwRetainTechnique(LWTechnique technique) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include "compute/device.h"
 #include "compute/executor.h"
@@ -43,6 +44,27 @@ void Report::choose(const char* name, const char* reason) {
     for (const LWChoice& choice : choices)
         if (std::strcmp(choice.name, name) == 0 && std::strcmp(choice.reason, reason) == 0) return;
     choices.push_back({name, reason});
+}
+
+const char* Report::keep(std::string name) {
+    names_.push_back(std::move(name));
+    return names_.back().c_str();
+}
+
+void Report::add(const std::string& part, Report other) {
+    const auto named = [&](const char* name) { return keep(part + "." + name); };
+    const std::size_t first = counts.size();
+    for (const LWCount& count : other.counts) counts.push_back({named(count.name), count.value});
+    for (const LWChoice& choice : other.choices) choices.push_back({named(choice.name), choice.reason});
+    for (Pending& pending : other.pending_) pending_.push_back({first + pending.count, std::move(pending.value)});
+    for (PendingChoice& pending : other.pendingChoices_) {
+        pending.name = named(pending.name);
+        pendingChoices_.push_back(std::move(pending));
+    }
+    if (other.device_) device_ = other.device_;
+    other.pending_.clear();  // now read for this report
+    other.pendingChoices_.clear();
+    names_.splice(names_.end(), other.names_);  // reasons may be of a part's own part
 }
 
 void Report::resolve() {

@@ -3,7 +3,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <list>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "compute/buffer.h"
@@ -13,7 +15,8 @@
 namespace lightwell {
 
 // Filled in two steps, so that nobody waits under a lock: a technique notes what it knows and has the rest
-// read without waiting; after the wait, resolve() puts in what was read. Names and reasons are string literals.
+// read without waiting; after the wait, resolve() puts in what was read. Names and reasons are string literals,
+// but for those of a part's report, whose names the report keeps.
 class Report {
 public:
     Report() = default;
@@ -33,6 +36,8 @@ public:
                     const char* const* reasons, std::uint32_t reasonCount);
     // Adds a choice, unless the same was made before (for another view).
     void choose(const char* name, const char* reason);
+    // Takes over another's, each name as "part.name": of a technique that is part of another.
+    void add(const std::string& part, Report other);
     // After the queue has got past the reads.
     void resolve();
 
@@ -49,9 +54,11 @@ private:
     };
     void enqueueRead(Device& device, const Buffer& buffer, std::size_t byteOffset, cl_uint* value);
     std::size_t indexOf(const char* name);
+    const char* keep(std::string name);
 
     std::vector<Pending> pending_;
     std::vector<PendingChoice> pendingChoices_;
+    std::list<std::string> names_;  // stay where they are when the report moves
     Device* device_ = nullptr;  // set while something is pending
 };
 

@@ -1,4 +1,5 @@
 // One line per technique.
+#include "techniques/fallback.h"
 #include "techniques/rsm.h"
 #include "techniques/ssvp.h"
 #include "techniques/technique.h"
@@ -9,6 +10,7 @@ const std::vector<TechniqueEntry>& techniqueEntries() {
     static const std::vector<TechniqueEntry> entries = {
         rsmEntry(),
         ssvpEntry(),
+        fallbackEntry(),
     };
     return entries;
 }

@@ -49,7 +49,10 @@ struct TechniqueEntry {
     LWTechniqueInfo info;
     // `desc` has been checked against info.parameters.
     std::unique_ptr<Technique> (*create)(Device& device, const void* desc);
+    // Of a technique that others are parts of: without those.
     std::uint64_t (*estimateBytes)(const void* desc, const LWViewDesc& view, const FrameShape& shape);
+    // Instead of `create` where parameters are techniques (LW_PARAMETER_TECHNIQUE): those, in the parameters' order.
+    std::unique_ptr<Technique> (*join)(Device& device, const std::vector<std::shared_ptr<Technique>>& techniques) = nullptr;
 };
 // The registry: one line per technique in registry.cpp.
 const std::vector<TechniqueEntry>& techniqueEntries();

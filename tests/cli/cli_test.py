@@ -228,6 +228,19 @@ class Render(CommandLine):
         return self.json("render", "cornell", "--technique", "rsm", *SIZE, "--warmup", "1", "--frames", "2", "--json",
                          *arguments)
 
+    def test_techniques_that_are_parameters(self):
+        report = self.json("render", "cornell", "--technique", "fallback", *SIZE, "--frames", "1", "--json", "--set",
+                           "first=rsm", "second=rsm", "--set", "second.vpls=64")
+        parameters = report["parameters"]
+        self.assertEqual((parameters["first"], parameters["second"]), ("rsm", "rsm"))
+        self.assertEqual((parameters["first.vpls"], parameters["second.vpls"]), (256, 64))
+        self.assertEqual((report["counts"]["first.vpls"], report["counts"]["second.vpls"]), (256, 64))
+        self.assertIn("fallback.join", [one["name"] for one in report["passes"]])
+        joined = ["render", "cornell", "--technique", "fallback", "--out", self.path("never.exr"), "--set"]
+        self.refused([*joined, "second.samplings=1"], "samplings", "sampling")
+        self.refused([*joined, "third.vpls=1"], "third.vpls", "second.KEY")
+        self.refused([*joined, "second=none"], "second", "ssvp")
+
     def test_json_and_pictures(self):
         picture, display = self.path("a.exr"), self.path("a.png")
         report = self.render("--set", "vpls=64", "sampling=uniform", "--set", "filter=off", "--seed", "5",

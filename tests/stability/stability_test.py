@@ -178,6 +178,16 @@ class Stability(unittest.TestCase):
             self.assertEqual(errors[2], errors[6])  # the same picture before and after a smaller one
             self.assertNotEqual(errors[2], errors[4])
 
+    def test_other_parameters_stand_beside_the_defaults(self):
+        folder = os.path.join(self.temporary.name, "variants")
+        self.run_again("--no-report", "--size", "32x18", "--frames", "3", "--truth-effort", "0.1", "--sequences", "camera_dolly",
+                       "--techniques", "rsm", "rsm,vpls=16,filter=off", folder=folder)
+        with open(os.path.join(folder, "stability.json"), encoding="utf-8") as file:
+            results = {result["technique"]: result for result in json.load(file)["results"]}
+        self.assertEqual(set(results), {"rsm", "rsm,vpls=16,filter=off"})
+        self.assertEqual(results["rsm,vpls=16,filter=off"]["settings"], "vpls=16 filter=off")
+        self.assertNotEqual(results["rsm"]["frames"], results["rsm,vpls=16,filter=off"]["frames"])
+
     def test_scenes_are_moved_through(self):
         folder = os.path.join(self.temporary.name, "scenes")
         cheap = ("--no-report", "--size", "32x18", "--frames", "3", "--truth-effort", "0.1", "--techniques", "rsm", "rival")
@@ -234,6 +244,8 @@ class Stability(unittest.TestCase):
         self.assertIn("frames", errors)
         _, errors = self.run_again("--techniques", "magic", code=2)
         self.assertIn("rival", errors)
+        _, errors = self.run_again("--techniques", "rsm,vpl=3", code=2)
+        self.assertIn("vpls", errors)
         for effort in ("0", "-1", "nan", "inf", "1e300"):
             _, errors = self.run_again("--truth-effort", effort, code=2)
             self.assertIn("--truth-effort", errors)
