@@ -16,8 +16,7 @@ from program import ROOT, caller, read_options
 from split import GREY_ALBEDO, write_grey
 
 CLUSTERS, SIDES = [4, 8, 16, 32, 64, 0], [64, 128, 256, 512]
-# What maps are drawn from, and the settings that say so.
-SOURCES = {"triangles": []}
+SOURCES, SOURCE_CLUSTERS, SOURCE_SIDES = ["triangles", "surfels", "screen"], [8, 32], [128, 256]
 BEGIN, END = "<!-- begin: figures -->", "<!-- end: figures -->"
 SOFT_SIDE = 128
 # The set-up of an earlier experiment, with what it found: relMSE in Crytek Sponza's first camera and the living room.
@@ -44,8 +43,8 @@ def main():
              "(each pair weighed by what it would bring with nothing between), and the relMSE against a ray for each pair. N: every VPL its own "
              "cluster. *mean*, *medoid*: rays to the clusters' means and medoids. Numbers: the side of a hard map; soft ones by name.", ""]
     for scene in options.scenes:
-        for source, settings in SOURCES.items():
-            lines += sweep_table(scene, source, lambda name, *arguments, s=settings: count(name, scene, "--no-truth", *sets(s), *arguments))
+        lines += sweep_table(scene, lambda name, *arguments, s=scene: count(name, s, "--no-truth", *arguments))
+    lines += sources_table(options.scenes, count)
     lines += grey_table(options, count) + pictures(options, call)
     page = ROOT / "docs/techniques/ssvp_visibility.md"
     before, rest = page.read_text(encoding="utf-8").split(BEGIN)
@@ -61,13 +60,13 @@ def sweep(key, values):
     return ["--sweep", f"{key}=" + ",".join(map(str, values))]
 
 
-def sweep_table(scene, source, count):
-    hard = count(f"{scene}_{source}", *sweep("clusters", CLUSTERS), *sweep("map_size", SIDES))
-    soft = count(f"{scene}_{source}_soft", *sets([f"map_size={SOFT_SIDE}", "visibility=soft"]), *sweep("clusters", CLUSTERS))
+def sweep_table(scene, count):
+    hard = count(f"{scene}_triangles", *sweep("clusters", CLUSTERS), *sweep("map_size", SIDES))
+    soft = count(f"{scene}_triangles_soft", *sets([f"map_size={SOFT_SIDE}", "visibility=soft"]), *sweep("clusters", CLUSTERS))
     by_place = {(p["parameters"]["clusters"], p["parameters"]["map_size"]): p for p in hard["points"]}
     soft = {p["parameters"]["clusters"]: p for p in soft["points"]}
     none = next(iter(by_place.values()))
-    lines = [f"### {scene}, maps of {source}", "",
+    lines = [f"### {scene}, maps of triangles", "",
              f"{none['pairs']:,} pairs. With nothing between judged lit, {share(none, 'none', '')} % of pairs are false light, {share(none, 'none', '_weighted')} % of "
              f"light; relMSE {error(none, 'none')}.", "",
              "| clusters | what | mean | medoid | " + " | ".join(map(str, SIDES)) + f" | {SOFT_SIDE} soft |",
@@ -79,6 +78,23 @@ def sweep_table(scene, source, count):
                 "relMSE": [error(p, way) for p, way in cells]}
         for what, row in rows.items():
             lines.append(f"| {clusters or 'N'} | {what} | " + " | ".join(row) + " |")
+    return lines + [""]
+
+
+def sources_table(scenes, count):
+    lines = ["### What maps are drawn from", "", "As above; false light / false shadow in per cent of light, and the relMSE against a ray for each pair. *triangles*: "
+             "exact; *surfels*: the same triangles, sampled; *screen*: the texels of the shadow map and the pixels of the view.", "",
+             "| scene | clusters | side | " + " | ".join(f"{source} | relMSE" for source in SOURCES) + " | medoids' rays |",
+             "| --- | ---: | ---: | " + " | ".join(["---: | ---:"] * len(SOURCES)) + " | ---: |"]
+    for scene in scenes:
+        found = count(f"{scene}_sources", scene, "--no-truth", *sweep("occluders", SOURCES), *sweep("clusters", SOURCE_CLUSTERS),
+                      *sweep("map_size", SOURCE_SIDES))
+        by_place = {(p["parameters"]["clusters"], p["parameters"]["map_size"], p["parameters"]["occluders"]): p for p in found["points"]}
+        for clusters in SOURCE_CLUSTERS:
+            for side in SOURCE_SIDES:
+                points = [by_place[clusters, side, source] for source in SOURCES]
+                cells = " | ".join(f"{both(p, 'map', '_weighted')} | {error(p, 'map')}" for p in points)
+                lines.append(f"| {scene} | {clusters} | {side} | {cells} | {error(points[0], 'medoid')} |")
     return lines + [""]
 
 
