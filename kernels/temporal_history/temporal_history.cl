@@ -157,6 +157,12 @@ LW_FN lw_past look_up(lw_surface s, mask wanted, int x, int y, int mode, const L
         row = to_lanei(top);
     }
     if (!any_(wanted)) return past;
+    // At rest, which is told without looking across lanes.
+    const mask moved = or_(or_(column != lanei_iota() + (lanei)x, row != (lanei)y), or_(fx > 0.0f, fy > 0.0f));
+    if (!any_(and_(wanted, moved)) && y < r.height && x < r.width) {
+        add_taps(&past, s, tolerance, before, layout, r, column, row, fx, fy, wanted, 1, x, y, 1);
+        return past;
+    }
     const lanei shift = column - lanei_iota(), far = (lanei)(1 << 30);
     const int firstColumn = mini_lane(selecti_(far, shift, wanted)), firstRow = mini_lane(selecti_(far, row, wanted));
     const int taps = any_(and_(wanted, or_(fx > 0.0f, fy > 0.0f))) ? 4 : 1;

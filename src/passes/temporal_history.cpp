@@ -22,8 +22,12 @@ Range itemsOver(const Planes& image, const Kernel& kernel) {
 // Irradiance and its spread, each scalar and its own, position, a word of normal and age.
 std::uint32_t planesOf(const TemporalHistoryOptions& options) { return 4 + 2 * options.scalars + 4; }
 
+// All planes of a row lie side by side, a cache line apart: planes of a whole picture often lie a multiple of 4096 bytes apart
+// (1280 x 720 does), and thirty of them then contend for the same few places of the first-level cache.
+std::uint64_t planeStride(std::uint32_t width) { return paddedWidth(width) + 16u; }
+
 std::uint64_t imageFloats(const TemporalHistoryOptions& options, std::uint32_t maxWidth, std::uint32_t maxHeight) {
-    const std::uint64_t floats = std::uint64_t(paddedWidth(maxWidth)) * maxHeight * planesOf(options);
+    const std::uint64_t floats = planeStride(maxWidth) * maxHeight * planesOf(options);
     if (floats > std::uint64_t(std::numeric_limits<std::int32_t>::max()))
         fail(LW_ERROR_UNSUPPORTED, "history: a view of ", maxWidth, " x ", maxHeight,
              " pixels exceeds the 32-bit indices of the kernels; expected history=0 or a smaller view");
@@ -61,9 +65,20 @@ LwReprojection reprojection(const Camera& camera, std::uint32_t width, std::uint
 }  // namespace
 
 ViewHistory::ViewHistory(Device& device, const TemporalHistoryOptions& options, std::uint32_t maxWidth, std::uint32_t maxHeight)
-    : counts_(device, kCountBytes, "counts of a history") {
-    imageFloats(options, maxWidth, maxHeight);
-    for (PlanarImage& image : images_) image = PlanarImage(device, maxWidth, maxHeight, planesOf(options), "temporal history");
+    : planes_(planesOf(options)), counts_(device, kCountBytes, "counts of a history") {
+    const std::size_t bytes = sizeof(float) * std::size_t(imageFloats(options, maxWidth, maxHeight));
+    for (Buffer& image : images_) image = Buffer(device, bytes, "temporal history");
+}
+
+Planes ViewHistory::planes(std::size_t which, std::uint32_t width, std::uint32_t height) const {
+    Planes planes;
+    planes.memory = images_[which].get();
+    planes.planeStride = std::int64_t(planeStride(width));
+    planes.rowStride = planes.planeStride * planes_;
+    planes.width = width;
+    planes.height = height;
+    planes.count = planes_;
+    return planes;
 }
 
 void ViewHistory::startFrame(bool forget) {

@@ -52,9 +52,10 @@ public:
 
 private:
     friend class TemporalHistory;
-    Planes planes(std::size_t which, std::uint32_t width, std::uint32_t height) const { return images_[which].planes(width, height); }
+    Planes planes(std::size_t which, std::uint32_t width, std::uint32_t height) const;
 
-    std::array<PlanarImage, 2> images_;
+    std::uint32_t planes_;
+    std::array<Buffer, 2> images_;
     Buffer counts_;
     std::size_t last_ = 0;  // image of the last frame
     std::uint32_t width_ = 0, height_ = 0;  // its size
