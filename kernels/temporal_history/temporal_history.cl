@@ -8,10 +8,10 @@
 //
 // Light changes too, so a history is only believed as far as the frame's own picture allows (variance clipping, Salvi
 // 2016): it is brought between the bounds of
-//   mean -+ gamma * deviation of the 3 x 3 pixels around, and I -+ gamma * s,
-// s the mean distance between I and c that this surface has shown over time. The 3 x 3 knows noise that differs
+//   mean -+ gamma * deviation of the 3 x 3 pixels around, and I -+ gamma * s * (I + c) / 2,
+// s the mean distance between I and c, relative to the light, that this surface has shown over time. The 3 x 3 knows noise that differs
 // from pixel to pixel; s that of samples which all pixels share, which moves whole patches up and down from frame to frame
-// and that no neighbourhood tells. The frames that remain in the mean fall by the share that was cut off.
+// and that no neighbourhood tells. Where much was cut off, the frames that remain in the mean become few, or none.
 #include "shared/wide.h"
 #include "shared/surface.h"
 #include "shared/edge_weight.h"
@@ -44,10 +44,15 @@
 #define LW_HALVING_SPEED 8.0f
 // Frames after which s is known well enough to clip by.
 #define LW_LEARNING 4.0f
+// Slope with which the mean forgets: all at half of the distance cut off (light twice as far from its past as the bounds
+// reach, some 5 standard deviations), nothing up to a quarter. Larger: lag, where light changes by hardly more than its noise.
+#define LW_FORGETTING 4.0f
 // Frames that s is a mean over, at most. Larger: s learns late of a technique's noise that has changed.
 #define LW_SPREAD_FRAMES 16.0f
-// Least s, relative to the light: a picture without noise learns nothing of noise to come.
+// Least s: a picture without noise learns nothing of noise to come. Larger: that much of a light that has gone may stay.
 #define LW_LEAST_SPREAD 0.01f
+// Largest s of one frame: what goes dark from one to the next is infinitely far from its past.
+#define LW_LARGEST_SPREAD 4.0f
 
 typedef struct {
     real mixed[LW_MIXED];
@@ -192,23 +197,25 @@ LW_FN void neighbourhood(__global const float* current, int4 layout, int plane, 
 }
 
 // Planes first .. first + count of one kind, clipped: `past` moves between the bounds. Returns the share of its distance to
-// the frame that was cut off, and puts what is left of that distance into `rest`.
+// the frame that was cut off, and puts what is left of that distance, relative to the light, into `rest`.
 LW_FN real clip_planes(real* past, const real* own, int first, const int count, real spread, real gamma, mask trusted,
                        __global const float* current, int4 layout, int x, int y, int width, int height, real* rest) {
-    real light = (real)0.0f, distance = (real)0.0f, cut = (real)0.0f;
-    *rest = (real)0.0f;
-    LW_UNROLL for (int c = first; c < first + count; ++c) light = fmax(light, own[c]);
-    const real reach = gamma * fmax(spread, LW_LEAST_SPREAD * light);
+    real light = (real)0.0f, distance = (real)0.0f, cut = (real)0.0f, left = (real)0.0f;
+    const real reach = gamma * fmax(spread, (real)LW_LEAST_SPREAD);
     LW_UNROLL for (int c = first; c < first + count; ++c) {
         real mean, deviation;
         neighbourhood(current, layout, c, x, y, width, height, own[c], &mean, &deviation);
-        const real low = own[c] + fmin(fma_(-gamma, deviation, mean), -reach), high = own[c] + fmax(fma_(gamma, deviation, mean), reach);
+        // Noise may leave a pixel or a frame dark: what is near 0 there is not the light.
+        const real level = 0.5f * (fmax(own[c], own[c] + mean) + past[c]), r = reach * level, d = gamma * deviation;
+        const real low = own[c] + fmin(mean - d, -r), high = own[c] + fmax(mean + d, r);
         const real clipped = select_(past[c], clamp(past[c], low, high), trusted);
+        light = fmax(light, level);
         distance = fmax(distance, fabs(past[c] - own[c]));
         cut = fmax(cut, fabs(past[c] - clipped));
-        *rest = fmax(*rest, fabs(clipped - own[c]));
+        left = fmax(left, fabs(clipped - own[c]));
         past[c] = clipped;
     }
+    *rest = fmin(left / fmax(light, (real)1e-37f), (real)LW_LARGEST_SPREAD);
     return cut / fmax(distance, (real)1e-37f);
 }
 
@@ -256,7 +263,8 @@ __kernel void temporal_history_blend(__global const float* position, int4 positi
         LW_UNROLL for (int g = 0; g < LW_SPREADS; ++g)
             cut = fmax(cut, clip_planes(past, own, g == 0 ? 0 : 2 + g, g == 0 ? 3 : 1, past[LW_VALUES + g], (real)gamma, trusted,
                                         current, currentLayout, x, y, width, height, &rest[g]));
-        age = age * (1.0f - cut);
+        // What the bounds have let pass of another light must go, too: with all of the past from twice the bounds on.
+        age = age * clamp(LW_FORGETTING * (0.5f - cut), (real)0.0f, (real)1.0f);
         const real rate = 1.0f / clamp(age, (real)1.0f, (real)LW_SPREAD_FRAMES);
         LW_UNROLL for (int g = 0; g < LW_SPREADS; ++g) {
             const real s0 = past[LW_VALUES + g];

@@ -50,6 +50,12 @@ void complete(Arguments& arguments) {
     if (options.techniques.empty()) options.techniques = techniqueNames();
     for (const std::string& technique : options.techniques)
         requireOneOf("technique", technique, techniqueNames());
+    for (const std::string& assignment : options.assignments) {
+        const std::string key = assignment.substr(0, assignment.find('='));
+        if (std::none_of(options.techniques.begin(), options.techniques.end(),
+                         [&](const std::string& technique) { return Parameters(technique).has(key); }))
+            throw UsageError(fmt::format("--set {}: none of the techniques has a parameter of this name", assignment));
+    }
     options.sequences = chooseSequences(arguments.scenes, arguments.sequences, options.quick);
     const bool hasScene = std::any_of(options.sequences.begin(), options.sequences.end(),
                                       [](const SequenceChoice& c) { return !c.scene.empty(); });
@@ -123,6 +129,8 @@ void addStability(CLI::App& app) {
                      "Folder (made when missing) of stability.json and the worst frames' pictures")
         ->required();
     command->add_option("--techniques", options.techniques, "Techniques by name; default: all");
+    command->add_option("--set", options.assignments,
+                        "key=value, one or several: parameters (see render), of the techniques that have them");
     command->add_option("--scenes", arguments->scenes,
                         "Scenes by name or path: instead of the catalogue their first cameras and "
                         "lights, moved");

@@ -43,8 +43,11 @@ struct Runner {
     std::unique_ptr<IndirectRenderer> renderer;
     std::vector<JudgedFrame> frames;
 
-    explicit Runner(const std::string& technique)
-        : parameters(technique), bounces(modelledBounces(parameters)) {}
+    Runner(const std::string& technique, const std::vector<std::string>& assignments) : parameters(technique) {
+        for (const std::string& assignment : assignments)
+            if (parameters.has(assignment.substr(0, assignment.find('=')))) parameters.set(assignment);
+        bounces = modelledBounces(parameters);
+    }
 };
 
 class Stability {
@@ -100,7 +103,7 @@ Stability::Stability(const StabilityOptions& options)
     for (const FailureSequence& sequence : sequences_) all_ += costOf(sequence, samplesOf(sequence));
     bool needsDevice = false;
     for (const std::string& technique : options.techniques) {
-        runners_.emplace_back(technique);
+        runners_.emplace_back(technique, options.assignments);
         needsDevice = needsDevice || runners_.back().parameters.needsDevice();
     }
     if (needsDevice && !options.onlyTruths) {

@@ -45,6 +45,7 @@ namespace cli {
 
 struct StabilityOptions {
     std::vector<std::string> techniques;
+    std::vector<std::string> assignments;  // key=value, for each technique that has the key
     std::vector<SequenceChoice> sequences;
     std::string folder, device, truthDirectory;
     studio::SequenceSize size;
