@@ -6,24 +6,25 @@
 // W looks up the four history pixels around the place where the surface stood, and leaves out those that showed
 // another one (position off the tangent plane, another normal). What is left is weighed anew.
 //
-// Light changes too, so a history is only believed as far as the frame's own picture allows (variance clipping, Salvi
-// 2016): it is brought between the bounds of
-//   mean -+ gamma * deviation of the 3 x 3 pixels around, and I -+ gamma * s * (I + c) / 2,
-// s the mean distance between I and c, relative to the light, that this surface has shown over time. The 3 x 3 knows noise that differs
-// from pixel to pixel; s that of samples which all pixels share, which moves whole patches up and down from frame to frame
-// and that no neighbourhood tells. Where much was cut off, the frames that remain in the mean become few, or none.
+// Light changes too, so a history is only believed as far as the last few frames allow. Of each surface's light Y (the sum of
+// the channels) two more means are kept: m, over three frames, and s, that of |Y - m| / light over up to sixteen: the noise
+// that this surface shows from frame to frame. History is brought between the bounds (clamping, Karis 2014)
+//   m -+ gamma / 2 * s * light,
+// and forgets where much of it was cut off, or where a frame is more than some 5 deviations of Y away. Bounds from the 3 x 3
+// pixels around, the usual choice, do not work here: samples that all pixels share, such as VPLs, move whole
+// patches up and down from frame to frame with next to no difference between neighbours, and at the edge of a moving
+// shadow neighbours differ by all of its light.
 #include "shared/wide.h"
 #include "shared/surface.h"
 #include "shared/edge_weight.h"
-#include "shared/neighbours.h"
 #include "shared/history_types.h"
 
 #ifndef LW_SCALARS
 #define LW_SCALARS 0  // 1-channel images beside the irradiance (validity, ambient occlusion): 0, 1, 2
 #endif
 #define LW_VALUES (3 + LW_SCALARS)
-#define LW_SPREADS (1 + LW_SCALARS)  // s of the irradiance, and of each scalar
-#define LW_MIXED (LW_VALUES + LW_SPREADS)
+#define LW_KINDS (1 + LW_SCALARS)  // the irradiance, and each scalar
+#define LW_MIXED (LW_VALUES + 2 * LW_KINDS)  // values, m of each kind, s of each kind
 #define LW_UNROLL _Pragma("unroll")
 // Planes of a history: the mixed ones, position xyz, and a word of normal and age.
 #define LW_POSITION_PLANE LW_MIXED
@@ -44,27 +45,37 @@
 #define LW_HALVING_SPEED 8.0f
 // Frames after which s is known well enough to clip by.
 #define LW_LEARNING 4.0f
+// Frames that m is a mean over, at most. Larger: (1 - 1/3)^8 = 4 % of a change are left in m, and so in the history, after 8
+// frames; 10 % would be with 4. Smaller: m follows noise, and the history with it.
+#define LW_RECENT_FRAMES 3.0f
+// Deviation of m from the light's mean over that of Y from m, of independent noise: sqrt(1/5) over sqrt(6/5), rounded up.
+#define LW_RECENT_REACH 0.5f
 // Slope with which the mean forgets: all at half of the distance cut off (light twice as far from its past as the bounds
-// reach, some 5 standard deviations), nothing up to a quarter. Larger: lag, where light changes by hardly more than its noise.
+// reach), nothing up to a quarter. Larger: lag, where light changes by hardly more than its noise.
 #define LW_FORGETTING 4.0f
 // Frames that s is a mean over, at most. Larger: s learns late of a technique's noise that has changed.
 #define LW_SPREAD_FRAMES 16.0f
 // Least s: a picture without noise learns nothing of noise to come. Larger: that much of a light that has gone may stay.
 #define LW_LEAST_SPREAD 0.01f
-// Largest s of one frame: what goes dark from one to the next is infinitely far from its past.
-#define LW_LARGEST_SPREAD 4.0f
+// Largest |Y - m| / light of one frame: what goes dark is infinitely far from its past.
+#define LW_LARGEST_SPREAD 2.0f
 
 typedef struct {
     real mixed[LW_MIXED];
     real age, weight;
 } lw_past;
 
+// |size| with the sign of `of`; copysign() goes lane by lane in some drivers.
+LW_FN real signed_as(real size, real of) {
+    return as_real_((as_lanei_(size) & (lanei)0x7fffffff) | (as_lanei_(of) & (lanei)(int)0x80000000));
+}
+
 // Octahedral, 12 bits a coordinate (0.05 degrees), and up to 255 frames.
 LW_FN laneu pack_word(real nx, real ny, real nz, lanei age) {
     const real scale = 1.0f / fmax(fabs(nx) + fabs(ny) + fabs(nz), (real)1e-9f);
     const real u = nx * scale, v = ny * scale;
     const mask below = nz < 0.0f;
-    const real fu = select_(u, copysign(1.0f - fabs(v), u), below), fv = select_(v, copysign(1.0f - fabs(u), v), below);
+    const real fu = select_(u, signed_as(1.0f - fabs(v), u), below), fv = select_(v, signed_as(1.0f - fabs(u), v), below);
     const laneu a = to_laneu(fma_(fu, (real)2047.5f, (real)2048.0f)), b = to_laneu(fma_(fv, (real)2047.5f, (real)2048.0f));
     return a | (b << 12) | (as_laneu_(age) << 24);
 }
@@ -74,7 +85,7 @@ LW_FN mask agrees(laneu word, real nx, real ny, real nz) {
     const real u = fma_(to_real(word & (laneu)4095), (real)(1.0f / 2047.5f), (real)-1.0f);
     const real v = fma_(to_real((word >> 12) & (laneu)4095), (real)(1.0f / 2047.5f), (real)-1.0f);
     const real z = 1.0f - fabs(u) - fabs(v), fold = fmax(-z, (real)0.0f);
-    const real x = u - copysign(fold, u), y = v - copysign(fold, v);
+    const real x = u - signed_as(fold, u), y = v - signed_as(fold, v);
     const real along = fma_(x, nx, fma_(y, ny, z * nz));
     return and_(along > 0.0f, along * along >= LW_EDGE_NORMAL_COSINE * LW_EDGE_NORMAL_COSINE * squared_length(x, y, z));
 }
@@ -180,43 +191,35 @@ LW_FN lw_past look_up(lw_surface s, mask wanted, int x, int y, int mode, const L
     return past;
 }
 
-// Mean (less the middle) and deviation of the 3 x 3 pixels around.
-LW_FN void neighbourhood(__global const float* current, int4 layout, int plane, int x, int y, int width, int height, real middle,
-                         real* mean, real* deviation) {
-    real sum = (real)0.0f, squares = (real)0.0f;
-    for (int j = -1; j <= 1; ++j) {
-        const int row = layout.x + plane * layout.z + clamp(y + j, 0, height - 1) * layout.y;
-        LW_UNROLL for (int i = -1; i <= 1; ++i) {
-            const real d = load_shifted(current, row, x, i, width) - middle;
-            sum += d;
-            squares = fma_(d, d, squares);
-        }
-    }
-    *mean = sum * (1.0f / 9.0f);
-    *deviation = sqrt(fmax(fma_(*mean, -*mean, squares * (1.0f / 9.0f)), (real)0.0f));
+// Share of the past to keep, when it lies `distance` away and may lie `reach` away.
+LW_FN real kept(real distance, real reach) {
+    const real cut = 1.0f - reach / fmax(distance, (real)1e-37f);
+    return clamp(LW_FORGETTING * (0.5f - cut), (real)0.0f, (real)1.0f);
 }
 
-// Planes first .. first + count of one kind, clipped: `past` moves between the bounds. Returns the share of its distance to
-// the frame that was cut off, and puts what is left of that distance, relative to the light, into `rest`.
-LW_FN real clip_planes(real* past, const real* own, int first, const int count, real spread, real gamma, mask trusted,
-                       __global const float* current, int4 layout, int x, int y, int width, int height, real* rest) {
-    real light = (real)0.0f, distance = (real)0.0f, cut = (real)0.0f, left = (real)0.0f;
-    const real reach = gamma * fmax(spread, (real)LW_LEAST_SPREAD);
-    LW_UNROLL for (int c = first; c < first + count; ++c) {
-        real mean, deviation;
-        neighbourhood(current, layout, c, x, y, width, height, own[c], &mean, &deviation);
-        // Noise may leave a pixel or a frame dark: what is near 0 there is not the light.
-        const real level = 0.5f * (fmax(own[c], own[c] + mean) + past[c]), r = reach * level, d = gamma * deviation;
-        const real low = own[c] + fmin(mean - d, -r), high = own[c] + fmax(mean + d, r);
-        const real clipped = select_(past[c], clamp(past[c], low, high), trusted);
-        light = fmax(light, level);
-        distance = fmax(distance, fabs(past[c] - own[c]));
-        cut = fmax(cut, fabs(past[c] - clipped));
-        left = fmax(left, fabs(clipped - own[c]));
-        past[c] = clipped;
+// The `count` values of one kind: `past` is brought between its bounds, m and s go on by a frame. Returns the
+// share of the mean's frames to keep.
+LW_FN real follow(real* past, const real* own, const int count, real age, real gamma, mask trusted, real* m, real* s) {
+    real before = (real)0.0f, now = (real)0.0f;
+    LW_UNROLL for (int c = 0; c < count; ++c) {
+        before += past[c];
+        now += own[c];
     }
-    *rest = fmin(left / fmax(light, (real)1e-37f), (real)LW_LARGEST_SPREAD);
-    return cut / fmax(distance, (real)1e-37f);
+    const real spread = gamma * fmax(*s, (real)LW_LEAST_SPREAD);
+    real share = select_((real)1.0f, kept(fabs(now - before), spread * (0.5f * (now + before))), trusted);
+    const real away = now - *m, light = 0.5f * (now + *m);
+    const real recent = fma_(away, 1.0f / fmin(age + 1.0f, (real)LW_RECENT_FRAMES), *m);
+    const real reach = LW_RECENT_REACH * spread * (0.5f * (recent + before));
+    share = fmin(share, select_((real)1.0f, kept(fabs(recent - before), reach), trusted));
+    const real aim = select_(before, clamp(before, recent - reach, recent + reach), trusted);
+    // Less light: the same colour. More: of the colour that comes.
+    const real less = aim / fmax(before, (real)1e-37f), more = (aim - before) / fmax(now, (real)1e-37f);
+    LW_UNROLL for (int c = 0; c < count; ++c)
+        past[c] = select_(fma_(more, own[c], past[c]), past[c] * less, aim < before);
+    *m = fma_(recent - now, share, now);
+    const real noise = fmin(fabs(away) / fmax(light, (real)1e-37f), (real)LW_LARGEST_SPREAD);
+    *s = fma_(noise - *s, 1.0f / clamp(age * share, (real)1.0f, (real)LW_SPREAD_FRAMES), *s);
+    return share;
 }
 
 // One work-item = LW_WIDTH adjacent pixels. current: 3 planes of irradiance and LW_SCALARS more. frames: in a mean at
@@ -233,12 +236,12 @@ __kernel void temporal_history_blend(__global const float* position, int4 positi
     if (x >= width || y >= height) return;
     const lw_surface s = load_surface(position, positionLayout, normal, normalLayout, x, y);
     const mask surface = and_(s.valid, lanei_iota() + (lanei)x < (lanei)width);
-    real own[LW_VALUES], spread[LW_SPREADS];
+    real own[LW_VALUES];
     mask finite = surface;
     const int c0 = currentLayout.x + y * currentLayout.y + x;
     LW_UNROLL for (int c = 0; c < LW_VALUES; ++c) {
         own[c] = load(current, c0 + c * currentLayout.z);
-        finite = and_(finite, isfinite_(own[c]));
+        finite = and_(finite, fabs(own[c]) <= FLT_MAX);
     }
     LW_UNROLL for (int c = 0; c < LW_VALUES; ++c) own[c] = select_((real)0.0f, own[c], finite);
 
@@ -255,34 +258,39 @@ __kernel void temporal_history_blend(__global const float* position, int4 positi
         LW_UNROLL for (int c = 0; c < LW_MIXED; ++c) past[c] = found.mixed[c] * scale;
         age = select_((real)0.0f, fmin(floor(fma_(found.age, scale, (real)0.5f)), most), known);
     }
-    real share = (real)1.0f;
-    LW_UNROLL for (int g = 0; g < LW_SPREADS; ++g) spread[g] = (real)0.0f;
+    real share = (real)1.0f, m[LW_KINDS], noise[LW_KINDS];
+    LW_UNROLL for (int k = 0; k < LW_KINDS; ++k) {
+        m[k] = past[LW_VALUES + k];
+        noise[k] = past[LW_VALUES + LW_KINDS + k];
+    }
     if (any_(known)) {
         const mask trusted = and_(splat_mask(gamma > 0.0f), and_(known, and_(finite, age >= LW_LEARNING)));
-        real cut = (real)0.0f, rest[LW_SPREADS];
-        LW_UNROLL for (int g = 0; g < LW_SPREADS; ++g)
-            cut = fmax(cut, clip_planes(past, own, g == 0 ? 0 : 2 + g, g == 0 ? 3 : 1, past[LW_VALUES + g], (real)gamma, trusted,
-                                        current, currentLayout, x, y, width, height, &rest[g]));
-        // What the bounds have let pass of another light must go, too: with all of the past from twice the bounds on.
-        age = age * clamp(LW_FORGETTING * (0.5f - cut), (real)0.0f, (real)1.0f);
-        const real rate = 1.0f / clamp(age, (real)1.0f, (real)LW_SPREAD_FRAMES);
-        LW_UNROLL for (int g = 0; g < LW_SPREADS; ++g) {
-            const real s0 = past[LW_VALUES + g];
-            spread[g] = select_((real)0.0f, fma_(rest[g] - s0, rate, s0), known);
-        }
+        real keep = (real)1.0f;
+        LW_UNROLL for (int k = 0; k < LW_KINDS; ++k)
+            keep = fmin(keep, follow(past + (k ? k + 2 : 0), own + (k ? k + 2 : 0), k ? 1 : 3, age, (real)gamma, trusted, &m[k], &noise[k]));
+        age = age * keep;
         share = 1.0f / (age + 1.0f);
+    }
+    // A frame that is no number adds nothing to the history, and nothing comes of it without one.
+    const mask follows = and_(known, finite);
+    LW_UNROLL for (int k = 0; k < LW_KINDS; ++k) {
+        const real whole = k ? own[k + 2] : own[0] + own[1] + own[2];
+        m[k] = select_(select_(whole, past[LW_VALUES + k], known), m[k], follows);
+        noise[k] = select_(past[LW_VALUES + LW_KINDS + k], noise[k], follows);
     }
 
     const int o = afterLayout.x + y * afterLayout.y + x, plane = afterLayout.z;
     LW_UNROLL for (int c = 0; c < LW_VALUES; ++c) {
-        // A frame that is no number adds nothing to the history, and nothing comes of it without one.
         const real mean = select_(own[c], fma_(own[c] - past[c], select_((real)0.0f, share, finite), past[c]), known);
         store(mean, after, o + c * plane);
         if (c < 3) store(mean, irradiance, irradianceLayout.x + c * irradianceLayout.z + y * irradianceLayout.y + x);
         if (c == 3) store(mean, first, firstLayout.x + y * firstLayout.y + x);
         if (c == 4) store(mean, second, secondLayout.x + y * secondLayout.y + x);
     }
-    LW_UNROLL for (int g = 0; g < LW_SPREADS; ++g) store(spread[g], after, o + (LW_VALUES + g) * plane);
+    LW_UNROLL for (int k = 0; k < LW_KINDS; ++k) {
+        store(m[k], after, o + (LW_VALUES + k) * plane);
+        store(noise[k], after, o + (LW_VALUES + LW_KINDS + k) * plane);
+    }
     store(s.px, after, o + LW_POSITION_PLANE * plane);
     store(s.py, after, o + (LW_POSITION_PLANE + 1) * plane);
     store(s.pz, after, o + (LW_POSITION_PLANE + 2) * plane);
