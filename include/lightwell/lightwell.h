@@ -405,6 +405,10 @@ typedef struct LWRsmDesc {
     uint32_t filter;         /**< 1: the edge-aware n x n filter; 0: the raw interleaved image */
     LWResolution resolution; /**< HALF: gathered on every second pixel and row, then up-sampled */
     uint32_t seed;           /**< shifts the sample set (Cranley-Patterson); 0: unshifted */
+    uint32_t history;        /**< 0: each frame alone; else the light is a mean over up to so many frames (64 at most), and
+                                  their sample sets differ. Needs LWGBuffer::camera; takes LWGBuffer::motion, if given */
+    float historyClamp;      /**< how far a pixel's history may lie from its frame's light, in deviations of that light over
+                                  time and in its neighbourhood; 0: as far as it likes */
 } LWRsmDesc;
 
 LW_API void lwDefaultRsm(LWRsmDesc* desc);
@@ -457,6 +461,8 @@ typedef struct LWSsvpDesc {
     float autoError;         /**< above 0: `vpls`, `clusters` and `bounces` are the most there may be, and each frame takes
                                   as many as an error of the picture of this much (relative, root mean square) asks for;
                                   the stats say how many, and why. 0: always the most */
+    uint32_t history;        /**< as LWRsmDesc's */
+    float historyClamp;      /**< as LWRsmDesc's */
 } LWSsvpDesc;
 
 LW_API void lwDefaultSsvp(LWSsvpDesc* desc);

@@ -49,6 +49,7 @@ public:
 
     // Image coordinates of a world position (pixel centres at + 1/2); false behind the eye.
     bool project(const glm::dvec3& position, glm::dvec2& pixel) const;
+    const glm::dmat4& worldToClip() const { return worldToClip_; }
     // Distance along the axis from the eye, and a pixel's width there.
     double axial(const glm::dvec3& position) const { return glm::dot(position - eye_, axis_); }
     double footprint(double axialDistance) const;

@@ -1,6 +1,7 @@
 #include "passes/vpl_list.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "compute/error.h"
@@ -12,7 +13,7 @@ Range gridOver(std::size_t count) {
     return {std::min(count, kRow), (count + kRow - 1) / kRow};
 }
 
-cl_float2 sampleRotation(std::uint32_t seed) {
+cl_float2 sampleRotation(std::uint32_t seed, std::uint32_t turns) {
     auto unit = [](std::uint32_t x) {
         x = (x ^ (x >> 16)) * 0x85ebca6bu;
         x = (x ^ (x >> 13)) * 0xc2b2ae35u;
@@ -20,6 +21,12 @@ cl_float2 sampleRotation(std::uint32_t seed) {
     };
     cl_float2 shift = {{0.0f, 0.0f}};
     if (seed) shift = {{unit(seed), unit(seed ^ 0x9e3779b9u)}};
+    // 1/g and 1/g^2 of the plastic number g, the root of g^3 = g + 1.
+    const auto turned = [turns](float start, double step) {
+        const double at = double(start) + double(turns) * step;
+        return float((at - std::floor(at)) * (1.0 - 6e-8));  // rounding up must not reach 1
+    };
+    if (turns) shift = {{turned(shift.s[0], 0.75487766624669276), turned(shift.s[1], 0.56984029099805327)}};
     return shift;
 }
 

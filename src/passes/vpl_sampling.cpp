@@ -67,11 +67,11 @@ void VplSampling::draw(Executor& executor, const RsmInput& rsms, std::uint32_t s
         plan->choose(texelSums_, rowTotals_);
         executor.run("vpl_sampling.draw", drawLive_, slots, kGroup, rsms.texels, rsms.rows, rowCount,
                      texelSums_, rowSumsBuffer_, uniform, cl_int(sampleCount),
-                     sampleRotation(options_.seed), authored_, order_, plan->live, vpls_);
+                     sampleRotation(options_.seed, turns_), authored_, order_, plan->live, vpls_);
         return;
     }
     executor.run("vpl_sampling.draw", draw_, slots, kGroup, rsms.texels, rsms.rows, rowCount, texelSums_,
-                 rowSumsBuffer_, uniform, cl_int(sampleCount), sampleRotation(options_.seed), authored_, order_, vpls_);
+                 rowSumsBuffer_, uniform, cl_int(sampleCount), sampleRotation(options_.seed, turns_), authored_, order_, vpls_);
 }
 
 Planes VplSampling::debugShape(lw_subset_order order) {

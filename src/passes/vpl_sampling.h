@@ -37,6 +37,9 @@ public:
     void record(Executor& executor, const RsmInput& rsms, const LWVpl* authored,
                 std::uint32_t authoredCount, const VplPlan* plan = nullptr);
 
+    // The sample set's `number`-th shift from the seed's: those of a row of frames lie as far apart as they can. 0: none.
+    void turn(std::uint32_t number) { turns_ = number; }
+
     const Buffer& vpls() const { return vpls_; }         // lw_vpl by slot
     lw_subset_order order() const { return order_; }
     std::uint32_t vplCount() const { return std::uint32_t(order_.count); }
@@ -55,6 +58,7 @@ private:
 
     Device& device_;
     VplSamplingOptions options_;
+    std::uint32_t turns_ = 0;
     Kernel &rowSums_, &total_, &draw_, &drawLive_, &all_, &planes_;
     Buffer texelSums_, rowTotals_, rowSumsBuffer_, authored_, vpls_;
     lw_subset_order order_{};

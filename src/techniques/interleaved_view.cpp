@@ -37,49 +37,62 @@ InterleavedView::InterleavedView(Device& device, const InterleavedOptions& optio
       gatheredHeight_(options.gathered(view.maxHeight)),
       counts_(device, kCountBytes, "counts of a view") {
     const std::uint32_t width = gatheredWidth_, height = gatheredHeight_;
-    if (options.half || options.filters()) gathered_ = PlanarImage(device, width, height, 3, "gathered irradiance");
+    if (options.half || options.filters() || options.keeps()) gathered_ = PlanarImage(device, width, height, 3, "gathered irradiance");
     if (options.half && options.filters()) filtered_ = PlanarImage(device, width, height, 3, "filtered irradiance");
     if (options.half) {
         halfPosition_ = PlanarImage(device, width, height, 3, "half-resolution positions");
         halfNormal_ = PlanarImage(device, width, height, 3, "half-resolution normals");
     }
+    if (!options.keeps()) return;
+    if (options.half || options.filters()) current_ = PlanarImage(device, view.maxWidth, view.maxHeight, 3, "irradiance of a frame alone");
+    history_.emplace(device, options.history, view.maxWidth, view.maxHeight);
+}
+
+void InterleavedView::startFrame(bool forget) {
+    isRendered_ = false;
+    if (history_) history_->startFrame(forget);
 }
 
 void InterleavedView::render(Executor& executor, const View& view, const LWGBuffer& gbuffer, const LWOutput& output,
-                             InterleavedGather& passes, JointBilateral* bilateral, const Gather& gather) {
-    gbuffer_.import(executor, view, gbuffer, 0, "gbuffer");
+                             const Passes& passes, const Gather& gather) {
+    if (history_) TemporalHistory::checkCamera(gbuffer, view.width, view.height);
+    gbuffer_.import(executor, view, gbuffer, history_ ? std::uint32_t(kNeedsMotion) : 0u, "gbuffer");
     // Should a later step fail, the images of the frame before are gone.
     lastGathered_ = lastFiltered_ = Planes{};
     isRendered_ = true;
     const Planes irradiance = irradiance_.begin(executor, view, output.irradiance, 3, "output.irradiance");
     const Planes validity = validity_.begin(executor, view, output.validity, 1, "output.validity");
-    if (irradiance) light(executor, passes, bilateral, irradiance, gather);
-    if (validity) passes.recordValidity(executor, gbuffer_.position, gbuffer_.normal, validity);
+    if (irradiance) light(executor, passes, gbuffer.camera, irradiance, gather);
+    if (validity) passes.gather.recordValidity(executor, gbuffer_.position, gbuffer_.normal, validity);
     irradiance_.end(executor);
     validity_.end(executor);
 }
 
-void InterleavedView::light(Executor& executor, InterleavedGather& passes, JointBilateral* bilateral,
-                            const Planes& irradiance, const Gather& gather) {
+void InterleavedView::light(Executor& executor, const Passes& passes, const LWCamera& camera, const Planes& irradiance,
+                            const Gather& gather) {
     Planes position = gbuffer_.position, normal = gbuffer_.normal;
     const bool half = options_.half, filter = options_.filters();
     executor.fill("interleaved_gather.counts", counts_, 0, 0, counts_.bytes());
     if (half) {
         const std::uint32_t w = JointBilateral::halved(position.width), h = JointBilateral::halved(position.height);
         const Planes halfPosition = halfPosition_.planes(w, h), halfNormal = halfNormal_.planes(w, h);
-        bilateral->recordDownsample(executor, position, normal, halfPosition, halfNormal);
+        passes.bilateral->recordDownsample(executor, position, normal, halfPosition, halfNormal);
         position = halfPosition;
         normal = halfNormal;
     }
-    const Planes gathered = half || filter ? gathered_.planes(position.width, position.height) : irradiance;
+    // The last of what follows writes to the host; the history, where there is one, after it.
+    const Planes made = !history_ ? irradiance : (half || filter ? current_ : gathered_).planes(irradiance.width, irradiance.height);
+    const Planes gathered = half || filter ? gathered_.planes(position.width, position.height) : made;
     gather(position, normal, gathered);
     Planes lit = gathered;
     if (filter) {
-        lit = half ? filtered_.planes(position.width, position.height) : irradiance;
-        passes.recordFilter(executor, position, normal, gathered, lit);
+        lit = half ? filtered_.planes(position.width, position.height) : made;
+        passes.gather.recordFilter(executor, position, normal, gathered, lit);
     }
     if (half)
-        bilateral->recordUpsample(executor, gbuffer_.position, gbuffer_.normal, position, normal, lit, irradiance, counts_);
+        passes.bilateral->recordUpsample(executor, gbuffer_.position, gbuffer_.normal, position, normal, lit, made, counts_);
+    if (history_)
+        passes.history->record(executor, {gbuffer_.position, gbuffer_.normal, gbuffer_.motion, made, irradiance, {}, {}}, camera, *history_);
     lastGathered_ = gathered;
     lastFiltered_ = lit;
 }
@@ -101,27 +114,38 @@ void InterleavedView::report(Device& device, Report& report, lw_subset_order ord
     report.read(device, "rejected_pixels", counts_, 0);
     report.read(device, "upsample_fallbacks", counts_, sizeof(cl_int));
     report.read(device, "saturated_pixels", counts_, 2 * sizeof(cl_int));
+    if (history_) history_->report(device, report);
 }
 
-void InterleavedView::addDebugViews(std::vector<DebugView>& views) const {
+void InterleavedView::addDebugViews(std::vector<DebugView>& views, TemporalHistory* history) const {
     if (!lastGathered_) return;
     views.push_back({"position", "world position (m)", gbuffer_.position, {}});
     views.push_back({"normal", "world normal as the host gave it", gbuffer_.normal, {}});
     views.push_back({"gathered", "irradiance before the filter (W/m^2)", lastGathered_, {}});
     if (options_.filters()) views.push_back({"filtered", "irradiance after the filter (W/m^2)", lastFiltered_, {}});
+    if (!history_) return;
+    if (const Planes shape = history->ageShape(*history_); shape.width)
+        views.push_back({"history_age", "frames in each pixel's mean; 1: new in this frame, 0: no surface", shape,
+                         [this, history](Executor& executor, const Planes& planes) { history->recordAge(executor, *history_, planes); }});
 }
 
 std::uint64_t InterleavedView::bytes() const {
     return gbuffer_.bytes() + irradiance_.bytes() + validity_.bytes() + gathered_.bytes() + filtered_.bytes() +
-           halfPosition_.bytes() + halfNormal_.bytes() + tiles_.bytes() + counts_.bytes();
+           halfPosition_.bytes() + halfNormal_.bytes() + tiles_.bytes() + counts_.bytes() + current_.bytes() +
+           (history_ ? history_->bytes() : 0);
 }
 
 std::uint64_t InterleavedView::estimateBytes(const InterleavedOptions& options, const LWViewDesc& view, bool uploads,
                                              lw_subset_order order) {
     const std::uint32_t width = options.gathered(view.maxWidth), height = options.gathered(view.maxHeight);
-    const std::uint64_t images = (options.half || options.filters() ? 1u : 0u) +
+    const bool keeps = options.keeps(), follows = options.half || options.filters();
+    const std::uint64_t images = (follows || keeps ? 1u : 0u) +
                                  (options.half && options.filters() ? 1u : 0u) + (options.half ? 2u : 0u);
-    return GBufferInput::estimateBytes(view, 0, uploads) + OutputTarget::estimateBytes(view, 3, uploads) +
+    const std::uint64_t history =
+        !keeps ? 0
+               : ViewHistory::estimateBytes(options.history, view.maxWidth, view.maxHeight) +
+                     (follows ? 3 * sizeof(float) * std::uint64_t(paddedWidth(view.maxWidth)) * view.maxHeight : 0);
+    return history + GBufferInput::estimateBytes(view, keeps ? std::uint32_t(kNeedsMotion) : 0u, uploads) + OutputTarget::estimateBytes(view, 3, uploads) +
            OutputTarget::estimateBytes(view, 1, uploads) + kCountBytes +
            images * 3 * paddedWidth(width) * height * sizeof(float) +
            VplTiles::estimateBytes(width, height, order, options.interleave);

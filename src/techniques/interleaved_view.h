@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 
 #include "compute/report.h"
 #include "inputs/gbuffer_input.h"
@@ -11,6 +12,7 @@
 #include "inputs/view.h"
 #include "passes/interleaved_gather.h"
 #include "passes/joint_bilateral.h"
+#include "passes/temporal_history.h"
 #include "techniques/technique.h"
 
 namespace lightwell {
@@ -19,7 +21,9 @@ struct InterleavedOptions {
     std::uint32_t interleave = 4;
     bool filter = true;  // has an effect with interleave > 1
     bool half = false;   // gathers every second pixel and row
+    TemporalHistoryOptions history;  // of what comes of these; none with 0 frames
 
+    bool keeps() const { return history.frames > 0; }
     bool filters() const { return filter && interleave > 1; }
     std::uint32_t gathered(std::uint32_t along) const { return half ? JointBilateral::halved(along) : along; }
 };
@@ -33,9 +37,15 @@ public:
 
     // Records what gathers the surfaces `position`, `normal` into `irradiance`.
     using Gather = std::function<void(const Planes& position, const Planes& normal, const Planes& irradiance)>;
-    // A view's frame, from the host's images to the host's images. `bilateral`: for half resolution, else null.
-    void render(Executor& executor, const View& view, const LWGBuffer& gbuffer, const LWOutput& output,
-                InterleavedGather& passes, JointBilateral* bilateral, const Gather& gather);
+    // Those passes of a technique that its options ask for; null without.
+    struct Passes {
+        InterleavedGather& gather;
+        JointBilateral* bilateral;
+        TemporalHistory* history;
+    };
+    // A view's frame, from the host's images to the host's images.
+    void render(Executor& executor, const View& view, const LWGBuffer& gbuffer, const LWOutput& output, const Passes& passes,
+                const Gather& gather);
     // Recorded by `gather`: which VPLs (lw_vpl by slot) the tiles of this image can skip.
     const Buffer& cull(Executor& executor, InterleavedGather& passes, const Planes& position, const Planes& normal,
                        const Buffer& vpls, lw_subset_order order);
@@ -44,24 +54,25 @@ public:
     // The surfaces of the last frame, at full resolution; empty where it had no irradiance.
     Planes position() const { return lastGathered_ ? gbuffer_.position : Planes{}; }
     Planes normal() const { return lastGathered_ ? gbuffer_.normal : Planes{}; }
-    void startFrame() { isRendered_ = false; }
+    // Once per update. `forget`: what the view showed before is no history (a cut, lost commands).
+    void startFrame(bool forget);
     // Counts and choices of the views that this frame has rendered; `order` as the last cull had it.
     void report(Device& device, Report& report, lw_subset_order order) const;
-    void addDebugViews(std::vector<DebugView>& views) const;
+    void addDebugViews(std::vector<DebugView>& views, TemporalHistory* history) const;
     std::uint64_t bytes() const;
     // Of the images, inputs, outputs and tiles for a view of this size; `order` of the longest list.
     static std::uint64_t estimateBytes(const InterleavedOptions& options, const LWViewDesc& view, bool uploads,
                                        lw_subset_order order);
 
 private:
-    void light(Executor& executor, InterleavedGather& passes, JointBilateral* bilateral, const Planes& irradiance,
-               const Gather& gather);
+    void light(Executor& executor, const Passes& passes, const LWCamera& camera, const Planes& irradiance, const Gather& gather);
 
     Device& device_;
     InterleavedOptions options_;
     GBufferInput gbuffer_;
     OutputTarget irradiance_, validity_;
-    PlanarImage gathered_, filtered_, halfPosition_, halfNormal_;
+    PlanarImage gathered_, filtered_, halfPosition_, halfNormal_, current_;
+    std::optional<ViewHistory> history_;
     std::uint32_t gatheredWidth_, gatheredHeight_;  // at most
     VplTiles tiles_;
     Buffer counts_;  // rejected pixels, up-sampling fallbacks, saturated pixels

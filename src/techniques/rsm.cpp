@@ -29,7 +29,7 @@ VplSamplingOptions samplingOptions(const LWRsmDesc& desc) {
 constexpr std::uint32_t kPrewarmVpls = 1024;
 
 InterleavedOptions interleavedOptions(const LWRsmDesc& desc) {
-    return {desc.interleave, desc.filter != 0, desc.resolution == LW_RESOLUTION_HALF};
+    return {desc.interleave, desc.filter != 0, desc.resolution == LW_RESOLUTION_HALF, {desc.history, desc.historyClamp, 0}};
 }
 
 // What the host gave and this technique does not read: said in the stats, so that nobody waits for its light.
@@ -53,15 +53,20 @@ class RsmTechnique final : public Technique {
 public:
     RsmTechnique(Device& device, const LWRsmDesc& desc)
         : device_(device), desc_(desc), sampling_(device, samplingOptions(desc)), gather_(device, desc.interleave) {
-        if (interleavedOptions(desc).half) bilateral_.emplace(device);  // a program built for nothing is also never cached
+        // A program built for nothing is also never cached.
+        if (interleavedOptions(desc).half) bilateral_.emplace(device);
+        if (desc.history) history_.emplace(device, interleavedOptions(desc).history);
     }
 
     void update(Executor& executor, const LWFrame& frame) override {
+        const bool forget = frame.reset != 0 || device_.failures() != failures_;
+        failures_ = device_.failures();
         rsms_.import(executor, frame);
+        if (history_) sampling_.turn(forget ? turns_ = 0 : ++turns_);
         sampling_.record(executor, rsms_, frame.vpls, frame.vplCount);
         unused_ = unusedInputs(frame);
         states_.purge();
-        states_.each([](InterleavedView& state) { state.startFrame(); });
+        states_.each([&](InterleavedView& state) { state.startFrame(forget); });
     }
 
     void render(Executor& executor, const std::shared_ptr<View>& view, const LWGBuffer& gbuffer,
@@ -71,7 +76,7 @@ public:
             view, [&] { return std::make_unique<InterleavedView>(device_, interleavedOptions(desc_), *view); });
         const Buffer& vpls = sampling_.vpls();
         const lw_subset_order order = sampling_.order();
-        state.render(executor, *view, gbuffer, output, gather_, bilateral_ ? &*bilateral_ : nullptr,
+        state.render(executor, *view, gbuffer, output, {gather_, bilateral_ ? &*bilateral_ : nullptr, history()},
                      [&](const Planes& position, const Planes& normal, const Planes& irradiance) {
                          const Buffer& masks = state.cull(executor, gather_, position, normal, vpls, order);
                          gather_.recordGather(executor, position, normal, vpls, order, masks, irradiance, state.counts());
@@ -91,12 +96,17 @@ public:
     std::uint64_t bytes() const override;
 
 private:
+    TemporalHistory* history() { return history_ ? &*history_ : nullptr; }
+
     Device& device_;
     LWRsmDesc desc_;
+    std::uint64_t failures_ = 0;  // that the device had seen when the last update began
+    std::uint32_t turns_ = 0;     // of the sample set, one a frame while there is a history
     RsmInput rsms_;
     VplSampling sampling_;
     InterleavedGather gather_;
     std::optional<JointBilateral> bilateral_;  // half resolution only
+    std::optional<TemporalHistory> history_;
     PerView<InterleavedView> states_;
     std::vector<LWChoice> unused_;  // of the last update
 };
@@ -111,6 +121,7 @@ Report RsmTechnique::report() {
     report.counts.push_back({"rejected_pixels", 0});
     report.counts.push_back({"upsample_fallbacks", 0});
     report.counts.push_back({"saturated_pixels", 0});
+    if (history_) report.counts.push_back({"history_new", 0});
     states_.each([&](const InterleavedView& state) { state.report(device_, report, sampling_.order()); });
     return report;
 }
@@ -123,7 +134,7 @@ std::vector<DebugView> RsmTechnique::debugViews(const View* view) {
                          [this](Executor& executor, const Planes& planes) {
                              sampling_.recordPlanes(executor, sampling_.vpls(), planes);
                          }});
-    if (const InterleavedView* state = states_.find(view)) state->addDebugViews(views);
+    if (const InterleavedView* state = states_.find(view)) state->addDebugViews(views, history());
     return views;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 
+#include "techniques/history_parameters.h"
 #include "techniques/parameter_table.h"
 
 namespace lightwell {
@@ -38,7 +39,9 @@ const std::vector<LWParameter>& rsmParameters() {
                        kResolutionNames),
               kResolutionSweep),
         parameter("seed", "shift of the sample set; 0: unshifted", LW_PARAMETER_UINT, offsetof(LWRsmDesc, seed), 0,
-                  4294967295.0, 0)};
+                  4294967295.0, 0),
+        historyParameter(offsetof(LWRsmDesc, history)),
+        historyClampParameter(offsetof(LWRsmDesc, historyClamp))};
     return table;
 }
 
@@ -60,4 +63,5 @@ extern "C" void lwDefaultRsm(LWRsmDesc* desc) {
     desc->interleave = 4;
     desc->filter = 1;
     desc->resolution = LW_RESOLUTION_FULL;
+    desc->historyClamp = lightwell::TemporalHistoryOptions{}.clamp;
 }

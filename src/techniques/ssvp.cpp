@@ -55,6 +55,7 @@ public:
           gather_(device, desc.interleave, groupsOf(desc), visibilityOf(desc)) {
         for (std::size_t i = 0; i < stagesOf(desc); ++i) stages_.emplace_back(device, desc, i);
         if (interleavedOptions(desc).half) bilateral_.emplace(device);
+        if (desc.history) history_.emplace(device, interleavedOptions(desc).history);
         if (desc.autoError > 0.0f) plan_.emplace(device, planOptions(desc));
     }
 
@@ -68,6 +69,7 @@ public:
         rsms_.import(executor, frame);
         maps_.import(executor, frame, rsms_);
         if (plan_) plan_->begin(executor, restart);
+        if (history_) sampling_.turn(restart ? turns_ = 0 : ++turns_);
         recordVpls(executor, frame);
 
         std::vector<GatheredList> lists{{{sampling_.vpls(), sampling_.vplCount()}}};
@@ -90,7 +92,7 @@ public:
 
         choices_ = inputChoices(maps_.choices(frame), desc_, frame);
         states_.purge();
-        states_.each([](InterleavedView& state) { state.startFrame(); });
+        states_.each([&](InterleavedView& state) { state.startFrame(restart); });
     }
 
     void render(Executor& executor, const std::shared_ptr<View>& view, const LWGBuffer& gbuffer,
@@ -99,7 +101,7 @@ public:
         InterleavedView& state = states_.get(
             view, [&] { return std::make_unique<InterleavedView>(device_, interleavedOptions(desc_), *view); });
         const ClusterMaps maps = mapsRead();
-        state.render(executor, *view, gbuffer, output, passes_, bilateral_ ? &*bilateral_ : nullptr,
+        state.render(executor, *view, gbuffer, output, {passes_, bilateral_ ? &*bilateral_ : nullptr, history()},
                      [&](const Planes& position, const Planes& normal, const Planes& irradiance) {
                          const Buffer& masks = state.cull(executor, passes_, position, normal, gather_.vpls(), gather_.order());
                          const lw_vpl_tiles tiles =
@@ -156,9 +158,12 @@ private:
         return count;
     }
 
+    TemporalHistory* history() { return history_ ? &*history_ : nullptr; }
+
     Device& device_;
     LWSsvpDesc desc_;
     std::uint64_t failures_ = 0;  // that the device had seen when the last update began
+    std::uint32_t turns_ = 0;     // of the sample set, one a frame while there is a history
     RsmInput rsms_;
     VplSampling sampling_;
     std::optional<SsvpPlan> plan_;  // with an error target only
@@ -168,6 +173,7 @@ private:
     InterleavedGather passes_;
     ClusteredGather gather_;
     std::optional<JointBilateral> bilateral_;  // half resolution only
+    std::optional<TemporalHistory> history_;
     PerView<InterleavedView> states_;
     std::vector<LWChoice> choices_;  // of the last update
 };
@@ -186,6 +192,7 @@ Report SsvpTechnique::report() {
     report.counts.push_back({"rejected_pixels", 0});
     report.counts.push_back({"upsample_fallbacks", 0});
     report.counts.push_back({"saturated_pixels", 0});
+    if (history_) report.counts.push_back({"history_new", 0});
     states_.each([&](const InterleavedView& state) { state.report(device_, report, gather_.order()); });
     return report;
 }
@@ -213,7 +220,7 @@ std::vector<DebugView> SsvpTechnique::debugViews(const View* view) {
     }
     const InterleavedView* state = states_.find(view);
     if (!state) return views;
-    state->addDebugViews(views);
+    state->addDebugViews(views, history());
     if (const Planes position = state->position())
         views.push_back({"visibility", "clusters one below the other: the share of its light that each pixel is taken to see",
                          ClusteredGather::visibilityShape(position, shadowingClusters()),

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 
+#include "techniques/history_parameters.h"
 #include "techniques/parameter_table.h"
 
 namespace lightwell {
@@ -72,7 +73,9 @@ std::vector<LWParameter> makeTable() {
         oneOf("occluders", "what the maps show: the best that the frame has, its triangles, its surfels (or else its triangles, sampled), or what RSMs and source views see",
               offsetof(LWSsvpDesc, occluders), kOccludersNames, 3, LW_OCCLUDERS_AUTO),
         parameter("auto_error", "relative error of the picture for which vpls, clusters and bounces may be fewer, frame by frame: time falls as it is raised; 0: never fewer",
-                  LW_PARAMETER_FLOAT, offsetof(LWSsvpDesc, autoError), 0, 1, 0)};
+                  LW_PARAMETER_FLOAT, offsetof(LWSsvpDesc, autoError), 0, 1, 0),
+        historyParameter(offsetof(LWSsvpDesc, history)),
+        historyClampParameter(offsetof(LWSsvpDesc, historyClamp))};
 }
 
 }  // namespace
@@ -109,4 +112,5 @@ extern "C" void lwDefaultSsvp(LWSsvpDesc* desc) {
     desc->clusterGroups = 4;
     desc->filter = 1;
     desc->resolution = LW_RESOLUTION_FULL;
+    desc->historyClamp = lightwell::TemporalHistoryOptions{}.clamp;
 }
