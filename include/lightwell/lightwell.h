@@ -457,6 +457,9 @@ typedef struct LWSsvpDesc {
     float autoError;         /**< above 0: `vpls`, `clusters` and `bounces` are the most there may be, and each frame takes
                                   as many as an error of the picture of this much (relative, root mean square) asks for;
                                   the stats say how many, and why. 0: always the most */
+    uint32_t compensation;   /**< 0 .. 64: samples a pixel of the surfaces around it on the screen, which make up for near light
+                                  that VPLs of some size lack; 0: none. Above 0 the G-buffer needs `directRadiance`, of the
+                                  lights that have RSMs, and `camera` */
 } LWSsvpDesc;
 
 LW_API void lwDefaultSsvp(LWSsvpDesc* desc);

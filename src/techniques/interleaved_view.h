@@ -9,6 +9,7 @@
 #include "inputs/gbuffer_input.h"
 #include "inputs/output_target.h"
 #include "inputs/view.h"
+#include "passes/bounding_compensation.h"
 #include "passes/interleaved_gather.h"
 #include "passes/joint_bilateral.h"
 #include "techniques/technique.h"
@@ -19,6 +20,7 @@ struct InterleavedOptions {
     std::uint32_t interleave = 4;
     bool filter = true;  // has an effect with interleave > 1
     bool half = false;   // gathers every second pixel and row
+    bool compensated = false;  // by BoundingCompensation; needs the G-buffer's direct radiance and camera
 
     bool filters() const { return filter && interleave > 1; }
     std::uint32_t gathered(std::uint32_t along) const { return half ? JointBilateral::halved(along) : along; }
@@ -39,6 +41,12 @@ public:
     // Recorded by `gather`: which VPLs (lw_vpl by slot) the tiles of this image can skip.
     const Buffer& cull(Executor& executor, InterleavedGather& passes, const Planes& position, const Planes& normal,
                        const Buffer& vpls, lw_subset_order order);
+
+    // Recorded by `gather`, after the VPLs: near light that their bounds lack is added to `irradiance`.
+    void compensate(Executor& executor, BoundingCompensation& pass, const LWCamera& camera, const Planes& position,
+                    const Planes& normal, const Planes& irradiance);
+    // What the last frame's compensation added; without memory, and filled by `pass`.
+    void addCompensationView(BoundingCompensation& pass, std::vector<DebugView>& views) const;
 
     const Buffer& counts() const { return counts_; }  // as InterleavedGather and JointBilateral count
     // The surfaces of the last frame, at full resolution; empty where it had no irradiance.
@@ -64,7 +72,10 @@ private:
     PlanarImage gathered_, filtered_, halfPosition_, halfNormal_;
     std::uint32_t gatheredWidth_, gatheredHeight_;  // at most
     VplTiles tiles_;
-    Buffer counts_;  // rejected pixels, up-sampling fallbacks, saturated pixels
+    CompensationSenders senders_;
+    PlanarImage halfRadiance_;
+    Planes compensatedPosition_, compensatedNormal_;  // of the last frame
+    Buffer counts_;  // rejected pixels, up-sampling fallbacks, saturated pixels, pixels whose compensation reaches too far
     Planes lastGathered_, lastFiltered_;  // empty where the last frame had no irradiance
     bool isRendered_ = false;             // since the last update
 };

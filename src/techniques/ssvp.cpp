@@ -56,6 +56,7 @@ public:
         for (std::size_t i = 0; i < stagesOf(desc); ++i) stages_.emplace_back(device, desc, i);
         if (interleavedOptions(desc).half) bilateral_.emplace(device);
         if (desc.autoError > 0.0f) plan_.emplace(device, planOptions(desc));
+        if (desc.compensation > 0) compensation_.emplace(device, compensationOptions(desc));
     }
 
     void update(Executor& executor, const LWFrame& frame) override {
@@ -69,6 +70,8 @@ public:
         maps_.import(executor, frame, rsms_);
         if (plan_) plan_->begin(executor, restart);
         recordVpls(executor, frame);
+        if (compensation_)
+            compensation_->recordScale(executor, sampling_.vpls(), sampling_.order(), sampling_.vplCount() - frame.vplCount);
 
         std::vector<GatheredList> lists{{{sampling_.vpls(), sampling_.vplCount()}}};
         for (std::size_t i = 0; i < stages_.size(); ++i) {
@@ -105,6 +108,8 @@ public:
                          const lw_vpl_tiles tiles =
                              VplTiles::layout(position.width, position.height, gather_.order(), desc_.interleave);
                          gather_.recordGather(executor, position, normal, masks, tiles, maps, irradiance, state.counts());
+                         if (compensation_)
+                             state.compensate(executor, *compensation_, gbuffer.camera, position, normal, irradiance);
                      });
     }
 
@@ -168,6 +173,7 @@ private:
     InterleavedGather passes_;
     ClusteredGather gather_;
     std::optional<JointBilateral> bilateral_;  // half resolution only
+    std::optional<BoundingCompensation> compensation_;
     PerView<InterleavedView> states_;
     std::vector<LWChoice> choices_;  // of the last update
 };
@@ -214,6 +220,7 @@ std::vector<DebugView> SsvpTechnique::debugViews(const View* view) {
     const InterleavedView* state = states_.find(view);
     if (!state) return views;
     state->addDebugViews(views);
+    if (compensation_) state->addCompensationView(*compensation_, views);
     if (const Planes position = state->position())
         views.push_back({"visibility", "clusters one below the other: the share of its light that each pixel is taken to see",
                          ClusteredGather::visibilityShape(position, shadowingClusters()),
@@ -225,7 +232,7 @@ std::vector<DebugView> SsvpTechnique::debugViews(const View* view) {
 
 std::uint64_t SsvpTechnique::bytes() const {
     std::uint64_t total = rsms_.bytes() + sampling_.bytes() + maps_.bytes() + gather_.bytes() +
-                          (plan_ ? plan_->bytes() : 0);
+                          (plan_ ? plan_->bytes() : 0) + (compensation_ ? compensation_->bytes() : 0);
     for (const Stage& stage : stages_) total += stage.clusters.bytes() + stage.next.bytes();
     states_.each([&](const InterleavedView& state) { total += state.bytes(); });
     return total;

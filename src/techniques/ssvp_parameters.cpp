@@ -72,7 +72,9 @@ std::vector<LWParameter> makeTable() {
         oneOf("occluders", "what the maps show: the best that the frame has, its triangles, its surfels (or else its triangles, sampled), or what RSMs and source views see",
               offsetof(LWSsvpDesc, occluders), kOccludersNames, 3, LW_OCCLUDERS_AUTO),
         parameter("auto_error", "relative error of the picture for which vpls, clusters and bounces may be fewer, frame by frame: time falls as it is raised; 0: never fewer",
-                  LW_PARAMETER_FLOAT, offsetof(LWSsvpDesc, autoError), 0, 1, 0)};
+                  LW_PARAMETER_FLOAT, offsetof(LWSsvpDesc, autoError), 0, 1, 0),
+        uint("compensation", "samples a pixel of the surfaces around it, for near light that VPLs of some size lack: corners brighten, time grows; 0: none",
+             offsetof(LWSsvpDesc, compensation), 0, 64, 0)};
 }
 
 }  // namespace
