@@ -463,6 +463,9 @@ typedef struct LWSsvpDesc {
                                   the stats say how many, and why. 0: always the most */
     uint32_t history;        /**< as LWRsmDesc's */
     float historyClamp;      /**< as LWRsmDesc's */
+    uint32_t compensation;   /**< 0 .. 64: samples a pixel of the surfaces around it on the screen, which make up for near light
+                                  that VPLs of some size lack; 0: none. Above 0 the G-buffer needs `directRadiance`, of the
+                                  lights that have RSMs, and `camera` */
 } LWSsvpDesc;
 
 LW_API void lwDefaultSsvp(LWSsvpDesc* desc);

@@ -9,11 +9,16 @@
 namespace lightwell {
 namespace {
 
-constexpr std::size_t kCountBytes = 3 * sizeof(cl_int);
+constexpr std::size_t kCountBytes = 4 * sizeof(cl_int);
 
 constexpr const char* kSkips = "VPLs that cannot light a tile of pixels are skipped there";
 constexpr const char* kSkipsNone = "none: a list of more than 16384 slots, of which every pixel takes its whole share";
 static_assert(VplTiles::kMostSlots == 16384, "kSkipsNone names it");
+
+std::uint32_t needsOf(const InterleavedOptions& options) {
+    return (options.compensated ? std::uint32_t(kNeedsDirectRadiance) : 0u) |
+           (options.keeps() ? std::uint32_t(kNeedsMotion) : 0u);
+}
 
 }  // namespace
 
@@ -43,6 +48,10 @@ InterleavedView::InterleavedView(Device& device, const InterleavedOptions& optio
         halfPosition_ = PlanarImage(device, width, height, 3, "half-resolution positions");
         halfNormal_ = PlanarImage(device, width, height, 3, "half-resolution normals");
     }
+    if (options.compensated) {
+        senders_.reserve(device, width, height, options.interleave);
+        if (options.half) halfRadiance_ = PlanarImage(device, width, height, 3, "half-resolution direct radiance");
+    }
     if (!options.keeps()) return;
     if (options.half || options.filters()) current_ = PlanarImage(device, view.maxWidth, view.maxHeight, 3, "irradiance of a frame alone");
     history_.emplace(device, options.history, view.maxWidth, view.maxHeight);
@@ -56,9 +65,9 @@ void InterleavedView::startFrame(bool forget) {
 void InterleavedView::render(Executor& executor, const View& view, const LWGBuffer& gbuffer, const LWOutput& output,
                              const Passes& passes, const Gather& gather) {
     if (history_) TemporalHistory::checkCamera(gbuffer, view.width, view.height);
-    gbuffer_.import(executor, view, gbuffer, history_ ? std::uint32_t(kNeedsMotion) : 0u, "gbuffer");
+    gbuffer_.import(executor, view, gbuffer, needsOf(options_), "gbuffer");
     // Should a later step fail, the images of the frame before are gone.
-    lastGathered_ = lastFiltered_ = Planes{};
+    lastGathered_ = lastFiltered_ = compensatedPosition_ = compensatedNormal_ = Planes{};
     isRendered_ = true;
     const Planes irradiance = irradiance_.begin(executor, view, output.irradiance, 3, "output.irradiance");
     const Planes validity = validity_.begin(executor, view, output.validity, 1, "output.validity");
@@ -104,6 +113,36 @@ const Buffer& InterleavedView::cull(Executor& executor, InterleavedGather& passe
     return tiles_.masks();
 }
 
+void InterleavedView::compensate(Executor& executor, BoundingCompensation& pass, const LWCamera& camera, const Planes& position,
+                                 const Planes& normal, const Planes& irradiance) {
+    Planes radiance = gbuffer_.directRadiance;
+    if (options_.half) {
+        const Planes half = halfRadiance_.planes(position.width, position.height);
+        pass.recordHalve(executor, gbuffer_.position, gbuffer_.normal, radiance, position, normal, half);
+        radiance = half;
+    }
+    const lw_pixel_area area = BoundingCompensation::pixelArea(camera, position.width, position.height, "gbuffer.camera");
+    pass.recordSenders(executor, position, normal, radiance, area, senders_, counts_);
+    pass.recordGather(executor, position, normal, senders_, false, irradiance, counts_);
+    compensatedPosition_ = position;
+    compensatedNormal_ = normal;
+}
+
+void InterleavedView::addCompensationView(BoundingCompensation& pass, std::vector<DebugView>& views) const {
+    if (!compensatedPosition_) return;
+    Planes shape;
+    shape.width = compensatedPosition_.width;
+    shape.height = compensatedPosition_.height;
+    shape.rowStride = paddedWidth(shape.width);
+    shape.planeStride = shape.rowStride * shape.height;
+    shape.count = 3;
+    views.push_back({"compensation", "irradiance that compensates for the bounds of VPLs, before the filter (W/m^2)", shape,
+                     [this, &pass](Executor& executor, const Planes& planes) {
+                         Planes light = planes;
+                         pass.recordGather(executor, compensatedPosition_, compensatedNormal_, senders_, true, light, counts_);
+                     }});
+}
+
 void InterleavedView::report(Device& device, Report& report, lw_subset_order order) const {
     if (!isRendered_) return;
     gbuffer_.report(report);
@@ -115,6 +154,7 @@ void InterleavedView::report(Device& device, Report& report, lw_subset_order ord
     report.read(device, "upsample_fallbacks", counts_, sizeof(cl_int));
     report.read(device, "saturated_pixels", counts_, 2 * sizeof(cl_int));
     if (history_) history_->report(device, report);
+    if (options_.compensated) report.read(device, "compensation_capped", counts_, 3 * sizeof(cl_int));
 }
 
 void InterleavedView::addDebugViews(std::vector<DebugView>& views, TemporalHistory* history) const {
@@ -131,8 +171,8 @@ void InterleavedView::addDebugViews(std::vector<DebugView>& views, TemporalHisto
 
 std::uint64_t InterleavedView::bytes() const {
     return gbuffer_.bytes() + irradiance_.bytes() + validity_.bytes() + gathered_.bytes() + filtered_.bytes() +
-           halfPosition_.bytes() + halfNormal_.bytes() + tiles_.bytes() + counts_.bytes() + current_.bytes() +
-           (history_ ? history_->bytes() : 0);
+           halfPosition_.bytes() + halfNormal_.bytes() + tiles_.bytes() + senders_.bytes() + halfRadiance_.bytes() +
+           counts_.bytes() + current_.bytes() + (history_ ? history_->bytes() : 0);
 }
 
 std::uint64_t InterleavedView::estimateBytes(const InterleavedOptions& options, const LWViewDesc& view, bool uploads,
@@ -140,12 +180,14 @@ std::uint64_t InterleavedView::estimateBytes(const InterleavedOptions& options, 
     const std::uint32_t width = options.gathered(view.maxWidth), height = options.gathered(view.maxHeight);
     const bool keeps = options.keeps(), follows = options.half || options.filters();
     const std::uint64_t images = (follows || keeps ? 1u : 0u) +
-                                 (options.half && options.filters() ? 1u : 0u) + (options.half ? 2u : 0u);
+                                 (options.half && options.filters() ? 1u : 0u) + (options.half ? options.compensated ? 3u : 2u : 0u);
     const std::uint64_t history =
         !keeps ? 0
                : ViewHistory::estimateBytes(options.history, view.maxWidth, view.maxHeight) +
                      (follows ? 3 * sizeof(float) * std::uint64_t(paddedWidth(view.maxWidth)) * view.maxHeight : 0);
-    return history + GBufferInput::estimateBytes(view, keeps ? std::uint32_t(kNeedsMotion) : 0u, uploads) + OutputTarget::estimateBytes(view, 3, uploads) +
+    const std::uint64_t senders =
+        options.compensated ? CompensationSenders::estimateBytes(width, height, options.interleave) : 0;
+    return history + senders + GBufferInput::estimateBytes(view, needsOf(options), uploads) + OutputTarget::estimateBytes(view, 3, uploads) +
            OutputTarget::estimateBytes(view, 1, uploads) + kCountBytes +
            images * 3 * paddedWidth(width) * height * sizeof(float) +
            VplTiles::estimateBytes(width, height, order, options.interleave);

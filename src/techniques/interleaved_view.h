@@ -10,6 +10,7 @@
 #include "inputs/gbuffer_input.h"
 #include "inputs/output_target.h"
 #include "inputs/view.h"
+#include "passes/bounding_compensation.h"
 #include "passes/interleaved_gather.h"
 #include "passes/joint_bilateral.h"
 #include "passes/temporal_history.h"
@@ -22,6 +23,7 @@ struct InterleavedOptions {
     bool filter = true;  // has an effect with interleave > 1
     bool half = false;   // gathers every second pixel and row
     TemporalHistoryOptions history;  // of what comes of these; none with 0 frames
+    bool compensated = false;  // by BoundingCompensation; needs the G-buffer's direct radiance and camera
 
     bool keeps() const { return history.frames > 0; }
     bool filters() const { return filter && interleave > 1; }
@@ -50,6 +52,12 @@ public:
     const Buffer& cull(Executor& executor, InterleavedGather& passes, const Planes& position, const Planes& normal,
                        const Buffer& vpls, lw_subset_order order);
 
+    // Recorded by `gather`, after the VPLs: near light that their bounds lack is added to `irradiance`.
+    void compensate(Executor& executor, BoundingCompensation& pass, const LWCamera& camera, const Planes& position,
+                    const Planes& normal, const Planes& irradiance);
+    // What the last frame's compensation added; without memory, and filled by `pass`.
+    void addCompensationView(BoundingCompensation& pass, std::vector<DebugView>& views) const;
+
     const Buffer& counts() const { return counts_; }  // as InterleavedGather and JointBilateral count
     // The surfaces of the last frame, at full resolution; empty where it had no irradiance.
     Planes position() const { return lastGathered_ ? gbuffer_.position : Planes{}; }
@@ -75,7 +83,10 @@ private:
     std::optional<ViewHistory> history_;
     std::uint32_t gatheredWidth_, gatheredHeight_;  // at most
     VplTiles tiles_;
-    Buffer counts_;  // rejected pixels, up-sampling fallbacks, saturated pixels
+    CompensationSenders senders_;
+    PlanarImage halfRadiance_;
+    Planes compensatedPosition_, compensatedNormal_;  // of the last frame
+    Buffer counts_;  // rejected pixels, up-sampling fallbacks, saturated pixels, pixels whose compensation reaches too far
     Planes lastGathered_, lastFiltered_;  // empty where the last frame had no irradiance
     bool isRendered_ = false;             // since the last update
 };

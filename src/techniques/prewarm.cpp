@@ -72,6 +72,7 @@ void exerciseTechnique(Executor& executor, Technique& technique) {
         LWGBuffer gbuffer{};
         gbuffer.structSize = sizeof gbuffer;
         gbuffer.normal = imageOf(inputs.normal, LW_FORMAT_FLOAT3);
+        gbuffer.directRadiance = imageOf(inputs.flux, LW_FORMAT_FLOAT3);
         gbuffer.camera = inputs.camera;
         if (byDepth) {
             rsm.depth = gbuffer.depth = imageOf(inputs.depth, LW_FORMAT_FLOAT1);

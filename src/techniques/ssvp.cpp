@@ -57,6 +57,7 @@ public:
         if (interleavedOptions(desc).half) bilateral_.emplace(device);
         if (desc.history) history_.emplace(device, interleavedOptions(desc).history);
         if (desc.autoError > 0.0f) plan_.emplace(device, planOptions(desc));
+        if (desc.compensation > 0) compensation_.emplace(device, compensationOptions(desc));
     }
 
     void update(Executor& executor, const LWFrame& frame) override {
@@ -71,6 +72,8 @@ public:
         if (plan_) plan_->begin(executor, restart);
         if (history_) sampling_.turn(restart ? turns_ = 0 : ++turns_);
         recordVpls(executor, frame);
+        if (compensation_)
+            compensation_->recordScale(executor, sampling_.vpls(), sampling_.order(), sampling_.vplCount() - frame.vplCount);
 
         std::vector<GatheredList> lists{{{sampling_.vpls(), sampling_.vplCount()}}};
         for (std::size_t i = 0; i < stages_.size(); ++i) {
@@ -107,6 +110,8 @@ public:
                          const lw_vpl_tiles tiles =
                              VplTiles::layout(position.width, position.height, gather_.order(), desc_.interleave);
                          gather_.recordGather(executor, position, normal, masks, tiles, maps, irradiance, state.counts());
+                         if (compensation_)
+                             state.compensate(executor, *compensation_, gbuffer.camera, position, normal, irradiance);
                      });
     }
 
@@ -174,6 +179,7 @@ private:
     ClusteredGather gather_;
     std::optional<JointBilateral> bilateral_;  // half resolution only
     std::optional<TemporalHistory> history_;
+    std::optional<BoundingCompensation> compensation_;
     PerView<InterleavedView> states_;
     std::vector<LWChoice> choices_;  // of the last update
 };
@@ -221,6 +227,7 @@ std::vector<DebugView> SsvpTechnique::debugViews(const View* view) {
     const InterleavedView* state = states_.find(view);
     if (!state) return views;
     state->addDebugViews(views, history());
+    if (compensation_) state->addCompensationView(*compensation_, views);
     if (const Planes position = state->position())
         views.push_back({"visibility", "clusters one below the other: the share of its light that each pixel is taken to see",
                          ClusteredGather::visibilityShape(position, shadowingClusters()),
@@ -232,7 +239,7 @@ std::vector<DebugView> SsvpTechnique::debugViews(const View* view) {
 
 std::uint64_t SsvpTechnique::bytes() const {
     std::uint64_t total = rsms_.bytes() + sampling_.bytes() + maps_.bytes() + gather_.bytes() +
-                          (plan_ ? plan_->bytes() : 0);
+                          (plan_ ? plan_->bytes() : 0) + (compensation_ ? compensation_->bytes() : 0);
     for (const Stage& stage : stages_) total += stage.clusters.bytes() + stage.next.bytes();
     states_.each([&](const InterleavedView& state) { total += state.bytes(); });
     return total;

@@ -36,7 +36,12 @@ SecondBounceOptions nextOptions(const LWSsvpDesc& desc, std::size_t stage) {
 }
 
 InterleavedOptions interleavedOptions(const LWSsvpDesc& desc) {
-    return {desc.interleave, desc.filter != 0, desc.resolution == LW_RESOLUTION_HALF, {desc.history, desc.historyClamp, 0}};
+    return {desc.interleave, desc.filter != 0, desc.resolution == LW_RESOLUTION_HALF, {desc.history, desc.historyClamp, 0},
+            desc.compensation > 0};
+}
+
+CompensationOptions compensationOptions(const LWSsvpDesc& desc) {
+    return {desc.interleave, desc.compensation, desc.sampling == LW_SAMPLING_UNIFORM};
 }
 
 ClusterVisibility visibilityOf(const LWSsvpDesc& desc) {
@@ -93,6 +98,7 @@ std::uint64_t estimateSsvpBytes(const void* desc, const LWViewDesc& view, const 
     }
     if (ssvp.autoError > 0.0f)
         total += SsvpPlan::estimateBytes(planOptions(ssvp), shape.texels ? shape.rows : 0);
+    if (ssvp.compensation > 0) total += BoundingCompensation::estimateBytes(compensationOptions(ssvp));
     return total + RsmInput::estimateBytes(shape) +
            VplSampling::estimateBytes(samplingOptions(ssvp), shape) +
            SsvpMaps::estimateBytes(ssvp, clusterCounts, shape) +

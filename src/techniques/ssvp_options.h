@@ -20,6 +20,7 @@ VplSamplingOptions samplingOptions(const LWSsvpDesc& desc);
 KMeansOptions clusterOptions(const LWSsvpDesc& desc, std::size_t stage);
 SecondBounceOptions nextOptions(const LWSsvpDesc& desc, std::size_t stage);
 InterleavedOptions interleavedOptions(const LWSsvpDesc& desc);
+CompensationOptions compensationOptions(const LWSsvpDesc& desc);  // of one that compensates
 ClusterVisibility visibilityOf(const LWSsvpDesc& desc);
 SsvpPlanOptions planOptions(const LWSsvpDesc& desc);  // of one with an error target
 std::uint32_t groupsOf(const LWSsvpDesc& desc);

@@ -75,7 +75,9 @@ std::vector<LWParameter> makeTable() {
         parameter("auto_error", "relative error of the picture for which vpls, clusters and bounces may be fewer, frame by frame: time falls as it is raised; 0: never fewer",
                   LW_PARAMETER_FLOAT, offsetof(LWSsvpDesc, autoError), 0, 1, 0),
         historyParameter(offsetof(LWSsvpDesc, history)),
-        historyClampParameter(offsetof(LWSsvpDesc, historyClamp))};
+        historyClampParameter(offsetof(LWSsvpDesc, historyClamp)),
+        uint("compensation", "samples a pixel of the surfaces around it, for near light that VPLs of some size lack: corners brighten, time grows; 0: none",
+             offsetof(LWSsvpDesc, compensation), 0, 64, 0)};
 }
 
 }  // namespace
