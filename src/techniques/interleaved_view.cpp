@@ -123,8 +123,7 @@ void InterleavedView::addCompensationView(BoundingCompensation& pass, std::vecto
     shape.count = 3;
     views.push_back({"compensation", "irradiance that compensates for the bounds of VPLs, before the filter (W/m^2)", shape,
                      [this, &pass](Executor& executor, const Planes& planes) {
-                         Planes light = planes;
-                         pass.recordGather(executor, compensatedPosition_, compensatedNormal_, senders_, true, light, counts_);
+                         pass.recordGather(executor, compensatedPosition_, compensatedNormal_, senders_, true, planes, counts_);
                      }});
 }
 
@@ -161,8 +160,10 @@ std::uint64_t InterleavedView::estimateBytes(const InterleavedOptions& options, 
     const std::uint64_t images = (options.half || options.filters() ? 1u : 0u) +
                                  (options.half && options.filters() ? 1u : 0u) +
                                  (options.half ? options.compensated ? 3u : 2u : 0u);
-    return GBufferInput::estimateBytes(view, needsOf(options), uploads) +
-           (options.compensated ? CompensationSenders::estimateBytes(width, height, options.interleave) : 0) + OutputTarget::estimateBytes(view, 3, uploads) +
+    const std::uint64_t senders =
+        options.compensated ? CompensationSenders::estimateBytes(width, height, options.interleave) : 0;
+    return senders + GBufferInput::estimateBytes(view, needsOf(options), uploads) +
+           OutputTarget::estimateBytes(view, 3, uploads) +
            OutputTarget::estimateBytes(view, 1, uploads) + kCountBytes +
            images * 3 * paddedWidth(width) * height * sizeof(float) +
            VplTiles::estimateBytes(width, height, order, options.interleave);
