@@ -141,11 +141,12 @@ __kernel void bounding_compensation_senders(__global const float* position, int4
 
 // Where the samples of one vector of receivers lie: planes of the run, `step` apart, from `at` on.
 LW_FN void add_sample(rgb* e, lw_surface away, __global const float* senders, int at, int step, float cell) {
-    const real dx = away.px - load(senders, at), dy = away.py - load(senders, at + step), dz = away.pz - load(senders, at + 2 * step);
+    const real dx = away.px - load(senders, at), dy = away.py - load(senders, at + step);
+    const real dz = away.pz - load(senders, at + 2 * step);
     const real d2 = squared_length(dx, dy, dz);
     const real c = fmax(fma_(dx, away.nx, fma_(dy, away.ny, dz * away.nz)), (real)0.0f);
-    const real cp = fmax(fma_(dx, load(senders, at + 3 * step), fma_(dy, load(senders, at + 4 * step), dz * load(senders, at + 5 * step))),
-                         (real)0.0f);
+    const real nx = load(senders, at + 3 * step), ny = load(senders, at + 4 * step), nz = load(senders, at + 5 * step);
+    const real cp = fmax(fma_(dx, nx, fma_(dy, ny, dz * nz)), (real)0.0f);
     const real area = cell * load(senders, at + LW_SENDER_PIXEL * step), vpl = load(senders, at + LW_SENDER_VPL * step);
     const real q = fma_(3.0f * cp, cp, d2), d4 = fma_(d2, d2, (real)1e-37f);
     // The difference of the two terms over a common denominator: as a difference it would cancel far away. One quotient

@@ -18,6 +18,10 @@ constexpr double kPi = 3.14159265358979323846;
 
 Range groupOf(const Kernel& kernel) { return kernel.width() == 1 ? Range{64, 1} : Range{8, 1}; }
 
+Kernel& kernelOf(Device& device, const CompensationOptions& options, const char* name) {
+    return device.programs().kernel(kProgram, name, {{"LW_INTERLEAVE", std::to_string(options.interleave)}});
+}
+
 std::size_t samplesBytes(const CompensationOptions& options) {
     return std::size_t(options.interleave) * options.interleave * options.samples * sizeof(lw_near_sample);
 }
@@ -51,10 +55,10 @@ void CompensationSenders::reserve(Device& device, std::uint32_t width, std::uint
 
 BoundingCompensation::BoundingCompensation(Device& device, const CompensationOptions& options)
     : options_(options),
-      scaleOf_(device.programs().kernel(kProgram, "bounding_compensation_scale", {{"LW_INTERLEAVE", std::to_string(options.interleave)}})),
-      halve_(device.programs().kernel(kProgram, "bounding_compensation_halve", {{"LW_INTERLEAVE", std::to_string(options.interleave)}})),
-      makeSenders_(device.programs().kernel(kProgram, "bounding_compensation_senders", {{"LW_INTERLEAVE", std::to_string(options.interleave)}})),
-      gather_(device.programs().kernel(kProgram, "bounding_compensation_gather", {{"LW_INTERLEAVE", std::to_string(options.interleave)}})),
+      scaleOf_(kernelOf(device, options, "bounding_compensation_scale")),
+      halve_(kernelOf(device, options, "bounding_compensation_halve")),
+      makeSenders_(kernelOf(device, options, "bounding_compensation_senders")),
+      gather_(kernelOf(device, options, "bounding_compensation_gather")),
       scale_(device, kScaleBytes, "what VPLs stand for"),
       samples_(device, samplesBytes(options), "samples of the surroundings") {}
 

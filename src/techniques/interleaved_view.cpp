@@ -138,8 +138,7 @@ void InterleavedView::addCompensationView(BoundingCompensation& pass, std::vecto
     shape.count = 3;
     views.push_back({"compensation", "irradiance that compensates for the bounds of VPLs, before the filter (W/m^2)", shape,
                      [this, &pass](Executor& executor, const Planes& planes) {
-                         Planes light = planes;
-                         pass.recordGather(executor, compensatedPosition_, compensatedNormal_, senders_, true, light, counts_);
+                         pass.recordGather(executor, compensatedPosition_, compensatedNormal_, senders_, true, planes, counts_);
                      }});
 }
 
@@ -180,14 +179,16 @@ std::uint64_t InterleavedView::estimateBytes(const InterleavedOptions& options, 
     const std::uint32_t width = options.gathered(view.maxWidth), height = options.gathered(view.maxHeight);
     const bool keeps = options.keeps(), follows = options.half || options.filters();
     const std::uint64_t images = (follows || keeps ? 1u : 0u) +
-                                 (options.half && options.filters() ? 1u : 0u) + (options.half ? options.compensated ? 3u : 2u : 0u);
+                                 (options.half && options.filters() ? 1u : 0u) +
+                                 (options.half ? options.compensated ? 3u : 2u : 0u);
     const std::uint64_t history =
         !keeps ? 0
                : ViewHistory::estimateBytes(options.history, view.maxWidth, view.maxHeight) +
                      (follows ? 3 * sizeof(float) * std::uint64_t(paddedWidth(view.maxWidth)) * view.maxHeight : 0);
     const std::uint64_t senders =
         options.compensated ? CompensationSenders::estimateBytes(width, height, options.interleave) : 0;
-    return history + senders + GBufferInput::estimateBytes(view, needsOf(options), uploads) + OutputTarget::estimateBytes(view, 3, uploads) +
+    return history + senders + GBufferInput::estimateBytes(view, needsOf(options), uploads) +
+           OutputTarget::estimateBytes(view, 3, uploads) +
            OutputTarget::estimateBytes(view, 1, uploads) + kCountBytes +
            images * 3 * paddedWidth(width) * height * sizeof(float) +
            VplTiles::estimateBytes(width, height, order, options.interleave);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <set>
 
+#include "passes/joint_bilateral.h"
 #include "shared/input_limits.h"
 #include "support/compensation_rig.h"
 
@@ -113,7 +114,7 @@ TEST_CASE("samples cover their disc once, in as many strata as a pixel has sampl
 //   pi L h^2 int_{h^2}^{h^2+R^2} du / (u^2 + A' u + 3 A' h^2),  A' = A / 4 pi,
 // on average (u the squared distance, c = c_p = h / sqrt(u)), for A' < 12 h^2 an arc tangent; points with
 // pi L R^2 / (h^2 + R^2).
-TEST_CASE("what is gathered of a disc on its axis is what bounding removes", "[bounding_compensation]") {
+TEST_CASE("what is gathered of a disc on its axis is what bounding removes", "[bounding_compensation][large]") {
     KernelRig rig(GENERATE(1u, 16u));
     const std::uint32_t size = 129, middle = 64;
     const double L = 2.0, cell = 1.0 / 64.0, h = GENERATE(0.1, 0.3), area = GENERATE(0.4, 4.0) * h * h;
@@ -205,4 +206,46 @@ TEST_CASE("discs wider than the samples reach are counted", "[bounding_compensat
             }
         CHECK(compensate(rig, image, vplsOf(1.0, area), options).capped == expected);
     }
+}
+
+TEST_CASE("half-resolution radiance is the mean of each block's pixels on the surface chosen", "[bounding_compensation]") {
+    KernelRig rig(GENERATE(1u, 16u));
+    const auto [w, h] = testSize(GENERATE(std::make_pair(1u, 1u), std::make_pair(67u, 23u)));
+    SentImage image = cornerOf({w, h});
+    for (std::uint32_t y = 0; y < h; ++y)
+        for (std::uint32_t x = 0; x < w; ++x) {
+            // Each surface by one colour: what crosses an edge shows.
+            const Vec n = image.normal.get(x, y), p = image.position.get(x, y);
+            const double l = n.y > 0.5 ? 1.0 : p.z > 0.5 ? 3.0 : 5.0, noise = x % 2 == y % 2 ? 0.25 : -0.25;
+            image.radiance.set(x, y, {l, 2.0 * l, l + noise});
+        }
+    const std::uint32_t hw = JointBilateral::halved(w), hh = JointBilateral::halved(h);
+    Image halfPosition(hw, hh), halfNormal(hw, hh), half(hw, hh);
+    reference::downsample(image.position, image.normal, halfPosition, halfNormal);
+    constexpr float kPadding = std::numeric_limits<float>::quiet_NaN();
+    const auto up = [&](const Image& i) { return rig.uploadPlanes(i.planes, i.width, i.height, 3, kPadding); };
+    const Guarded p = up(image.position), n = up(image.normal), l = up(image.radiance), hp = up(halfPosition),
+                  hn = up(halfNormal), out = rig.makePlanes(hw, hh, 3);
+    BoundingCompensation pass(rig.device(), {4, 4, false});
+    pass.recordHalve(rig.executor(), rig.planes(p, w, h, 3), rig.planes(n, w, h, 3), rig.planes(l, w, h, 3),
+                     rig.planes(hp, hw, hh, 3), rig.planes(hn, hw, hh, 3), rig.planes(out, hw, hh, 3));
+    rig.device().finish();
+    half.planes = rig.downloadPlanes(rig.planes(out, hw, hh, 3));
+    for (std::uint32_t y = 0; y < hh; ++y)
+        for (std::uint32_t x = 0; x < hw; ++x) {
+            const auto s = reference::surfaceAt(halfPosition, halfNormal, x, y);
+            Vec sum;
+            int count = 0;
+            for (std::uint32_t k = 0; k < 4; ++k) {
+                const std::uint32_t fx = 2 * x + k % 2, fy = 2 * y + k / 2;
+                if (!s.valid || fx >= w || fy >= h) continue;
+                if (!(reference::edgeWeight(s, reference::surfaceAt(image.position, image.normal, fx, fy)) > 0.0)) continue;
+                sum = sum + image.radiance.get(fx, fy);
+                ++count;
+            }
+            const Vec expected = count ? sum * (1.0 / count) : Vec{}, got = half.get(x, y);
+            REQUIRE(got.x == Approx(expected.x).epsilon(1e-6));
+            REQUIRE(got.y == Approx(expected.y).epsilon(1e-6));
+            REQUIRE(got.z == Approx(expected.z).epsilon(1e-6));
+        }
 }

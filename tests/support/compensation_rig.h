@@ -61,7 +61,8 @@ inline reference::Image compensationTwin(const SentImage& image, double flux, do
     using reference::Vec;
     const double pi = 3.14159265358979323846;
     const int w = int(image.position.width), h = int(image.position.height), n = int(options.interleave);
-    const auto samples = BoundingCompensation::samples(options, BoundingCompensation::reachOf(image.position.width, image.position.height));
+    const float reach = BoundingCompensation::reachOf(image.position.width, image.position.height);
+    const auto samples = BoundingCompensation::samples(options, reach);
     reference::Image out(image.position.width, image.position.height);
     for (int y = 0; y < h; ++y)
         for (int x = 0; x < w; ++x) {
@@ -85,7 +86,8 @@ inline reference::Image compensationTwin(const SentImage& image, double flux, do
                 const double stands = pixel * double(sample.cell), vpl = options.uniformArea ? area : flux / (pi * mean);
                 const double d2 = dot(to, to);
                 if (d2 == 0.0 || stands >= vpl) continue;
-                const double c = std::max(dot(to, s.normal), 0.0) / std::sqrt(d2), cp = std::max(-dot(to, q.normal), 0.0) / std::sqrt(d2);
+                const double c = std::max(dot(to, s.normal), 0.0) / std::sqrt(d2);
+                const double cp = std::max(-dot(to, q.normal), 0.0) / std::sqrt(d2);
                 const double kappa = (1.0 + 3.0 * cp * cp) / 4.0;
                 const double lost = 1.0 / (d2 + kappa * stands / pi) - 1.0 / (d2 + kappa * vpl / pi);
                 sum = sum + l * (stands * c * cp * lost);

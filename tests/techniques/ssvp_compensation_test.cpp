@@ -68,7 +68,8 @@ double errorBesideEdge(const std::vector<float>& light, const Corner& corner) {
         if (p.y > 0.2) continue;
         for (std::uint32_t x = kWidth / 4; x < 3 * kWidth / 4; ++x) {
             const Vec at = corner.position.get(x, y);
-            const double truth = polygonIrradiance({{-0.5, 0, 0}, {0.5, 0, 0}, {0.5, 0, 1}, {-0.5, 0, 1}}, at, {0, 0, 1}, kExitance);
+            const std::vector<Vec> floor{{-0.5, 0, 0}, {0.5, 0, 0}, {0.5, 0, 1}, {-0.5, 0, 1}};
+            const double truth = polygonIrradiance(floor, at, {0, 0, 1}, kExitance);
             const double off = double(light[y * kWidth + x]) / truth - 1.0;
             squares += off * off;
             count += 1.0;
