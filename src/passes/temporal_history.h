@@ -23,7 +23,7 @@ namespace lightwell {
 
 struct TemporalHistoryOptions {
     std::uint32_t frames = 0;   // in the mean, at most 64; 0: no history
-    float clamp = 2.0f;         // gamma of the bounds that a frame's picture sets to its history; 0: none
+    float clamp = 3.0f;         // gamma of the bounds that a frame's picture sets to its history; 0: none
     std::uint32_t scalars = 0;  // 1-channel images beside the irradiance: 0, 1, 2
 
     static constexpr std::uint32_t kMostFrames = 64;
