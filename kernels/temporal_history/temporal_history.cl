@@ -7,9 +7,10 @@
 // another one (position off the tangent plane, another normal). What is left is weighed anew.
 //
 // Light changes too, so a history is only believed as far as the last few frames allow. Of each surface's light Y (the sum of
-// the channels) two more means are kept: m, over three frames, and s, that of |Y - m| / light over up to sixteen: the noise
-// that this surface shows from frame to frame. History is brought between the bounds (clamping, Karis 2014)
-//   m -+ gamma / 2 * s * light,
+// the channels) three more numbers are kept: m, the mean over three frames; b, over four, of Y - m, which is what Y changes by in
+// three; and s, the median of |Y - m - b| / light over time: the noise that this surface shows from frame to frame, apart from
+// what its light changes by; a median, since jumps of the light shall not count for more than they are many. History is brought between the bounds (clamping, Karis 2014)
+//   m + 2/3 b -+ gamma / 2 * s * light,
 // and forgets where much of it was cut off, or where a frame is more than some 5 deviations of Y away. Bounds from the 3 x 3
 // pixels around, the usual choice, do not work here: samples that all pixels share, such as VPLs, move whole
 // patches up and down from frame to frame with next to no difference between neighbours, and at the edge of a moving
@@ -24,7 +25,7 @@
 #endif
 #define LW_VALUES (3 + LW_SCALARS)
 #define LW_KINDS (1 + LW_SCALARS)  // the irradiance, and each scalar
-#define LW_MIXED (LW_VALUES + 2 * LW_KINDS)  // values, m of each kind, s of each kind
+#define LW_MIXED (LW_VALUES + 3 * LW_KINDS)  // values, m of each kind, s, b
 #define LW_UNROLL _Pragma("unroll")
 // Planes of a history: the mixed ones, position xyz, and a word of normal and age.
 #define LW_POSITION_PLANE LW_MIXED
@@ -48,18 +49,22 @@
 // Frames that m is a mean over, at most. Larger: (1 - 1/3)^8 = 4 % of a change are left in m, and so in the history, after 8
 // frames; 10 % would be with 4. Smaller: m follows noise, and the history with it.
 #define LW_RECENT_FRAMES 3.0f
-// Deviation of m from the light's mean over that of Y from m, of independent noise: sqrt(1/5) over sqrt(6/5), rounded up.
+// Of a change by as much in every frame, m lacks two frames' and Y - m_before shows three.
+#define LW_TREND_AHEAD (2.0f / 3.0f)
+// Frames that b is a mean over. Larger: b lags where light goes up and then down. Smaller: it follows noise.
+#define LW_TREND_FRAMES 4.0f
+// Deviation of m + 2/3 b from the light's mean over that of Y from m + b, of independent noise, rounded up.
 #define LW_RECENT_REACH 0.5f
 // Slope with which the mean forgets: all at half of the distance cut off (light twice as far from its past as the bounds
 // reach), nothing up to a quarter. Larger: lag, where light changes by hardly more than its noise.
 #define LW_FORGETTING 4.0f
-// Frames that s is a mean over, at most. Larger: s learns late of a technique's noise that has changed.
-#define LW_SPREAD_FRAMES 16.0f
+// Step of s in a frame, up or down, towards the median. Larger: s trembles, and takes a row of jumps for noise. Smaller: it
+// learns late that a technique's noise has changed.
+#define LW_SPREAD_STEP (1.0f / 16.0f)
+// s of a new surface.
+#define LW_FIRST_SPREAD 0.1f
 // Least s: a picture without noise learns nothing of noise to come. Larger: that much of a light that has gone may stay.
 #define LW_LEAST_SPREAD 0.01f
-// Largest |Y - m| / light of one frame: what goes dark is infinitely far from its past.
-#define LW_LARGEST_SPREAD 2.0f
-
 typedef struct {
     real mixed[LW_MIXED];
     real age, weight;
@@ -197,28 +202,31 @@ LW_FN real kept(real distance, real reach) {
     return clamp(LW_FORGETTING * (0.5f - cut), (real)0.0f, (real)1.0f);
 }
 
-// The `count` values of one kind: `past` is brought between its bounds, m and s go on by a frame. Returns the
+// The `count` values of one kind: `past` is brought between its bounds, m, s and b go on by a frame. Returns the
 // share of the mean's frames to keep.
-LW_FN real follow(real* past, const real* own, const int count, real age, real gamma, mask trusted, real* m, real* s) {
+LW_FN real follow(real* past, const real* own, const int count, real age, real gamma, mask trusted, real* m, real* s, real* b) {
     real before = (real)0.0f, now = (real)0.0f;
     LW_UNROLL for (int c = 0; c < count; ++c) {
         before += past[c];
         now += own[c];
     }
-    const real spread = gamma * fmax(*s, (real)LW_LEAST_SPREAD);
+    const real spread = gamma * *s;
     real share = select_((real)1.0f, kept(fabs(now - before), spread * (0.5f * (now + before))), trusted);
     const real away = now - *m, light = 0.5f * (now + *m);
     const real recent = fma_(away, 1.0f / fmin(age + 1.0f, (real)LW_RECENT_FRAMES), *m);
+    const real trend = fma_(away - *b, (real)(1.0f / LW_TREND_FRAMES), *b);
+    const real centre = fmax(fma_((real)LW_TREND_AHEAD, trend, recent), (real)0.0f);
     const real reach = LW_RECENT_REACH * spread * (0.5f * (recent + before));
-    share = fmin(share, select_((real)1.0f, kept(fabs(recent - before), reach), trusted));
-    const real aim = select_(before, clamp(before, recent - reach, recent + reach), trusted);
+    share = fmin(share, select_((real)1.0f, kept(fabs(centre - before), reach), trusted));
+    const real aim = select_(before, clamp(before, centre - reach, centre + reach), trusted);
     // Less light: the same colour. More: of the colour that comes.
-    const real less = aim / fmax(before, (real)1e-37f), more = (aim - before) / fmax(now, (real)1e-37f);
+    const real less = fmax(aim, (real)0.0f) / fmax(before, (real)1e-37f), more = (aim - before) / fmax(now, (real)1e-37f);
     LW_UNROLL for (int c = 0; c < count; ++c)
         past[c] = select_(fma_(more, own[c], past[c]), past[c] * less, aim < before);
+    const real step = select_((real)(1.0f - LW_SPREAD_STEP), (real)(1.0f + LW_SPREAD_STEP), fabs(away - *b) > *s * light);
     *m = fma_(recent - now, share, now);
-    const real noise = fmin(fabs(away) / fmax(light, (real)1e-37f), (real)LW_LARGEST_SPREAD);
-    *s = fma_(noise - *s, 1.0f / clamp(age * share, (real)1.0f, (real)LW_SPREAD_FRAMES), *s);
+    *b = trend * share;
+    *s = clamp(*s * step, (real)LW_LEAST_SPREAD, (real)1.0f);
     return share;
 }
 
@@ -258,16 +266,17 @@ __kernel void temporal_history_blend(__global const float* position, int4 positi
         LW_UNROLL for (int c = 0; c < LW_MIXED; ++c) past[c] = found.mixed[c] * scale;
         age = select_((real)0.0f, fmin(floor(fma_(found.age, scale, (real)0.5f)), most), known);
     }
-    real share = (real)1.0f, m[LW_KINDS], noise[LW_KINDS];
+    real share = (real)1.0f, m[LW_KINDS], noise[LW_KINDS], trend[LW_KINDS];
     LW_UNROLL for (int k = 0; k < LW_KINDS; ++k) {
         m[k] = past[LW_VALUES + k];
         noise[k] = past[LW_VALUES + LW_KINDS + k];
+        trend[k] = past[LW_VALUES + 2 * LW_KINDS + k];
     }
     if (any_(known)) {
         const mask trusted = and_(splat_mask(gamma > 0.0f), and_(known, and_(finite, age >= LW_LEARNING)));
         real keep = (real)1.0f;
         LW_UNROLL for (int k = 0; k < LW_KINDS; ++k)
-            keep = fmin(keep, follow(past + (k ? k + 2 : 0), own + (k ? k + 2 : 0), k ? 1 : 3, age, (real)gamma, trusted, &m[k], &noise[k]));
+            keep = fmin(keep, follow(past + (k ? k + 2 : 0), own + (k ? k + 2 : 0), k ? 1 : 3, age, (real)gamma, trusted, &m[k], &noise[k], &trend[k]));
         age = age * keep;
         share = 1.0f / (age + 1.0f);
     }
@@ -276,7 +285,8 @@ __kernel void temporal_history_blend(__global const float* position, int4 positi
     LW_UNROLL for (int k = 0; k < LW_KINDS; ++k) {
         const real whole = k ? own[k + 2] : own[0] + own[1] + own[2];
         m[k] = select_(select_(whole, past[LW_VALUES + k], known), m[k], follows);
-        noise[k] = select_(past[LW_VALUES + LW_KINDS + k], noise[k], follows);
+        noise[k] = select_(select_((real)LW_FIRST_SPREAD, past[LW_VALUES + LW_KINDS + k], known), noise[k], follows);
+        trend[k] = select_((real)0.0f, trend[k], follows);
     }
 
     const int o = afterLayout.x + y * afterLayout.y + x, plane = afterLayout.z;
@@ -290,6 +300,7 @@ __kernel void temporal_history_blend(__global const float* position, int4 positi
     LW_UNROLL for (int k = 0; k < LW_KINDS; ++k) {
         store(m[k], after, o + (LW_VALUES + k) * plane);
         store(noise[k], after, o + (LW_VALUES + LW_KINDS + k) * plane);
+        store(trend[k], after, o + (LW_VALUES + 2 * LW_KINDS + k) * plane);
     }
     store(s.px, after, o + LW_POSITION_PLANE * plane);
     store(s.py, after, o + (LW_POSITION_PLANE + 1) * plane);

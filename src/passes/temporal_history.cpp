@@ -19,8 +19,8 @@ Range itemsOver(const Planes& image, const Kernel& kernel) {
     return {(image.width + kernel.width() - 1) / kernel.width(), image.height};
 }
 
-// Irradiance with its recent mean and noise, each scalar with its own, position, a word of normal and age.
-std::uint32_t planesOf(const TemporalHistoryOptions& options) { return 5 + 3 * options.scalars + 4; }
+// Irradiance with its recent mean, noise and trend, each scalar with its own, position, a word of normal and age.
+std::uint32_t planesOf(const TemporalHistoryOptions& options) { return 6 + 4 * options.scalars + 4; }
 
 // All planes of a row lie side by side, a cache line apart: planes of a whole picture often lie a multiple of 4096 bytes apart
 // (1280 x 720 does), and thirty of them then contend for the same few places of the first-level cache.

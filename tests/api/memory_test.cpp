@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "api/api_rig.h"
+#include "support/camera_matrices.h"
 #include "support/scoped.h"
 
 using namespace lightwell::test;
@@ -18,13 +19,15 @@ LWDevice deviceWith(const char* unified) {
     return makeDevice(16);
 }
 
-LWRsmDesc descOf(std::uint32_t vpls, std::uint32_t interleave, std::uint32_t filter, LWResolution resolution) {
+LWRsmDesc descOf(std::uint32_t vpls, std::uint32_t interleave, std::uint32_t filter, LWResolution resolution,
+                 std::uint32_t history = 0) {
     LWRsmDesc desc;
     lwDefaultRsm(&desc);
     desc.vpls = vpls;
     desc.interleave = interleave;
     desc.filter = filter;
     desc.resolution = resolution;
+    desc.history = history;
     return desc;
 }
 
@@ -55,7 +58,8 @@ TEST_CASE("the estimate is what a frame comes to hold", "[api][memory]") {
     const char* unified = GENERATE(as<const char*>{}, "1", "0");
     const auto desc = GENERATE(descOf(256, 4, 1, LW_RESOLUTION_FULL), descOf(0, 1, 0, LW_RESOLUTION_FULL),
                                descOf(1000, 8, 0, LW_RESOLUTION_HALF), descOf(64, 2, 1, LW_RESOLUTION_HALF),
-                               descOf(4096, 1, 1, LW_RESOLUTION_HALF));
+                               descOf(4096, 1, 1, LW_RESOLUTION_HALF), descOf(256, 4, 1, LW_RESOLUTION_FULL, 8),
+                               descOf(256, 1, 1, LW_RESOLUTION_FULL, 8), descOf(256, 2, 1, LW_RESOLUTION_HALF, 8));
     const std::uint32_t authored = GENERATE(0u, 1u, 77u);
     CAPTURE(unified, desc.vpls, desc.interleave, desc.filter, desc.resolution, authored);
     ApiScene scene(25, 11);
@@ -67,6 +71,10 @@ TEST_CASE("the estimate is what a frame comes to hold", "[api][memory]") {
     }
     scene.frame.vpls = vpls.data();
     scene.frame.vplCount = authored;
+    // Histories take both; the motion's memory is counted also where none is given, so the bulkiest is.
+    HostImage motion(LW_FORMAT_FLOAT2, 25, 11);
+    scene.gbuffer.camera = testCamera(kRightHanded, {0, 0, 3}).matrices();
+    scene.gbuffer.motion = motion.image();
     ApiRig rig(deviceWith(unified), scene, &desc);
     const LWViewDesc viewDesc = scene.viewDesc();
     std::uint64_t square = 0, exact = 0;

@@ -81,6 +81,26 @@ TEST_CASE("light that halves leaves less than 5 % of the change behind after 8 f
     CHECK(std::abs(mean - after) < 0.05 * std::abs(1.0 - after) + noise);
 }
 
+TEST_CASE("light that goes up and down all the time is followed within its noise", "[temporal_history]") {
+    const auto width = GENERATE(1u, 16u);
+    const auto shared = GENERATE(false, true);
+    const auto period = GENERATE(40.0, 80.0);
+    CAPTURE(width, shared, period);
+    KernelRig rig(width);
+    HistoryRig history(rig, frames(32), 35, 7);
+    Frame frame(35, 7);
+    frame.look(pixelCamera(35, 7), flat);
+    double square = 0.0;
+    for (std::uint32_t f = 0; f < 120; ++f) {
+        const double truth = 1.0 + 0.8 * std::sin(6.283185307 * f / period);
+        shine(frame, truth, 0.1, shared, f);
+        const double error = meanOf(history.render(frame)) - truth;
+        if (f >= 40) square += error * error / 80.0;
+    }
+    // An exponential mean of share 1/32 would miss nearly all of it, 0.8 / sqrt(2) in the root of the mean square.
+    CHECK(std::sqrt(square) < 0.35 * 0.8 / std::sqrt(2.0));
+}
+
 TEST_CASE("noise falls though history is held to its frame's light", "[temporal_history]") {
     const auto width = GENERATE(1u, 16u);
     const auto shared = GENERATE(false, true);
@@ -96,9 +116,10 @@ TEST_CASE("noise falls though history is held to its frame's light", "[temporal_
         const Image out = history.render(frame);
         if (f >= 2 * kFrames) square += std::pow(deviationOf(out, 1.0), 2) / double(256 - 2 * kFrames);
     }
-    // An exponential mean of share 1/32 keeps 1/63 of the variance; the bounds may cost half as much again.
+    // An exponential mean of share 1/32 keeps 1/63 of the variance; noise of half of the light and more, as here, is taken for
+    // another light now and then, which costs as much again. A quarter of that of three frames, which the bounds are drawn about.
     const double unclamped = 0.25 / 3.0 / (2 * kFrames - 1);
-    CHECK(square < 1.5 * unclamped);
+    CHECK(square < 2.5 * unclamped);
 }
 
 TEST_CASE("500 frames: no drift", "[temporal_history][large]") {
