@@ -55,7 +55,9 @@ public:
 
 private:
     void light(Executor& executor, InterleavedGather& passes, JointBilateral* bilateral, const Planes& irradiance,
-               const Gather& gather);
+               const Planes& validity, const Gather& gather);
+    // The filter makes the picture, and validity beside it, of what it has read.
+    bool filtersLast() const { return options_.filters() && !options_.half; }
 
     Device& device_;
     InterleavedOptions options_;
