@@ -42,15 +42,15 @@ LW_FN real cluster_visibility(lw_maps maps, int cluster, const lw_surface s) {
 
 // The cluster whose visibility is at hand.
 typedef struct {
-    int cluster;
+    float cluster;
     real seen;
 } lw_current;
 
 LW_FN real visibility_of(lw_current* current, lw_maps maps, __global const float* vpl, const lw_surface s) {
-    const int cluster = (int)vpl[11];
+    const float cluster = vpl[11];
     if (cluster != current->cluster) {
         current->cluster = cluster;
-        current->seen = cluster_visibility(maps, cluster, s);
+        current->seen = cluster_visibility(maps, (int)cluster, s);
     }
     return current->seen;
 }
@@ -68,7 +68,7 @@ LW_FN rgb gather_subset(const lw_surface s, __global const float* vpls, lw_subse
                         __global const uint* masks, lw_vpl_tiles tiles, int tile, lw_maps maps) {
     rgb e = {(real)0.0f, (real)0.0f, (real)0.0f};
     const lw_surface away = turned_away(s);
-    lw_current current = {-1, (real)1.0f};
+    lw_current current = {-1.0f, (real)1.0f};
     vpls += 12 * subset * order.capacity;
     if (tiles.words == 0) {
         for (int k = 0; k < order.capacity; k += 2)
@@ -107,7 +107,7 @@ __kernel void clustered_gather_gather(__global const float* position, int4 posit
         load_dealt(n[a], normal, normalRow + a * normalLayout.z, x, width);
     }
 
-    int rejectedHere = 0, saturatedHere = 0;
+    lanei rejectedHere = (lanei)0, saturatedHere = (lanei)0;
     for (int j = 0; j < LW_INTERLEAVE; ++j) {  // not unrolled: seconds of compilation
         const lw_surface s = make_surface(p[0][j], p[1][j], p[2][j], n[0][j], n[1][j], n[2][j]);
         rgb sum = {(real)0.0f, (real)0.0f, (real)0.0f};
@@ -116,13 +116,13 @@ __kernel void clustered_gather_gather(__global const float* position, int4 posit
             sum = gather_subset(s, vpls, order, subset, masks, tiles, tile, maps);
         }
         const mask saturated = finish_irradiance(sum, s.valid, &e[0][j], &e[1][j], &e[2][j]);
-        if (any_(s.rejected)) rejectedHere += count_(s.rejected);
-        if (any_(saturated)) saturatedHere += count_(saturated);
+        rejectedHere += selecti_((lanei)0, (lanei)1, s.rejected);
+        saturatedHere += selecti_((lanei)0, (lanei)1, saturated);
     }
     LW_UNROLL for (int a = 0; a < 3; ++a)
         store_dealt(e[a], irradiance, irradianceLayout.x + a * irradianceLayout.z + y * irradianceLayout.y, x, width);
-    if (rejectedHere) atomic_add(counts, rejectedHere);
-    if (saturatedHere) atomic_add(counts + 2, saturatedHere);
+    if (any_(to_mask(rejectedHere))) atomic_add(counts, sum_(rejectedHere));
+    if (any_(to_mask(saturatedHere))) atomic_add(counts + 2, sum_(saturatedHere));
 }
 
 // For debugging: one work-item = LW_WIDTH pixels (x) of one cluster's row (y): how far the gather takes the surface to be

@@ -55,7 +55,7 @@ __kernel void interleaved_gather_gather(__global const float* position, int4 pos
         load_dealt(n[a], normal, normalRow + a * normalLayout.z, x, width);
     }
 
-    int rejectedHere = 0, saturatedHere = 0;
+    lanei rejectedHere = (lanei)0, saturatedHere = (lanei)0;
     // Not unrolled: at interleave 8 eight copies of the loop over VPLs cost seconds of compilation.
     for (int j = 0; j < LW_INTERLEAVE; ++j) {
         const lw_surface s = make_surface(p[0][j], p[1][j], p[2][j], n[0][j], n[1][j], n[2][j]);
@@ -65,13 +65,13 @@ __kernel void interleaved_gather_gather(__global const float* position, int4 pos
             sum = gather_subset(s, vpls, order, subset, masks, tiles, tile);
         }
         const mask saturated = finish_irradiance(sum, s.valid, &e[0][j], &e[1][j], &e[2][j]);
-        if (any_(s.rejected)) rejectedHere += count_(s.rejected);
-        if (any_(saturated)) saturatedHere += count_(saturated);
+        rejectedHere += selecti_((lanei)0, (lanei)1, s.rejected);
+        saturatedHere += selecti_((lanei)0, (lanei)1, saturated);
     }
     LW_UNROLL for (int a = 0; a < 3; ++a)
         store_dealt(e[a], irradiance, irradianceLayout.x + a * irradianceLayout.z + y * irradianceLayout.y, x, width);
-    if (rejectedHere) atomic_add(counts, rejectedHere);
-    if (saturatedHere) atomic_add(counts + 2, saturatedHere);
+    if (any_(to_mask(rejectedHere))) atomic_add(counts, sum_(rejectedHere));
+    if (any_(to_mask(saturatedHere))) atomic_add(counts + 2, sum_(saturatedHere));
 }
 
 // One work-item = LW_WIDTH adjacent pixels: 1 where the gather lit a surface, 0 elsewhere.

@@ -82,7 +82,7 @@ LW_FN void accumulate(lw_sum* sum, real w, real r, real g, real b) {
 // likeness of the normals alone, so that such a pixel is lit like its neighbourhood and not black.
 LW_FN void add_sample(lw_sum* sum, lw_sum* rest, const lw_surface s, const lw_surface q, real tent, real r, real g, real b) {
     const real t = select_((real)0.0f, tent, q.valid);
-    accumulate(sum, t * edge_weight(s, q.px, q.py, q.pz, q.nx, q.ny, q.nz, (real)1.0f), r, g, b);
+    accumulate(sum, t * edge_weight(edges_of(s, (real)1.0f), q.px, q.py, q.pz, q.nx, q.ny, q.nz), r, g, b);
     const real likeness = fmax(fma_(q.nx, s.nx, fma_(q.ny, s.ny, q.nz * s.nz)), (real)0.0f) + 1e-3f;
     accumulate(rest, t * likeness, r, g, b);
 }

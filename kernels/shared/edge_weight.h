@@ -14,16 +14,30 @@
 // Lower: light bleeds around corners and over small curvature. Higher: noise on normal-mapped surfaces.
 #define LW_EDGE_NORMAL_COSINE 0.8f
 
-// `scale` brings the neighbour's normal to unit length. A raw neighbour is given the pixel's own scale: a
-// G-buffer's normals share one length (or nearly), and the pixel itself then has a weight of exactly 1.
-LW_FN real edge_weight(const lw_surface s, real qx, real qy, real qz, real mx, real my, real mz, real scale) {
-    const real dx = qx - s.px, dy = qy - s.py, dz = qz - s.pz;
+// A pixel as its neighbours are measured by it: its place, its normal times a factor that makes the product with a
+// neighbour's normal fall from 1 to 0 over the range of the weight, and what that factor makes of the slope.
+typedef struct {
+    real px, py, pz;
+    real tx, ty, tz;
+    real slope2;
+} lw_edges;
+
+// `scale` brings the neighbours' normals to unit length. Raw neighbours are given the pixel's own scale: a
+// G-buffer's normals share one length (or nearly), and the pixel itself then has a weight of 1.
+LW_FN lw_edges edges_of(const lw_surface s, real scale) {
+    const real factor = scale * (1.0f / (1.0f - LW_EDGE_NORMAL_COSINE));
+    const lw_edges e = {s.px, s.py, s.pz, s.nx * factor, s.ny * factor, s.nz * factor, sq(LW_EDGE_SLOPE * factor)};
+    return e;
+}
+
+LW_FN real edge_weight(const lw_edges e, real qx, real qy, real qz, real mx, real my, real mz) {
+    const real dx = qx - e.px, dy = qy - e.py, dz = qz - e.pz;
     const real d2 = fma_(dx, dx, fma_(dy, dy, dz * dz));
-    const real off = fma_(dx, s.nx, fma_(dy, s.ny, dz * s.nz));
-    const real agreement = scale * fma_(mx, s.nx, fma_(my, s.ny, mz * s.nz));
-    const real w = fmin((agreement - LW_EDGE_NORMAL_COSINE) * (1.0f / (1.0f - LW_EDGE_NORMAL_COSINE)), (real)1.0f);
-    // NaN in a neighbour fails both comparisons.
-    return select_((real)0.0f, w, and_(off * off <= (LW_EDGE_SLOPE * LW_EDGE_SLOPE) * d2, w > 0.0f));
+    const real off = fma_(dx, e.tx, fma_(dy, e.ty, dz * e.tz));
+    const float least = -LW_EDGE_NORMAL_COSINE / (1.0f - LW_EDGE_NORMAL_COSINE);
+    const real w = fma_(mx, e.tx, fma_(my, e.ty, fma_(mz, e.tz, least)));
+    // NaN in a neighbour fails the comparison.
+    return select_((real)0.0f, fmin(w, (real)1.0f), and_(off * off <= e.slope2 * d2, w > 0.0f));
 }
 
 #endif

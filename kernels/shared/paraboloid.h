@@ -61,7 +61,7 @@ LW_FN laneu pack_normal(real x, real y, real z) {
 }
 // Component 0, 1 or 2, within 1/1022.
 LW_FN real packed_normal(lanei bits, int component) {
-    return to_real(((bits >> (10 * component)) & 1023) - 512) * (1.0f / 511.0f);
+    return fma_(to_real(bits & (1023 << (10 * component))), 1.0f / (float)(1 << (10 * component)), -512.0f) * (1.0f / 511.0f);
 }
 // Albedo in [0,1], 10 bits a channel from the lowest; and back.
 LW_FN laneu pack_albedo(real r, real g, real b) {
@@ -103,7 +103,7 @@ LW_FN lw_map_receiver paraboloid_receiver(lw_paraboloid map, int size, real px, 
     // receiver's own sheet, a ceiling of no thickness: there the horizon runs through the texel, which saw the sky.
     // Farther behind, normal maps and smooth normals on coarse facets are the usual case, and the texel is asked.
     const real behind = fma_(r.qx, r.nx, fma_(r.qy, r.ny, r.qz * r.nz));
-    const mask faces = or_(behind <= 0.0f, behind > fmax(LW_PARABOLOID_BIAS * r.distance, (real)(2.0f * map.axisX.w)));
+    const mask faces = or_(behind <= 0.0f, and_(behind > LW_PARABOLOID_BIAS * r.distance, behind > 2.0f * map.axisX.w));
     // Strict: also false at the origin, where there is no direction, and for what is not a number.
     r.inside = and_(r.qz > LW_PARABOLOID_RIM_COSINE * r.distance, faces);
     const real denominator = select_((real)(1.0f), (r.distance + r.qz) * paraboloid_step(size), r.inside);
@@ -140,9 +140,9 @@ LW_FN mask paraboloid_texel_lit(__global const float* records, int firstRecord, 
 // Hard: the nearest texel decides. Where the map saw nothing: lit. Beyond the rim: dark, as behind the surface that the medoid
 // lies on; lit there, clusters with members on either side of an edge shine through walls. `firstRecord`: of the map.
 LW_FN mask paraboloid_sees(__global const float* records, int firstRecord, int size, lw_map_receiver r) {
-    const real last = (float)(size - 1);
-    const lanei x = to_lanei(fmin(fmax(r.x + 0.5f, 0.0f), last));
-    const lanei y = to_lanei(fmin(fmax(r.y + 0.5f, 0.0f), last));
+    // Rounding may leave the map by less than a texel: below, the conversion towards zero brings it back.
+    const lanei x = min(to_lanei(r.x + 0.5f), (lanei)(size - 1));
+    const lanei y = min(to_lanei(r.y + 0.5f), (lanei)(size - 1));
     return and_(r.inside, paraboloid_texel_lit(records, firstRecord, size, x, y, r));
 }
 

@@ -40,7 +40,7 @@ LW_FN void add_light(rgb* e, real w, __global const float* vpl) {
 
 // Takes the lowest bit out of `bits` and returns its number.
 LW_FN int take_lowest(uint* bits) {
-    const int lowest = 31 - (int)clz(*bits & (0u - *bits));
+    const int lowest = (int)popcount(~*bits & (*bits - 1u));
     *bits &= *bits - 1u;
     return lowest;
 }

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "compute/device.h"
+#include "shared/filter_rows.h"
 
 namespace lightwell {
 namespace {
@@ -91,9 +92,12 @@ void InterleavedGather::recordGather(Executor& executor, const Planes& position,
 }
 
 void InterleavedGather::recordFilter(Executor& executor, const Planes& position, const Planes& normal,
-                                     const Planes& irradiance, const Planes& filtered) {
-    executor.run("interleaved_gather.filter", *filter_, itemsOver(position, filter_->width()), groupOf(*filter_),
-                 position, normal, cl_int(position.width), cl_int(position.height), irradiance, filtered);
+                                     const Planes& irradiance, const Planes& filtered, const Planes& validity) {
+    const std::uint32_t pixels = filter_->width();
+    const Range items{(position.width + pixels - 1) / pixels, (position.height + LW_FILTER_ROWS - 1) / LW_FILTER_ROWS};
+    // A kernel's argument must be some memory, also where it is not written.
+    executor.run("interleaved_gather.filter", *filter_, items, groupOf(*filter_), position, normal, cl_int(position.width),
+                 cl_int(position.height), irradiance, filtered, validity ? validity : filtered, cl_int(validity ? 1 : 0));
 }
 
 void InterleavedGather::recordValidity(Executor& executor, const Planes& position, const Planes& normal,

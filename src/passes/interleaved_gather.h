@@ -49,9 +49,10 @@ public:
     // the pixels with neither a surface nor a zero normal, counts[2] by those brought down to LW_LARGEST_IRRADIANCE.
     void recordGather(Executor& executor, const Planes& position, const Planes& normal, const Buffer& vpls,
                       lw_subset_order order, const Buffer& masks, const Planes& irradiance, const Buffer& counts);
-    // Pass "interleaved_gather.filter"; irradiance and filtered are different images. interleave > 1 only.
+    // Pass "interleaved_gather.filter"; irradiance and filtered are different images. interleave > 1 only. `validity`,
+    // where wanted, becomes what recordValidity makes it.
     void recordFilter(Executor& executor, const Planes& position, const Planes& normal, const Planes& irradiance,
-                      const Planes& filtered);
+                      const Planes& filtered, const Planes& validity = {});
     // Pass "interleaved_gather.validity": 1 on surfaces, 0 elsewhere.
     void recordValidity(Executor& executor, const Planes& position, const Planes& normal, const Planes& validity);
 

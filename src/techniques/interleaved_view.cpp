@@ -71,14 +71,14 @@ void InterleavedView::render(Executor& executor, const View& view, const LWGBuff
     isRendered_ = true;
     const Planes irradiance = irradiance_.begin(executor, view, output.irradiance, 3, "output.irradiance");
     const Planes validity = validity_.begin(executor, view, output.validity, 1, "output.validity");
-    if (irradiance) light(executor, passes, gbuffer.camera, irradiance, gather);
-    if (validity) passes.gather.recordValidity(executor, gbuffer_.position, gbuffer_.normal, validity);
+    if (irradiance) light(executor, passes, gbuffer.camera, irradiance, validity, gather);
+    if (validity && !(irradiance && filtersLast())) passes.gather.recordValidity(executor, gbuffer_.position, gbuffer_.normal, validity);
     irradiance_.end(executor);
     validity_.end(executor);
 }
 
 void InterleavedView::light(Executor& executor, const Passes& passes, const LWCamera& camera, const Planes& irradiance,
-                            const Gather& gather) {
+                            const Planes& validity, const Gather& gather) {
     Planes position = gbuffer_.position, normal = gbuffer_.normal;
     const bool half = options_.half, filter = options_.filters();
     executor.fill("interleaved_gather.counts", counts_, 0, 0, counts_.bytes());
@@ -96,7 +96,7 @@ void InterleavedView::light(Executor& executor, const Passes& passes, const LWCa
     Planes lit = gathered;
     if (filter) {
         lit = half ? filtered_.planes(position.width, position.height) : made;
-        passes.gather.recordFilter(executor, position, normal, gathered, lit);
+        passes.gather.recordFilter(executor, position, normal, gathered, lit, filtersLast() ? validity : Planes{});
     }
     if (half)
         passes.bilateral->recordUpsample(executor, gbuffer_.position, gbuffer_.normal, position, normal, lit, made, counts_);

@@ -73,7 +73,10 @@ public:
                                        lw_subset_order order);
 
 private:
-    void light(Executor& executor, const Passes& passes, const LWCamera& camera, const Planes& irradiance, const Gather& gather);
+    void light(Executor& executor, const Passes& passes, const LWCamera& camera, const Planes& irradiance, const Planes& validity,
+               const Gather& gather);
+    // The filter makes validity, too, of what it has read.
+    bool filtersLast() const { return options_.filters() && !options_.half; }
 
     Device& device_;
     InterleavedOptions options_;

@@ -256,6 +256,22 @@ TEST_CASE("a constant image passes the filter unchanged, and nothing crosses an 
         for (std::uint32_t x = 0; x < 96; ++x) REQUIRE(slab.get(x, y).x == Approx(light.get(x, y).x).epsilon(1e-6));
 }
 
+TEST_CASE("a neighbour without a usable normal takes no part in the filter", "[interleaved_gather]") {
+    const auto width = GENERATE(1u, 16u);
+    KernelRig rig(width);
+    Image position(48, 16), normal(48, 16), light(48, 16);
+    lookUp(position, normal);
+    for (float& v : light.planes) v = 0.7f;
+    for (const std::uint32_t x : {5u, 20u, 21u}) {
+        normal.set(x, 7, {kNaN, kNaN, kNaN});
+        light.set(x, 7, {0, 0, 0});
+    }
+    const Image filtered = filterOn(rig, position, normal, light, 4);
+    for (std::uint32_t y = 0; y < 16; ++y)
+        for (std::uint32_t x = 0; x < 48; ++x)
+            REQUIRE(filtered.get(x, y).x == Approx(std::isnan(normal.get(x, y).x) ? 0.0 : 0.7).epsilon(1e-6));
+}
+
 TEST_CASE("validity is one on surfaces and zero elsewhere", "[interleaved_gather]") {
     const auto width = GENERATE(1u, 16u);
     KernelRig rig(width);
@@ -264,7 +280,13 @@ TEST_CASE("validity is one on surfaces and zero elsewhere", "[interleaved_gather
     const Guarded p = rig.uploadPlanes(position.planes, 33, 21, 3, kNaN), nr = rig.uploadPlanes(normal.planes, 33, 21, 3, kNaN);
     const Guarded out = rig.makePlanes(33, 21, 1);
     InterleavedGather pass(rig.device(), 4);
-    pass.recordValidity(rig.executor(), rig.planes(p, 33, 21, 3), rig.planes(nr, 33, 21, 3), rig.planes(out, 33, 21, 1));
+    if (GENERATE(false, true)) {
+        const Guarded light = rig.makePlanes(33, 21, 3), filtered = rig.makePlanes(33, 21, 3);
+        pass.recordFilter(rig.executor(), rig.planes(p, 33, 21, 3), rig.planes(nr, 33, 21, 3), rig.planes(light, 33, 21, 3),
+                          rig.planes(filtered, 33, 21, 3), rig.planes(out, 33, 21, 1));
+    } else {
+        pass.recordValidity(rig.executor(), rig.planes(p, 33, 21, 3), rig.planes(nr, 33, 21, 3), rig.planes(out, 33, 21, 1));
+    }
     rig.device().finish();
     const auto validity = rig.downloadPlanes(rig.planes(out, 33, 21, 1));
     for (std::uint32_t y = 0; y < 21; ++y)

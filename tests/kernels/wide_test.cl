@@ -156,4 +156,5 @@ __kernel void wide_traps(__global const float* xs, __global int* raw, __global i
     forms[3] = all_(all);
     forms[4] = count_(all);
     forms[5] = count_(not_(all));
+    forms[6] = sum_(lanei_iota() - 3);
 }

@@ -237,13 +237,14 @@ TEST_CASE("raw operators on masks go wrong where the forms do not", "[wide]") {
     const auto width = GENERATE(1u, 4u, 8u, 16u);
     CAPTURE(width);
     KernelRig rig(width);
-    const Guarded raw = rig.make<cl_int>(3), forms = rig.make<cl_int>(6);
+    const Guarded raw = rig.make<cl_int>(3), forms = rig.make<cl_int>(7);
     rig.run("test.traps", rig.kernel(kProgram, "wide_traps"), {1, 1}, {1, 1},
             rig.upload(randomFloats(13, 0.0f, 1.0f)), raw, forms);
     const bool vector = width > 1;
     // any() tests the sign bit, ~1 is still true, true converts to 1 or -1.
     CHECK(rig.download<cl_int>(raw) == std::vector<cl_int>{vector, !vector, vector ? -1 : 1});
-    CHECK(rig.download<cl_int>(forms) == std::vector<cl_int>{1, 0, 1, 1, cl_int(width), 0});
+    CHECK(rig.download<cl_int>(forms) == std::vector<cl_int>{1, 0, 1, 1, cl_int(width), 0,
+                                                               cl_int(width * (width - 1) / 2) - 3 * cl_int(width)});
 }
 
 TEST_CASE("whole kernels give the same bits at every width", "[wide]") {
