@@ -25,23 +25,8 @@ Range itemsOver(const Planes& planes, const Kernel& kernel) {
     return {(planes.width + kernel.width() - 1) / kernel.width(), planes.height};
 }
 
-std::uint64_t rowStride(std::uint32_t width) { return paddedWidth(width) + 2 * LW_PYRAMID_BORDER; }
-
-// The levels' planes without memory, one behind the other; returns the floats they take.
 std::uint64_t layOut(std::uint32_t width, std::uint32_t height, const PyramidOptions& options, std::vector<Planes>* levels) {
-    std::uint64_t at = 0;
-    for (std::uint32_t k = options.firstLevel; k <= options.lastLevel; ++k) {
-        Planes planes;
-        planes.width = PyramidLevels::sizeAt(width, k);
-        planes.height = PyramidLevels::sizeAt(height, k);
-        planes.count = options.planes();
-        planes.rowStride = std::int64_t(rowStride(planes.width));
-        planes.planeStride = planes.rowStride * planes.height;
-        planes.offset = std::int64_t(at) + LW_PYRAMID_BORDER;
-        at += std::uint64_t(planes.planeStride) * planes.count;
-        if (levels) levels->push_back(planes);
-    }
-    return at;
+    return layOutLevels(width, height, {options.firstLevel, options.lastLevel}, options.planes(), 16, LW_PYRAMID_BORDER, levels);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "compute/buffer.h"
 #include "compute/executor.h"
+#include "passes/level_planes.h"
 #include "shared/pyramid_types.h"
 
 namespace lightwell {
@@ -36,7 +37,7 @@ public:
     PyramidLevels() = default;
     PyramidLevels(Device& device, std::uint32_t maxWidth, std::uint32_t maxHeight, const PyramidOptions& options);
 
-    static std::uint32_t sizeAt(std::uint32_t base, std::uint32_t level) { return (base + (1u << level) - 1) >> level; }
+    static std::uint32_t sizeAt(std::uint32_t base, std::uint32_t level) { return levelSize(base, level); }
     // What an allocation takes.
     static std::uint64_t estimateBytes(std::uint32_t maxWidth, std::uint32_t maxHeight, const PyramidOptions& options);
 

@@ -1,5 +1,6 @@
 // One line per technique.
 #include "techniques/rsm.h"
+#include "techniques/screen_space.h"
 #include "techniques/ssvp.h"
 #include "techniques/technique.h"
 
@@ -9,6 +10,7 @@ const std::vector<TechniqueEntry>& techniqueEntries() {
     static const std::vector<TechniqueEntry> entries = {
         rsmEntry(),
         ssvpEntry(),
+        screenSpaceEntry(),
     };
     return entries;
 }
