@@ -484,6 +484,28 @@ typedef struct LWFallbackDesc {
 
 LW_API void lwDefaultFallback(LWFallbackDesc* desc);
 
+/** Resolution of the first level that technique "screen_space" gathers. */
+typedef enum LWStart { LW_START_FULL = 0, LW_START_HALF = 1, LW_START_QUARTER = 2 } LWStart;
+
+/** Technique "screen_space": light between the surfaces that the camera sees, from LWGBuffer::directRadiance, without
+ *  visibility. Needs the G-buffer's camera, also with positions. Pixels of `receiveMask` receive and send nothing. */
+typedef struct LWScreenSpaceDesc {
+    uint32_t structSize;
+    LWStart start;           /**< each level has half the columns and rows of the one before */
+    uint32_t levels;         /**< 1 .. 6. Reach in pixels: 2 radius * 2^(levels - 1) * (1, 2, 4 by `start`) */
+    uint32_t samples;        /**< per texel and level: 8, 16, 32, 64, 128, 256 */
+    float radius;            /**< 1 .. 64: inner radius of the ring that a level samples, the outer one being twice that, in
+                                  texels of the level for an image 720 rows high; of another, in proportion to its rows */
+    uint32_t interleave;     /**< n of n x n: so many texels along each axis have sample patterns of their own, then a filter
+                                  of that size; 1, 2, 4 */
+    uint32_t bounded;        /**< 1: form factors of discs; 0: of points, with spikes */
+    uint32_t cameras;        /**< 1: also the light between what each of LWFrame::sourceViews shows; the larger of both where
+                                  it shows the view's own surface. A view takes nothing from a source with its own handle */
+    uint32_t seed;           /**< shifts the sample patterns; 0: unshifted */
+} LWScreenSpaceDesc;
+
+LW_API void lwDefaultScreenSpace(LWScreenSpaceDesc* desc);
+
 /* A technique's parameters, described for tools: the command line's --set and every chart read them
  * here, so a new technique needs no other registration. */
 typedef enum LWParameterKind {
@@ -541,6 +563,7 @@ LW_API LWStatus lwCreateTechnique(LWDevice device, const char* name, const void*
 LW_API LWStatus lwCreateRsm(LWDevice device, const LWRsmDesc* desc, LWTechnique* technique);
 LW_API LWStatus lwCreateSsvp(LWDevice device, const LWSsvpDesc* desc, LWTechnique* technique);
 LW_API LWStatus lwCreateFallback(LWDevice device, const LWFallbackDesc* desc, LWTechnique* technique);
+LW_API LWStatus lwCreateScreenSpace(LWDevice device, const LWScreenSpaceDesc* desc, LWTechnique* technique);
 LW_API LWStatus lwRetainTechnique(LWTechnique technique);
 LW_API LWStatus lwReleaseTechnique(LWTechnique technique);
 

@@ -102,6 +102,10 @@ LWStatus lwCreateFallback(LWDevice device, const LWFallbackDesc* desc, LWTechniq
     return createTechnique("lwCreateFallback", device, "fallback", desc, technique);
 }
 
+LWStatus lwCreateScreenSpace(LWDevice device, const LWScreenSpaceDesc* desc, LWTechnique* technique) {
+    return createTechnique("lwCreateScreenSpace", device, "screen_space", desc, technique);
+}
+
 LWStatus lwRetainTechnique(LWTechnique technique) {
     return enter("lwRetainTechnique",
                  [&](Call&) { retainHandle(HandleKind::kTechnique, technique, "technique"); });
@@ -147,6 +151,7 @@ LWStatus lwEstimateFrameMemory(LWDevice device, const char* name, const void* de
             if (image.width > kMaxSide || image.height > kMaxSide)
                 fail(LW_ERROR_INVALID_ARGUMENT, "frame.sourceViews[", i, "].gbuffer.normal: expected at most ", kMaxSide,
                      " pixels a side, got ", image.width, " x ", image.height);
+            shape.sources.emplace_back(image.width, image.height);
             shape.sourcePixels += (std::uint64_t(image.width) + 15) / 16 * 16 * image.height;
         }
         for (std::uint32_t l = 0; l < own.get().lightCount; ++l)

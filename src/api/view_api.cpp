@@ -26,7 +26,9 @@ LWStatus lwCreateView(LWDevice device, const LWViewDesc* desc, LWView* view) {
         checkSize(own.maxWidth, own.maxHeight, kMaxViewSide, kMaxViewSide,
                   "desc.maxWidth, desc.maxHeight");
         auto object = std::make_shared<ViewObject>(call.owner(), own.maxWidth, own.maxHeight);
+        const std::shared_ptr<View> made = object->view;
         *view = static_cast<LWView>(addHandle(HandleKind::kView, std::move(object)));
+        made->handle = *view;
     });
 }
 

@@ -119,6 +119,23 @@ bool Camera::project(const glm::dvec3& position, glm::dvec2& pixel) const {
     return std::isfinite(pixel.x) && std::isfinite(pixel.y);
 }
 
+LwScreenCamera Camera::texelsOf(std::uint32_t factor) const {
+    const glm::dmat4 rows = glm::transpose(worldToClip_);
+    // With v = p - eye: row.(p, 1) = row.xyz.v + row.(eye, 1).
+    const auto relative = [&](const glm::dvec4& row) {
+        return glm::dvec4(glm::dvec3(row), glm::dot(row, glm::dvec4(eye_, 1.0)));
+    };
+    const glm::dvec4 x = relative(rows[0]), y = relative(rows[1]), w = relative(rows[3]);
+    const glm::dvec4 column = (x + w) * (0.5 * width_ / factor), line = (w - y) * (0.5 * height_ / factor);
+    LwScreenCamera camera{};
+    camera.eye = float4(eye_.x, eye_.y, eye_.z, pixelArea() * factor * factor);
+    camera.axis = float4(axis_.x, axis_.y, axis_.z, perspective_ ? 1.0 : 0.0);
+    camera.rowX = float4(column.x, column.y, column.z, column.w);
+    camera.rowY = float4(line.x, line.y, line.z, line.w);
+    camera.rowW = float4(w.x, w.y, w.z, w.w);
+    return camera;
+}
+
 double Camera::footprint(double axialDistance) const {
     return std::sqrt(pixelArea()) * (perspective_ ? std::abs(axialDistance) : 1.0);
 }

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "lightwell/lightwell.h"
+#include "shared/screen_types.h"
 #include "shared/unproject_types.h"
 
 namespace lightwell {
@@ -31,6 +32,7 @@ inline lw_float4 float4(double x, double y, double z, double w) {
 
 class Camera {
 public:
+    Camera() = default;  // to be assigned
     // Throws INVALID_ARGUMENT naming `name`.view or `name`.projection when a matrix is not finite or not
     // invertible, or the view is not affine.
     Camera(const LWCamera& camera, std::uint32_t width, std::uint32_t height, const std::string& name);
@@ -53,6 +55,8 @@ public:
     // Distance along the axis from the eye, and a pixel's width there.
     double axial(const glm::dvec3& position) const { return glm::dot(position - eye_, axis_); }
     double footprint(double axialDistance) const;
+    // Where points lie among texels of `factor` x `factor` pixels.
+    LwScreenCamera texelsOf(std::uint32_t factor) const;
     // From view space.
     glm::dvec3 positionFromView(const glm::dvec3& p) const { return origin_ + viewToWorld_ * p; }
     glm::dvec3 directionFromView(const glm::dvec3& d) const { return viewToWorld_ * d; }
@@ -70,7 +74,7 @@ private:
     glm::dvec3 origin_{0.0};       // of view space, in the world
     glm::dvec3 eye_{0.0}, axis_{0.0};
     ImageLinear<glm::dvec3> rays_;
-    double width_, height_;
+    double width_ = 0.0, height_ = 0.0;
     bool perspective_ = false;
     std::string name_;
 };

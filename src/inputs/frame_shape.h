@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
+#include <vector>
 
 namespace lightwell {
 
@@ -15,6 +17,7 @@ struct FrameShape {
     std::uint32_t triangles = 0;     // of the host's geometry
     std::uint32_t surfels = 0;       // of the host's geometry
     std::uint64_t sourcePixels = 0;  // of all source views, rows rounded up to 16
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> sources;  // width and height of each source view
     bool uploads = false;            // host memory goes through copies on the device (no unified memory)
     void addMap(std::uint64_t width, std::uint64_t height) {
         texels += width * height;

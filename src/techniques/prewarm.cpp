@@ -20,7 +20,7 @@ LWImage imageOf(Pixels& pixels, LWFormat format) {
 
 // A floor under a camera that looks down on it, as interleaved images: everything has to be unpacked.
 struct Inputs {
-    Pixels position{}, normal{}, flux{}, depth{}, irradiance{}, validity{};
+    Pixels position{}, normal{}, flux{}, depth{}, mask{}, irradiance{}, validity{};
     LWCamera camera{};
     // One triangle that fills a map, and slivers: kernels may tell large ones from small ones.
     std::array<float, 27> vertices{{-9, 1, -9, 9, 1, -9, 0, 1, 9, 0, 0.5f, 0, 0.001f, 0.5f, 0, 0, 0.5f, 0.001f,
@@ -73,6 +73,7 @@ void exerciseTechnique(Executor& executor, Technique& technique) {
         gbuffer.structSize = sizeof gbuffer;
         gbuffer.normal = imageOf(inputs.normal, LW_FORMAT_FLOAT3);
         gbuffer.directRadiance = imageOf(inputs.flux, LW_FORMAT_FLOAT3);
+        if (byDepth) gbuffer.receiveMask = imageOf(inputs.mask, LW_FORMAT_UINT8);
         gbuffer.camera = inputs.camera;
         if (byDepth) {
             rsm.depth = gbuffer.depth = imageOf(inputs.depth, LW_FORMAT_FLOAT1);

@@ -1,6 +1,7 @@
 // One line per technique.
 #include "techniques/fallback.h"
 #include "techniques/rsm.h"
+#include "techniques/screen_space.h"
 #include "techniques/ssvp.h"
 #include "techniques/technique.h"
 
@@ -10,6 +11,7 @@ const std::vector<TechniqueEntry>& techniqueEntries() {
     static const std::vector<TechniqueEntry> entries = {
         rsmEntry(),
         ssvpEntry(),
+        screenSpaceEntry(),
         fallbackEntry(),
     };
     return entries;

@@ -1,0 +1,196 @@
+// Frame and view parts, report and registration; the table of parameters is screen_space_parameters.cpp's.
+#include "techniques/screen_space.h"
+
+#include <string>
+#include <utility>
+
+#include "compute/device.h"
+#include "compute/error.h"
+#include "compute/raw_enum.h"
+#include "inputs/image_access.h"
+#include "inputs/output_target.h"
+#include "techniques/prewarm.h"
+#include "techniques/screen_space_parameters.h"
+#include "techniques/screen_view.h"
+#include "techniques/technique_entry.h"
+
+namespace lightwell {
+namespace {
+
+constexpr std::uint32_t kMaxSide = 16384;
+
+ScreenOptions optionsOf(const LWScreenSpaceDesc& desc) {
+    ScreenOptions options;
+    options.start = std::uint32_t(desc.start);
+    options.levels = desc.levels;
+    options.samples = desc.samples;
+    options.radius = double(desc.radius);
+    options.interleave = desc.interleave;
+    options.bounded = desc.bounded != 0;
+    options.cameras = desc.cameras != 0;
+    options.seed = desc.seed;
+    return options;
+}
+
+std::string sourceName(std::uint32_t i) { return "frame.sourceViews[" + std::to_string(i) + "].gbuffer"; }
+
+// A source view's images have one size, that of its normals.
+View sourceView(const LWGBuffer& gbuffer, const std::string& name) {
+    const LWImage& image = gbuffer.normal;
+    if (imageAbsent(image) || image.width == 0 || image.height == 0 || image.width > kMaxSide || image.height > kMaxSide)
+        fail(LW_ERROR_INVALID_ARGUMENT, name, ".normal: expected an image of 1 .. ", kMaxSide, " pixels a side, got ",
+             image.width, " x ", image.height);
+    return View(image.width, image.height);
+}
+
+void checkOutputs(Device& device, const View& view, const LWOutput& output) {
+    const std::pair<const LWImage*, const char*> unsupported[] = {{&output.ambientOcclusion, "ambientOcclusion"},
+                                                                  {&output.specularRadiance, "specularRadiance"},
+                                                                  {&output.shadow, "shadow"}};
+    for (const auto& [image, name] : unsupported)
+        if (rawEnum(image->format) != LW_FORMAT_NONE)
+            fail(LW_ERROR_UNSUPPORTED, "output.", name, ": technique screen_space makes irradiance and validity only");
+    if (imageAbsent(output.irradiance) && imageAbsent(output.validity))
+        fail(LW_ERROR_INVALID_ARGUMENT, "output: expected irradiance or validity, got neither");
+    OutputTarget::check(device, view, output.irradiance, 3, "output.irradiance");
+    OutputTarget::check(device, view, output.validity, 1, "output.validity");
+}
+
+// What the host gave and this technique does not read.
+std::vector<LWChoice> unusedInputs(const LWFrame& frame, bool cameras) {
+    constexpr const char* kReason = "not used: technique screen_space takes light from what cameras see only";
+    std::vector<LWChoice> unused;
+    if (frame.sourceViewCount && !cameras) unused.push_back({"frame.sourceViews", "not used: parameter cameras is off"});
+    if (frame.lightCount) unused.push_back({"frame.lights", kReason});
+    if (frame.vplCount) unused.push_back({"frame.vpls", kReason});
+    if (frame.geometry) unused.push_back({"frame.geometry", kReason});
+    if (frame.blockerCount) unused.push_back({"frame.blockers", kReason});
+    if (frame.environment[0] > 0.0f || frame.environment[1] > 0.0f || frame.environment[2] > 0.0f)
+        unused.push_back({"frame.environment", kReason});
+    return unused;
+}
+
+class ScreenSpaceTechnique final : public Technique {
+public:
+    ScreenSpaceTechnique(Device& device, const LWScreenSpaceDesc& desc)
+        : device_(device), desc_(desc), options_(optionsOf(desc)), passes_(device, options_) {}
+
+    // The other cameras' light.
+    void update(Executor& executor, const LWFrame& frame) override {
+        const std::uint32_t count = desc_.cameras ? frame.sourceViewCount : 0;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const LWGBuffer& gbuffer = *frame.sourceViews[i].gbuffer;
+            ScreenView::check(device_, sourceView(gbuffer, sourceName(i)), gbuffer, sourceName(i));
+        }
+        unused_ = unusedInputs(frame, desc_.cameras != 0);
+        states_.purge();
+        states_.each([](ViewState& state) { state.screen.startFrame(); });
+        sources_.resize(count);
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const LWGBuffer& gbuffer = *frame.sourceViews[i].gbuffer;
+            const View view = sourceView(gbuffer, sourceName(i));
+            Source& source = sources_[i];
+            if (!source.screen || source.screen->maxWidth() != view.width || source.screen->maxHeight() != view.height)
+                source.screen = std::make_unique<ScreenView>(device_, options_, view.width, view.height);
+            source.view = frame.sourceViews[i].view;
+            source.screen->light(executor, passes_, view, gbuffer, sourceName(i));
+        }
+    }
+
+    void render(Executor& executor, const std::shared_ptr<View>& view, const LWGBuffer& gbuffer, const LWOutput& output) override {
+        checkOutputs(device_, *view, output);
+        ScreenView::check(device_, *view, gbuffer, "gbuffer");
+        ViewState& state = states_.get(view, [&] { return std::make_unique<ViewState>(device_, options_, *view); });
+        state.screen.light(executor, passes_, *view, gbuffer, "gbuffer");
+        const Planes irradiance = state.irradiance.begin(executor, *view, output.irradiance, 3, "output.irradiance");
+        const Planes validity = state.validity.begin(executor, *view, output.validity, 1, "output.validity");
+        state.screen.finish(executor, passes_, irradiance, validity);
+        for (const Source& source : sources_)
+            if (!source.view || source.view != view->handle)
+                state.screen.join(executor, passes_, *source.screen, irradiance, validity);
+        state.irradiance.end(executor);
+        state.validity.end(executor);
+    }
+
+    void prewarm(Executor& executor, const std::shared_ptr<View>&) override {
+        ScreenSpaceTechnique twin(device_, desc_);
+        exerciseTechnique(executor, twin);
+    }
+
+    Report report() override;
+    std::vector<DebugView> debugViews(const View* view) override {
+        std::vector<DebugView> views;
+        if (const ViewState* state = states_.find(view)) state->screen.addDebugViews(views);
+        return views;
+    }
+    std::uint64_t bytes() const override;
+
+private:
+    struct ViewState {
+        ViewState(Device& device, const ScreenOptions& options, const View& view)
+            : screen(device, options, view.maxWidth, view.maxHeight) {}
+        ScreenView screen;
+        OutputTarget irradiance, validity;
+    };
+    struct Source {
+        LWView view = nullptr;  // the host's handle: a view takes nothing from itself
+        std::unique_ptr<ScreenView> screen;
+    };
+
+    Device& device_;
+    LWScreenSpaceDesc desc_;
+    ScreenOptions options_;
+    ScreenPasses passes_;
+    PerView<ViewState> states_;
+    std::vector<Source> sources_;
+    std::vector<LWChoice> unused_;  // of the last update
+};
+
+Report ScreenSpaceTechnique::report() {
+    Report report;
+    for (const LWChoice& choice : unused_) report.choose(choice.name, choice.reason);
+    for (const char* name : {"rejected_pixels", "rejected_radiances", "upsample_fallbacks", "saturated_pixels"})
+        report.counts.push_back({name, 0});
+    states_.each([&](const ViewState& state) {
+        if (!state.screen.isLit()) return;
+        state.screen.report(device_, report);
+        state.irradiance.report(report);
+        state.validity.report(report);
+    });
+    for (const Source& source : sources_) source.screen->report(device_, report);
+    return report;
+}
+
+std::uint64_t ScreenSpaceTechnique::bytes() const {
+    std::uint64_t total = 0;
+    states_.each([&](const ViewState& state) { total += state.screen.bytes() + state.irradiance.bytes() + state.validity.bytes(); });
+    for (const Source& source : sources_) total += source.screen->bytes();
+    return total;
+}
+
+// ------------------------------------------------------------------------------------- registration
+
+std::uint64_t estimateBytes(const void* desc, const LWViewDesc& view, const FrameShape& shape) {
+    const LWScreenSpaceDesc& own = *static_cast<const LWScreenSpaceDesc*>(desc);
+    std::uint64_t total = ScreenView::estimateBytes(optionsOf(own), view, shape.uploads) +
+                          OutputTarget::estimateBytes(view, 3, shape.uploads) + OutputTarget::estimateBytes(view, 1, shape.uploads);
+    if (!own.cameras) return total;
+    for (const auto& [width, height] : shape.sources) {
+        LWViewDesc source = view;
+        source.maxWidth = width;
+        source.maxHeight = height;
+        total += ScreenView::estimateBytes(optionsOf(own), source, shape.uploads);
+    }
+    return total;
+}
+
+}  // namespace
+
+const TechniqueEntry& screenSpaceEntry() {
+    static const TechniqueEntry entry = techniqueEntry<ScreenSpaceTechnique, LWScreenSpaceDesc, lwDefaultScreenSpace>(
+        "screen_space", "light between the surfaces on the screen, gathered on a pyramid of the G-buffer", 1,
+        screenSpaceParameters(), screenSpaceSettings(), estimateBytes);
+    return entry;
+}
+
+}  // namespace lightwell
