@@ -85,6 +85,14 @@ LWStatus lwCreateSsvp(LWDevice device, const LWSsvpDesc* desc, LWTechnique* tech
     return createTechnique("lwCreateSsvp", device, "ssvp", desc, technique);
 }
 
+LWStatus lwCreateHorizon(LWDevice device, const LWHorizonDesc* desc, LWTechnique* technique) {
+    return createTechnique("lwCreateHorizon", device, "horizon", desc, technique);
+}
+
+LWStatus lwCreateAo(LWDevice device, const LWAoDesc* desc, LWTechnique* technique) {
+    return createTechnique("lwCreateAo", device, "ao", desc, technique);
+}
+
 LWStatus lwRetainTechnique(LWTechnique technique) {
     return enter("lwRetainTechnique",
                  [&](Call&) { retainHandle(HandleKind::kTechnique, technique, "technique"); });

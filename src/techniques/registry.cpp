@@ -1,4 +1,6 @@
 // One line per technique.
+#include "techniques/ao.h"
+#include "techniques/horizon.h"
 #include "techniques/rsm.h"
 #include "techniques/ssvp.h"
 #include "techniques/technique.h"
@@ -9,6 +11,8 @@ const std::vector<TechniqueEntry>& techniqueEntries() {
     static const std::vector<TechniqueEntry> entries = {
         rsmEntry(),
         ssvpEntry(),
+        horizonEntry(),
+        aoEntry(),
     };
     return entries;
 }

@@ -1,0 +1,88 @@
+// One view's part of a technique that looks at the view's own pixels: inputs, the pyramid of them, and the way from
+// weighted sums per gathered pixel to the host's images. A part of the techniques' frame: `horizon` and `ao` differ in
+// what they gather.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "compute/report.h"
+#include "inputs/camera.h"
+#include "inputs/gbuffer_input.h"
+#include "inputs/output_target.h"
+#include "inputs/view.h"
+#include "passes/joint_bilateral.h"
+#include "passes/mip_pyramid.h"
+#include "passes/weighted_filter.h"
+#include "techniques/technique.h"
+
+namespace lightwell {
+
+struct ScreenOptions {
+    bool half = false;                  // gathers every second pixel and row
+    std::uint32_t columns = 1, rows = 1;  // of the filter's window
+    std::uint32_t levels = 1;           // of the pyramid, from the gathered one on
+    std::uint32_t extras = 0;           // PyramidPlanes beside radiance
+
+    std::uint32_t gathered(std::uint32_t along) const { return half ? JointBilateral::halved(along) : along; }
+};
+
+// Kernels that views share.
+class ScreenPasses {
+public:
+    ScreenPasses(Device& device, const ScreenOptions& options);
+
+private:
+    friend class ScreenView;
+    MipPyramid withLight_, plain_;
+    WeightedFilter filterLight_, filterAmbient_;
+    std::optional<JointBilateral> upsampleAll_, upsampleOne_;  // half resolution only
+};
+
+class ScreenView {
+public:
+    ScreenView(Device& device, const ScreenOptions& options);
+
+    // Throws what lwRender says of outputs that such a technique cannot make.
+    static void check(Device& device, const View& view, const LWOutput& output, const char* technique);
+
+    // Inputs, outputs and the pyramid; what has to be gathered stands below.
+    void begin(Executor& executor, const View& view, const LWGBuffer& gbuffer, const LWOutput& output, const Camera& camera,
+               ScreenPasses& passes);
+    bool wantsLight() const { return wantsLight_; }
+    bool wantsAmbient() const { return bool(open_); }
+    const PyramidLevels& levels() const { return wantsLight_ ? withLight_ : plain_; }
+    // Room for the weighted sums of this frame (WeightedFilter::planes).
+    Planes gathered(bool light) const;
+    // Filters and up-samples them to the host's images; withAmbient: light's sums hold the ambient occlusion asked for.
+    void finishLight(Executor& executor, ScreenPasses& passes, bool withAmbient);
+    void finishAmbient(Executor& executor, ScreenPasses& passes);
+    void end(Executor& executor);
+
+    void startFrame() { isRendered_ = false; }
+    void report(Device& device, Report& report) const;
+    static void startReport(Report& report);  // the counts, at 0
+    void addDebugViews(std::vector<DebugView>& views) const;
+    std::uint64_t bytes() const;
+    static std::uint64_t estimateBytes(const ScreenOptions& options, const LWViewDesc& view, bool uploads);
+
+private:
+    void reserve(const View& view);
+    Planes sized(const PlanarImage& image) const;
+
+    Device& device_;
+    ScreenOptions options_;
+    GBufferInput gbuffer_;
+    OutputTarget irradianceTarget_, validityTarget_, ambientTarget_;
+    PyramidLevels withLight_, plain_;
+    PlanarImage light_, ambient_, filteredLight_, filteredAmbient_;
+    Buffer counts_, upsampleCounts_;  // rejected pixels, rejected radiances; rejected pixels once more, fallbacks
+    Planes irradiance_, validity_, open_;
+    std::uint32_t width_ = 0, height_ = 0;  // of the gathered image
+    bool wantsLight_ = false, isRendered_ = false, hasLight_ = false;
+};
+
+// What a frame brings that such a technique does not read: said in the stats, so that nobody waits for its light.
+std::vector<LWChoice> unusedByScreen(const LWFrame& frame);
+
+}  // namespace lightwell
