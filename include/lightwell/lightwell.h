@@ -506,6 +506,53 @@ typedef struct LWScreenSpaceDesc {
 
 LW_API void lwDefaultScreenSpace(LWScreenSpaceDesc* desc);
 
+/** What ambient occlusion counts of the hemisphere's directions. */
+typedef enum LWAmbientWeighting {
+    LW_AMBIENT_COSINE = 0, /**< by their cosine: the share of an evenly bright sky's irradiance that arrives */
+    LW_AMBIENT_UNIFORM = 1 /**< all alike */
+} LWAmbientWeighting;
+
+/** Technique "horizon": ambient occlusion and light of one bounce from what the view itself shows, in slices of the
+ *  hemisphere with a visibility bitmask each. Needs the G-buffer's camera, and directRadiance for irradiance or
+ *  validity; makes ambientOcclusion too. Validity is the share of the cosine-weighted hemisphere whose
+ *  light the view shows. Lengths are shares of the image's height at the pixel's own depth. */
+typedef struct LWHorizonDesc {
+    uint32_t structSize;
+    uint32_t directions;     /**< slices: 4, 8, 16, 24, 40 */
+    uint32_t steps;          /**< along each side of a slice, every time that the distance doubles: 1, 2, 4, 8 */
+    uint32_t interleave;     /**< rows of pixels that share out the slices, then a filter over them; 1, 2, 4 */
+    uint32_t filter;         /**< 1: the edge-aware filter over those rows; 0: the raw image */
+    LWResolution resolution; /**< HALF: gathered on every second pixel and row, then up-sampled */
+    float reach;             /**< how far a pixel looks; above 0 .. 4 */
+    float thickness;         /**< of everything along the view: what passes behind it is light; 0 .. 10 */
+    float ambientRadius;     /**< what ambient occlusion counts lies nearer; above 0 .. 1e6 */
+    LWAmbientWeighting weighting; /**< of ambient occlusion; light is always weighted by the cosine */
+} LWHorizonDesc;
+
+LW_API void lwDefaultHorizon(LWHorizonDesc* desc);
+
+typedef enum LWAoMethod {
+    LW_AO_SSAO = 0, /**< ambient occlusion alone */
+    LW_AO_SSDO = 1  /**< and one bounce from what occludes */
+} LWAoMethod;
+
+/** Technique "ao": ambient occlusion from points in the hemisphere that the view shows to be hidden (SSAO), and light of
+ *  one bounce from the surfaces that hide them (SSDO): the older estimators that "horizon" is measured against. Needs the
+ *  G-buffer's camera; with SSDO directRadiance too, for irradiance or validity. */
+typedef struct LWAoDesc {
+    uint32_t structSize;
+    LWAoMethod method;
+    uint32_t samples;        /**< points in each pixel's hemisphere; 4 .. 64 */
+    float radius;            /**< of the hemisphere, in image heights at the pixel's depth; above 0 .. 10 */
+    uint32_t packing;        /**< 1: points crowd towards the pixel, with the square of their number; 0: all at the radius */
+    uint32_t rangeCheck;     /**< 1: what lies nearer to the eye than the point by more than the radius does not hide it */
+    uint32_t filter;         /**< 1: the edge-aware 4 x 4 blur that the 4 x 4 rotations of the points need */
+    LWResolution resolution; /**< HALF: on every second pixel and row, then up-sampled */
+    LWAmbientWeighting weighting; /**< how points are spread over directions */
+} LWAoDesc;
+
+LW_API void lwDefaultAo(LWAoDesc* desc);
+
 /* A technique's parameters, described for tools: the command line's --set and every chart read them
  * here, so a new technique needs no other registration. */
 typedef enum LWParameterKind {
@@ -564,6 +611,8 @@ LW_API LWStatus lwCreateRsm(LWDevice device, const LWRsmDesc* desc, LWTechnique*
 LW_API LWStatus lwCreateSsvp(LWDevice device, const LWSsvpDesc* desc, LWTechnique* technique);
 LW_API LWStatus lwCreateFallback(LWDevice device, const LWFallbackDesc* desc, LWTechnique* technique);
 LW_API LWStatus lwCreateScreenSpace(LWDevice device, const LWScreenSpaceDesc* desc, LWTechnique* technique);
+LW_API LWStatus lwCreateHorizon(LWDevice device, const LWHorizonDesc* desc, LWTechnique* technique);
+LW_API LWStatus lwCreateAo(LWDevice device, const LWAoDesc* desc, LWTechnique* technique);
 LW_API LWStatus lwRetainTechnique(LWTechnique technique);
 LW_API LWStatus lwReleaseTechnique(LWTechnique technique);
 

@@ -1,6 +1,9 @@
 // Half resolution and back: a G-buffer of every second column and row, and joint bilateral up-sampling
 // (Kopf et al. 2007) of what was computed on it: 3x3 half-resolution samples around a pixel, a tent in
 // the distance of pixels, nothing across a depth or normal edge.
+#ifndef LW_CHANNELS
+#define LW_CHANNELS 3  // of the light: 1 a scalar, 3 irradiance, 5 irradiance and two scalars
+#endif
 #include "shared/wide.h"
 #include "shared/surface.h"
 #include "shared/edge_weight.h"
@@ -69,22 +72,20 @@ __kernel void joint_bilateral_downsample(__global const float* position, int4 po
     store(select_(zero, s.nz, s.valid), halfNormal, no + 2 * halfNormalLayout.z);
 }
 
-typedef struct { real r, g, b, weight; } lw_sum;
+typedef struct { real light[LW_CHANNELS], weight; } lw_sum;
 
-LW_FN void accumulate(lw_sum* sum, real w, real r, real g, real b) {
-    sum->r = fma_(w, r, sum->r);
-    sum->g = fma_(w, g, sum->g);
-    sum->b = fma_(w, b, sum->b);
+LW_FN void accumulate(lw_sum* sum, real w, const real* light) {
+    for (int a = 0; a < LW_CHANNELS; ++a) sum->light[a] = fma_(w, light[a], sum->light[a]);
     sum->weight += w;
 }
 
 // Light from one sample to `s`: by the edge test; and, for pixels that no sample passes it for, by
 // likeness of the normals alone, so that such a pixel is lit like its neighbourhood and not black.
-LW_FN void add_sample(lw_sum* sum, lw_sum* rest, const lw_surface s, const lw_surface q, real tent, real r, real g, real b) {
+LW_FN void add_sample(lw_sum* sum, lw_sum* rest, const lw_surface s, const lw_surface q, real tent, const real* light) {
     const real t = select_((real)0.0f, tent, q.valid);
-    accumulate(sum, t * edge_weight(edges_of(s, (real)1.0f), q.px, q.py, q.pz, q.nx, q.ny, q.nz), r, g, b);
+    accumulate(sum, t * edge_weight(edges_of(s, (real)1.0f), q.px, q.py, q.pz, q.nx, q.ny, q.nz), light);
     const real likeness = fmax(fma_(q.nx, s.nx, fma_(q.ny, s.ny, q.nz * s.nz)), (real)0.0f) + 1e-3f;
-    accumulate(rest, t * likeness, r, g, b);
+    accumulate(rest, t * likeness, light);
 }
 
 // Where a row of the half-resolution images begins, and the distances between planes.
@@ -110,17 +111,28 @@ LW_FN void add_half_row(lw_sum* evenSum, lw_sum* oddSum, lw_sum* evenRest, lw_su
             const lanei column = lanei_iota() + (lanei)(hx + i);
             q.valid = and_(q.valid, and_(column >= (lanei)0, column < (lanei)halfWidth));
         }
-        const real r = LW_TAP(halfIrradiance, row.irradiance);
-        const real g = LW_TAP(halfIrradiance, row.irradiance + row.irradiancePlane);
-        const real b = LW_TAP(halfIrradiance, row.irradiance + 2 * row.irradiancePlane);
-        add_sample(evenSum, evenRest, even, q, (real)(rowTent * (i == 0 ? 1.0f : 1.0f / 3.0f)), r, g, b);
-        if (i >= 0) add_sample(oddSum, oddRest, odd, q, (real)(rowTent * (2.0f / 3.0f)), r, g, b);
+        real light[LW_CHANNELS];
+        for (int a = 0; a < LW_CHANNELS; ++a) light[a] = LW_TAP(halfIrradiance, row.irradiance + a * row.irradiancePlane);
+        add_sample(evenSum, evenRest, even, q, (real)(rowTent * (i == 0 ? 1.0f : 1.0f / 3.0f)), light);
+        if (i >= 0) add_sample(oddSum, oddRest, odd, q, (real)(rowTent * (2.0f / 3.0f)), light);
     }
 #undef LW_TAP
 }
 
+// Of one plane the even and odd pixels, weighted sums made means.
+LW_FN void store_mean(__global float* plane, int at, int hasSecond, const lw_sum* even, const lw_sum* evenRest, const lw_sum* odd,
+                      const lw_sum* oddRest, int a, mask evenLost, mask oddLost, real evenScale, real oddScale, mask evenValid,
+                      mask oddValid) {
+    const real zero = (real)0.0f;
+    const real e = select_(zero, select_(even->light[a], evenRest->light[a], evenLost) * evenScale, evenValid);
+    const real o = select_(zero, select_(odd->light[a], oddRest->light[a], oddLost) * oddScale, oddValid);
+    store(zip_lo_(e, o), plane, at);
+    if (hasSecond) store(zip_hi_(e, o), plane, at + LW_WIDTH);
+}
+
 // One work-item = 2 * LW_WIDTH pixels of one row: the even ones and the odd ones of LW_WIDTH blocks.
-// half*: 3 planes each of the half-resolution image. counts[0]: pixels that are
+// half*: 3 planes each of the half-resolution image, the light LW_CHANNELS; with 5, `fourth` and `fifth` take the
+// scalars, and any of the three may be null. counts[0]: pixels that are
 // neither surface nor background; counts[1]: pixels lit without edge test.
 __kernel void joint_bilateral_upsample(__global const float* position, int4 positionLayout,
                                        __global const float* normal, int4 normalLayout, int width, int height,
@@ -128,6 +140,9 @@ __kernel void joint_bilateral_upsample(__global const float* position, int4 posi
                                        __global const float* halfNormal, int4 halfNormalLayout,
                                        __global const float* halfIrradiance, int4 halfIrradianceLayout,
                                        __global float* irradiance, int4 irradianceLayout,
+#if LW_CHANNELS == 5
+                                       __global float* fourth, int4 fourthLayout, __global float* fifth, int4 fifthLayout,
+#endif
                                        __global int* counts) {
     const int hx = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);
     const int x = 2 * hx;
@@ -142,7 +157,9 @@ __kernel void joint_bilateral_upsample(__global const float* position, int4 posi
     }
     const lw_surface even = surface_of(p, n, 0), odd = surface_of(p, n, 1);
 
-    const lw_sum none = {(real)0.0f, (real)0.0f, (real)0.0f, (real)0.0f};
+    lw_sum none;
+    for (int a = 0; a < LW_CHANNELS; ++a) none.light[a] = (real)0.0f;
+    none.weight = (real)0.0f;
     lw_sum evenSum = none, oddSum = none, evenRest = none, oddRest = none;
     // A tent over three pixels: a sample stands two pixels from the next, so that an even pixel sees
     // three of them at distances 2, 0, 2 and an odd one two at distances 1, 1.
@@ -169,18 +186,18 @@ __kernel void joint_bilateral_upsample(__global const float* position, int4 posi
     const mask oddLost = and_(odd.valid, not_(oddSum.weight > 1e-4f));
     const real evenScale = 1.0f / select_(evenSum.weight, evenRest.weight, evenLost);
     const real oddScale = 1.0f / select_(oddSum.weight, oddRest.weight, oddLost);
-    const real zero = (real)0.0f;
-    const real e[3] = {select_(zero, select_(evenSum.r, evenRest.r, evenLost) * evenScale, even.valid),
-                       select_(zero, select_(evenSum.g, evenRest.g, evenLost) * evenScale, even.valid),
-                       select_(zero, select_(evenSum.b, evenRest.b, evenLost) * evenScale, even.valid)};
-    const real o[3] = {select_(zero, select_(oddSum.r, oddRest.r, oddLost) * oddScale, odd.valid),
-                       select_(zero, select_(oddSum.g, oddRest.g, oddLost) * oddScale, odd.valid),
-                       select_(zero, select_(oddSum.b, oddRest.b, oddLost) * oddScale, odd.valid)};
-    const int out = irradianceLayout.x + y * irradianceLayout.y + x;
-    for (int a = 0; a < 3; ++a) {
-        store(zip_lo_(e[a], o[a]), irradiance, out + a * irradianceLayout.z);
-        if (x + LW_WIDTH < rowEnd) store(zip_hi_(e[a], o[a]), irradiance, out + a * irradianceLayout.z + LW_WIDTH);
-    }
+    const int hasSecond = x + LW_WIDTH < rowEnd;
+#define LW_STORE_MEAN(plane, at, a)                                                                                   \
+    store_mean(plane, at, hasSecond, &evenSum, &evenRest, &oddSum, &oddRest, a, evenLost, oddLost, evenScale, oddScale, \
+               even.valid, odd.valid)
+#if LW_CHANNELS == 5
+    if (fourth) LW_STORE_MEAN(fourth, fourthLayout.x + y * fourthLayout.y + x, 3);
+    if (fifth) LW_STORE_MEAN(fifth, fifthLayout.x + y * fifthLayout.y + x, 4);
+    if (irradiance)
+#endif
+        for (int a = 0; a < min(LW_CHANNELS, 3); ++a)
+            LW_STORE_MEAN(irradiance, irradianceLayout.x + y * irradianceLayout.y + x + a * irradianceLayout.z, a);
+#undef LW_STORE_MEAN
     const lanei at = lanei_iota() * 2 + (lanei)x;
     const mask lostEven = and_(evenLost, at < (lanei)width), lostOdd = and_(oddLost, at + 1 < (lanei)width);
     if (any_(or_(lostEven, lostOdd))) atomic_add(counts + 1, count_(lostEven) + count_(lostOdd));

@@ -106,6 +106,14 @@ LWStatus lwCreateScreenSpace(LWDevice device, const LWScreenSpaceDesc* desc, LWT
     return createTechnique("lwCreateScreenSpace", device, "screen_space", desc, technique);
 }
 
+LWStatus lwCreateHorizon(LWDevice device, const LWHorizonDesc* desc, LWTechnique* technique) {
+    return createTechnique("lwCreateHorizon", device, "horizon", desc, technique);
+}
+
+LWStatus lwCreateAo(LWDevice device, const LWAoDesc* desc, LWTechnique* technique) {
+    return createTechnique("lwCreateAo", device, "ao", desc, technique);
+}
+
 LWStatus lwRetainTechnique(LWTechnique technique) {
     return enter("lwRetainTechnique",
                  [&](Call&) { retainHandle(HandleKind::kTechnique, technique, "technique"); });

@@ -1,11 +1,15 @@
 #include "passes/joint_bilateral.h"
 
+#include <string>
+
 #include "compute/device.h"
 
 namespace lightwell {
 namespace {
 
 constexpr const char* kProgram = "joint_bilateral/joint_bilateral";
+
+Defines definesOf(std::uint32_t channels) { return {{"LW_CHANNELS", std::to_string(channels)}}; }
 
 Range groupOf(const Kernel& kernel) { return kernel.width() == 1 ? Range{64, 1} : Range{8, 1}; }
 
@@ -16,9 +20,9 @@ Range itemsOver(std::uint32_t fullWidth, std::uint32_t rows, const Kernel& kerne
 
 }  // namespace
 
-JointBilateral::JointBilateral(Device& device)
-    : downsample_(device.programs().kernel(kProgram, "joint_bilateral_downsample")),
-      upsample_(device.programs().kernel(kProgram, "joint_bilateral_upsample")) {}
+JointBilateral::JointBilateral(Device& device, std::uint32_t channels)
+    : downsample_(device.programs().kernel(kProgram, "joint_bilateral_downsample", definesOf(channels))),
+      upsample_(device.programs().kernel(kProgram, "joint_bilateral_upsample", definesOf(channels))) {}
 
 void JointBilateral::recordDownsample(Executor& executor, const Planes& position, const Planes& normal,
                                       const Planes& halfPosition, const Planes& halfNormal) {
@@ -33,6 +37,15 @@ void JointBilateral::recordUpsample(Executor& executor, const Planes& position, 
     executor.run("joint_bilateral.upsample", upsample_, itemsOver(position.width, position.height, upsample_),
                  groupOf(upsample_), position, normal, cl_int(position.width), cl_int(position.height), halfPosition,
                  halfNormal, halfIrradiance, irradiance, counts);
+}
+
+void JointBilateral::recordUpsampleAll(Executor& executor, const Planes& position, const Planes& normal,
+                                       const Planes& halfPosition, const Planes& halfNormal, const Planes& halfLight,
+                                       const Planes& irradiance, const Planes& fourth, const Planes& fifth,
+                                       const Buffer& counts) {
+    executor.run("joint_bilateral.upsample", upsample_, itemsOver(position.width, position.height, upsample_),
+                 groupOf(upsample_), position, normal, cl_int(position.width), cl_int(position.height), halfPosition,
+                 halfNormal, halfLight, irradiance, fourth, fifth, counts);
 }
 
 }  // namespace lightwell

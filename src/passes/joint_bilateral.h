@@ -9,7 +9,8 @@ namespace lightwell {
 
 class JointBilateral {
 public:
-    explicit JointBilateral(Device& device);
+    // channels: of what recordUpsample up-samples, 1 or 3; 5 for recordUpsampleAll.
+    explicit JointBilateral(Device& device, std::uint32_t channels = 3);
 
     static std::uint32_t halved(std::uint32_t size) { return (size + 1) / 2; }
 
@@ -21,6 +22,10 @@ public:
     void recordUpsample(Executor& executor, const Planes& position, const Planes& normal,
                         const Planes& halfPosition, const Planes& halfNormal, const Planes& halfIrradiance,
                         const Planes& irradiance, const Buffer& counts);
+    // The same of 5 planes: irradiance and two scalars, each of which may be empty.
+    void recordUpsampleAll(Executor& executor, const Planes& position, const Planes& normal, const Planes& halfPosition,
+                           const Planes& halfNormal, const Planes& halfLight, const Planes& irradiance,
+                           const Planes& fourth, const Planes& fifth, const Buffer& counts);
 
 private:
     Kernel &downsample_, &upsample_;

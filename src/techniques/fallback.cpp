@@ -206,12 +206,12 @@ std::uint64_t estimateBytes(const void*, const LWViewDesc& view, const FrameShap
 }
 
 // The command line makes its two techniques by these names; a host gives any two.
-const char* const kFirst[] = {"rsm", nullptr};
+const char* const kFirst[] = {"horizon", "screen_space", "rsm", nullptr};
 const char* const kSecond[] = {"ssvp", "rsm", nullptr};
 
 const LWParameter kParameters[] = {
     {"first", "technique whose light counts as far as its validity reaches", LW_PARAMETER_TECHNIQUE,
-     std::uint32_t(offsetof(LWFallbackDesc, first)), 0.0, 0.0, 0.0, kFirst, nullptr, 0, nullptr, 0},
+     std::uint32_t(offsetof(LWFallbackDesc, first)), 0.0, 2.0, 0.0, kFirst, nullptr, 0, nullptr, 0},
     {"second", "technique that lights the rest of each pixel's hemisphere", LW_PARAMETER_TECHNIQUE,
      std::uint32_t(offsetof(LWFallbackDesc, second)), 0.0, 1.0, 0.0, kSecond, nullptr, 0, nullptr, 0},
 };

@@ -6,7 +6,8 @@
 
 namespace lightwell {
 
-// Blocks until the device has finished. The technique's state is that of the last made-up frame.
-void exerciseTechnique(Executor& executor, Technique& technique);
+// Blocks until the device has finished. The technique's state is that of the last made-up frame. makesAmbient: of
+// one that makes ambient occlusion too, beside the other outputs and alone.
+void exerciseTechnique(Executor& executor, Technique& technique, bool makesAmbient = false);
 
 }  // namespace lightwell

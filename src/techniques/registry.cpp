@@ -1,5 +1,7 @@
 // One line per technique.
+#include "techniques/ao.h"
 #include "techniques/fallback.h"
+#include "techniques/horizon.h"
 #include "techniques/rsm.h"
 #include "techniques/screen_space.h"
 #include "techniques/ssvp.h"
@@ -12,6 +14,8 @@ const std::vector<TechniqueEntry>& techniqueEntries() {
         rsmEntry(),
         ssvpEntry(),
         screenSpaceEntry(),
+        horizonEntry(),
+        aoEntry(),
         fallbackEntry(),
     };
     return entries;

@@ -11,7 +11,7 @@
 #include "inputs/output_target.h"
 #include "techniques/prewarm.h"
 #include "techniques/screen_space_parameters.h"
-#include "techniques/screen_view.h"
+#include "techniques/screen_picture.h"
 #include "techniques/technique_entry.h"
 
 namespace lightwell {
@@ -19,8 +19,8 @@ namespace {
 
 constexpr std::uint32_t kMaxSide = 16384;
 
-ScreenOptions optionsOf(const LWScreenSpaceDesc& desc) {
-    ScreenOptions options;
+ScreenSpaceOptions optionsOf(const LWScreenSpaceDesc& desc) {
+    ScreenSpaceOptions options;
     options.start = std::uint32_t(desc.start);
     options.levels = desc.levels;
     options.samples = desc.samples;
@@ -80,7 +80,7 @@ public:
         const std::uint32_t count = desc_.cameras ? frame.sourceViewCount : 0;
         for (std::uint32_t i = 0; i < count; ++i) {
             const LWGBuffer& gbuffer = *frame.sourceViews[i].gbuffer;
-            ScreenView::check(device_, sourceView(gbuffer, sourceName(i)), gbuffer, sourceName(i));
+            ScreenPicture::check(device_, sourceView(gbuffer, sourceName(i)), gbuffer, sourceName(i));
         }
         unused_ = unusedInputs(frame, desc_.cameras != 0);
         states_.purge();
@@ -91,7 +91,7 @@ public:
             const View view = sourceView(gbuffer, sourceName(i));
             Source& source = sources_[i];
             if (!source.screen || source.screen->maxWidth() != view.width || source.screen->maxHeight() != view.height)
-                source.screen = std::make_unique<ScreenView>(device_, options_, view.width, view.height);
+                source.screen = std::make_unique<ScreenPicture>(device_, options_, view.width, view.height);
             source.view = frame.sourceViews[i].view;
             source.screen->light(executor, passes_, view, gbuffer, sourceName(i));
         }
@@ -99,7 +99,7 @@ public:
 
     void render(Executor& executor, const std::shared_ptr<View>& view, const LWGBuffer& gbuffer, const LWOutput& output) override {
         checkOutputs(device_, *view, output);
-        ScreenView::check(device_, *view, gbuffer, "gbuffer");
+        ScreenPicture::check(device_, *view, gbuffer, "gbuffer");
         ViewState& state = states_.get(view, [&] { return std::make_unique<ViewState>(device_, options_, *view); });
         state.screen.light(executor, passes_, *view, gbuffer, "gbuffer");
         const Planes irradiance = state.irradiance.begin(executor, *view, output.irradiance, 3, "output.irradiance");
@@ -127,20 +127,20 @@ public:
 
 private:
     struct ViewState {
-        ViewState(Device& device, const ScreenOptions& options, const View& view)
+        ViewState(Device& device, const ScreenSpaceOptions& options, const View& view)
             : screen(device, options, view.maxWidth, view.maxHeight) {}
-        ScreenView screen;
+        ScreenPicture screen;
         OutputTarget irradiance, validity;
     };
     struct Source {
         LWView view = nullptr;  // the host's handle: a view takes nothing from itself
-        std::unique_ptr<ScreenView> screen;
+        std::unique_ptr<ScreenPicture> screen;
     };
 
     Device& device_;
     LWScreenSpaceDesc desc_;
-    ScreenOptions options_;
-    ScreenPasses passes_;
+    ScreenSpaceOptions options_;
+    ScreenSpacePasses passes_;
     PerView<ViewState> states_;
     std::vector<Source> sources_;
     std::vector<LWChoice> unused_;  // of the last update
@@ -172,14 +172,14 @@ std::uint64_t ScreenSpaceTechnique::bytes() const {
 
 std::uint64_t estimateBytes(const void* desc, const LWViewDesc& view, const FrameShape& shape) {
     const LWScreenSpaceDesc& own = *static_cast<const LWScreenSpaceDesc*>(desc);
-    std::uint64_t total = ScreenView::estimateBytes(optionsOf(own), view, shape.uploads) +
+    std::uint64_t total = ScreenPicture::estimateBytes(optionsOf(own), view, shape.uploads) +
                           OutputTarget::estimateBytes(view, 3, shape.uploads) + OutputTarget::estimateBytes(view, 1, shape.uploads);
     if (!own.cameras) return total;
     for (const auto& [width, height] : shape.sources) {
         LWViewDesc source = view;
         source.maxWidth = width;
         source.maxHeight = height;
-        total += ScreenView::estimateBytes(optionsOf(own), source, shape.uploads);
+        total += ScreenPicture::estimateBytes(optionsOf(own), source, shape.uploads);
     }
     return total;
 }

@@ -1,128 +1,180 @@
 #include "techniques/screen_view.h"
 
+#include <utility>
+
 #include "compute/device.h"
-#include "passes/screen_pattern.h"
+#include "compute/error.h"
+#include "compute/raw_enum.h"
 
 namespace lightwell {
 namespace {
 
-constexpr std::uint32_t kNeeds = kNeedsDirectRadiance | kNeedsReceiveMask;
+constexpr std::uint32_t kLightNeeds = kNeedsDirectRadiance | kNeedsReceiveMask;
+constexpr std::size_t kCountBytes = 2 * sizeof(cl_int);
 
-std::uint64_t patternBytes(const ScreenOptions& options) {
-    return std::uint64_t(options.interleave) * options.interleave * options.samples * sizeof(LwScreenSample);
+PyramidOptions pyramidOptions(const ScreenOptions& options, bool light) {
+    PyramidOptions pyramid;
+    pyramid.extras = options.extras | (light ? kPyramidRadiance : 0u);
+    pyramid.firstLevel = options.half ? 1 : 0;
+    pyramid.lastLevel = pyramid.firstLevel + options.levels - 1;
+    return pyramid;
 }
 
-constexpr const char* kLevelNames[] = {"level1", "level2", "level3", "level4", "level5", "level6"};
+Planes part(const Planes& image, std::uint32_t first, std::uint32_t count) {
+    Planes planes = image;
+    planes.offset += first * planes.planeStride;
+    planes.count = count;
+    return planes;
+}
+
+bool isAsked(const LWImage& image) { return rawEnum(image.format) != LW_FORMAT_NONE; }
 
 }  // namespace
 
-ScreenView::ScreenView(Device& device, const ScreenOptions& options, std::uint32_t maxWidth, std::uint32_t maxHeight)
+ScreenPasses::ScreenPasses(Device& device, const ScreenOptions& options)
+    : withLight_(device, options.extras | kPyramidRadiance),
+      plain_(device, options.extras),
+      filterLight_(device, true),
+      filterAmbient_(device, false) {
+    if (!options.half) return;
+    upsampleAll_.emplace(device, 5);
+    upsampleOne_.emplace(device, 1);
+}
+
+ScreenView::ScreenView(Device& device, const ScreenOptions& options)
     : device_(device),
       options_(options),
-      maxWidth_(maxWidth),
-      maxHeight_(maxHeight),
-      pyramid_(device, maxWidth, maxHeight, options.pyramid()),
-      levels_(device, maxWidth, maxHeight, options.range(), options.interleave),
-      counts_(device, LW_SCREEN_COUNTERS * sizeof(cl_int), "counts of a view") {
-    for (Buffer& patterns : patterns_) patterns = Buffer(device, std::size_t(patternBytes(options)), "sample patterns");
+      counts_(device, kCountBytes, "counts of a view"),
+      upsampleCounts_(device, kCountBytes, "counts of a view") {}
+
+void ScreenView::check(Device& device, const View& view, const LWOutput& output, const char* technique) {
+    for (const auto& [image, name] : {std::pair{&output.specularRadiance, "specularRadiance"}, {&output.shadow, "shadow"}})
+        if (isAsked(*image))
+            fail(LW_ERROR_UNSUPPORTED, "output.", name, ": technique ", technique,
+                 " makes irradiance, validity and ambientOcclusion only");
+    OutputTarget::check(device, view, output.irradiance, 3, "output.irradiance");
+    OutputTarget::check(device, view, output.validity, 1, "output.validity");
+    OutputTarget::check(device, view, output.ambientOcclusion, 1, "output.ambientOcclusion");
 }
 
-void ScreenView::check(Device& device, const View& view, const LWGBuffer& gbuffer, const std::string& name) {
-    GBufferInput::check(device, view, gbuffer, kNeeds, name.c_str());
-    const Camera camera(gbuffer.camera, view.width, view.height, name + ".camera");
+// Memory of what this frame needs, for the view's largest size.
+void ScreenView::reserve(const View& view) {
+    const std::uint32_t w = options_.gathered(view.maxWidth), h = options_.gathered(view.maxHeight);
+    PyramidLevels& levels = wantsLight_ ? withLight_ : plain_;
+    if (!levels.bytes()) levels = PyramidLevels(device_, view.maxWidth, view.maxHeight, pyramidOptions(options_, wantsLight_));
+    if (wantsLight_ && !light_) light_ = PlanarImage(device_, w, h, WeightedFilter::planes(true), "gathered light");
+    if (!ambient_) ambient_ = PlanarImage(device_, w, h, WeightedFilter::planes(false), "gathered ambient occlusion");
+    if (!options_.half) return;
+    if (wantsLight_ && !filteredLight_) filteredLight_ = PlanarImage(device_, w, h, 5, "filtered light");
+    if (!filteredAmbient_) filteredAmbient_ = PlanarImage(device_, w, h, 1, "filtered ambient occlusion");
 }
 
-// The first level's disc and the ring of all others, in texels of the level.
-void ScreenView::makePatterns(Executor& executor, std::uint32_t rows) {
-    if (rows == patternRows_) return;
-    const double r = options_.radiusAt(rows);
-    const std::vector<LwScreenSample> tables[2] = {
-        screenPatterns(0.0, 2.0 * r, options_.samples, options_.interleave, options_.seed),
-        screenPatterns(r, 2.0 * r, options_.samples, options_.interleave, options_.seed)};
-    for (int i = 0; i < 2; ++i)
-        executor.writeCopy("screen_gather.patterns", patterns_[i], 0, tables[i].size() * sizeof(LwScreenSample), tables[i].data());
-    patternRows_ = rows;
+void ScreenView::begin(Executor& executor, const View& view, const LWGBuffer& gbuffer, const LWOutput& output,
+                       const Camera& camera, ScreenPasses& passes) {
+    const bool light = isAsked(output.irradiance) || isAsked(output.validity);
+    gbuffer_.import(executor, view, gbuffer, light ? kLightNeeds : 0u, "gbuffer");
+    wantsLight_ = light;
+    hasLight_ = false;  // should a later step fail, the images of the frame before are gone
+    isRendered_ = true;
+    width_ = options_.gathered(view.width);
+    height_ = options_.gathered(view.height);
+    reserve(view);
+    executor.fill("screen_view.counts", counts_, 0, 0, counts_.bytes());
+    executor.fill("screen_view.counts", upsampleCounts_, 0, 0, upsampleCounts_.bytes());
+    irradiance_ = irradianceTarget_.begin(executor, view, output.irradiance, 3, "output.irradiance");
+    validity_ = validityTarget_.begin(executor, view, output.validity, 1, "output.validity");
+    open_ = ambientTarget_.begin(executor, view, output.ambientOcclusion, 1, "output.ambientOcclusion");
+    (light ? passes.withLight_ : passes.plain_)
+        .record(executor, gbuffer_.position, gbuffer_.normal, gbuffer_.directRadiance, gbuffer_.receiveMask, camera,
+                light ? withLight_ : plain_, counts_);
 }
 
-void ScreenView::light(Executor& executor, ScreenPasses& passes, const View& view, const LWGBuffer& gbuffer,
-                       const std::string& name) {
-    const Camera camera(gbuffer.camera, view.width, view.height, name + ".camera");
-    gbuffer_.import(executor, view, gbuffer, kNeeds, name.c_str());
-    camera_ = camera;
-    // Should a later step fail, the images of the frame before are gone.
-    contributions_.clear();
-    lit_ = Planes{};
-    isLit_ = true;
-    executor.fill("screen_gather.counts", counts_, 0, 0, counts_.bytes());
-    makePatterns(executor, view.height);
-    levels_.resize(executor, view.width, view.height);
-    passes.pyramid.record(executor, gbuffer_.position, gbuffer_.normal, gbuffer_.directRadiance, gbuffer_.receiveMask, camera_,
-                          pyramid_, counts_);
-    gatherLevels(executor, passes);
-}
+Planes ScreenView::sized(const PlanarImage& image) const { return image.planes(width_, height_); }
 
-// Coarse to fine; the coarsest level's light is its own alone.
-void ScreenView::gatherLevels(Executor& executor, ScreenPasses& passes) {
-    const LevelRange range = options_.range();
-    const bool filters = options_.interleave > 1;
-    std::vector<Planes> contributions(options_.levels);
-    Planes sum;
-    for (std::uint32_t k = range.last + 1; k-- > range.first;) {
-        passes.gather.recordDeal(executor, pyramid_, levels_, k);
-        const Planes raw = filters ? levels_.other(k) : levels_.own(k), own = levels_.own(k), texels = pyramid_.level(k);
-        passes.gather.recordGather(executor, levels_, k, patterns_[k == range.first ? 0 : 1], options_.samples, options_.bounded, raw);
-        if (filters) passes.combine.recordFilter(executor, texels, raw, own);
-        contributions[k - range.first] = own;
-        if (k < range.last) passes.combine.recordAdd(executor, texels, own, pyramid_.level(k + 1), sum, levels_.other(k));
-        sum = k < range.last ? levels_.other(k) : own;
+Planes ScreenView::gathered(bool light) const { return sized(light ? light_ : ambient_); }
+
+void ScreenView::finishLight(Executor& executor, ScreenPasses& passes, bool withAmbient) {
+    const std::uint32_t base = levels().options().firstLevel;
+    const Planes position = levels().position(base), normal = levels().normal(base), open = withAmbient ? open_ : Planes{};
+    hasLight_ = true;
+    if (!options_.half) {
+        passes.filterLight_.record(executor, position, normal, options_.columns, options_.rows, gathered(true), irradiance_,
+                                   validity_, open);
+        return;
     }
-    contributions_ = std::move(contributions);
-    lit_ = sum;
+    const Planes filtered = sized(filteredLight_);
+    passes.filterLight_.record(executor, position, normal, options_.columns, options_.rows, gathered(true),
+                               part(filtered, 0, 3), part(filtered, 3, 1), part(filtered, 4, 1));
+    passes.upsampleAll_->recordUpsampleAll(executor, gbuffer_.position, gbuffer_.normal, position, normal, filtered,
+                                           irradiance_, validity_, open, upsampleCounts_);
 }
 
-void ScreenView::finish(Executor& executor, ScreenPasses& passes, const Planes& irradiance, const Planes& validity) {
-    passes.combine.recordFinish(executor, gbuffer_.position, gbuffer_.normal, pyramid_.level(options_.start), lit_, irradiance,
-                                validity, counts_);
+void ScreenView::finishAmbient(Executor& executor, ScreenPasses& passes) {
+    const std::uint32_t base = levels().options().firstLevel;
+    const Planes position = levels().position(base), normal = levels().normal(base);
+    const Planes filtered = options_.half ? sized(filteredAmbient_) : open_;
+    passes.filterAmbient_.record(executor, position, normal, options_.columns, options_.rows, gathered(false), {}, {}, filtered);
+    if (options_.half)
+        passes.upsampleOne_->recordUpsample(executor, gbuffer_.position, gbuffer_.normal, position, normal, filtered, open_,
+                                            upsampleCounts_);
 }
 
-void ScreenView::join(Executor& executor, ScreenPasses& passes, const ScreenView& other, const Planes& irradiance,
-                      const Planes& validity) {
-    passes.combine.recordJoin(executor, gbuffer_.position, gbuffer_.normal, other.pyramid_.level(options_.start), other.camera_,
-                              other.lit_, irradiance, validity);
+void ScreenView::end(Executor& executor) {
+    irradianceTarget_.end(executor);
+    validityTarget_.end(executor);
+    ambientTarget_.end(executor);
+}
+
+void ScreenView::startReport(Report& report) {
+    for (const char* name : {"rejected_pixels", "rejected_radiances", "upsample_fallbacks"}) report.counts.push_back({name, 0});
 }
 
 void ScreenView::report(Device& device, Report& report) const {
-    if (!isLit_) return;
+    if (!isRendered_) return;
     gbuffer_.report(report);
-    report.read(device, "rejected_pixels", counts_, LW_SCREEN_REJECTED_PIXELS * sizeof(cl_int));
-    report.read(device, "rejected_radiances", counts_, LW_SCREEN_REJECTED_RADIANCE * sizeof(cl_int));
-    report.read(device, "upsample_fallbacks", counts_, LW_SCREEN_FALLBACKS * sizeof(cl_int));
-    report.read(device, "saturated_pixels", counts_, LW_SCREEN_SATURATED * sizeof(cl_int));
+    irradianceTarget_.report(report);
+    validityTarget_.report(report);
+    ambientTarget_.report(report);
+    report.read(device, "rejected_pixels", counts_, 0);
+    report.read(device, "rejected_radiances", counts_, sizeof(cl_int));
+    report.read(device, "upsample_fallbacks", upsampleCounts_, sizeof(cl_int));
 }
 
 void ScreenView::addDebugViews(std::vector<DebugView>& views) const {
-    if (!lit_) return;
-    views.push_back({"position", "world position (m)", gbuffer_.position, {}});
-    views.push_back({"normal", "world normal as the host gave it", gbuffer_.normal, {}});
-    views.push_back({"start_position", "world position of the first level's texels (m)", pyramid_.position(options_.start), {}});
-    views.push_back({"start_normal", "their unit normals", pyramid_.normal(options_.start), {}});
-    views.push_back({"start_radiance", "direct radiance averaged over each (W/(sr m^2))", pyramid_.radiance(options_.start), {}});
-    views.push_back({"start_area", "area of the surface that each shows (m^2)", pyramid_.area(options_.start), {}});
-    for (std::size_t i = 0; i < contributions_.size(); ++i)
-        views.push_back({kLevelNames[i], "what the level gathers: irradiance rgb (W/m^2), share of the hemisphere seen",
-                         contributions_[i], {}});
-    views.push_back({"gathered", "all levels together, at the first one's resolution: irradiance rgb (W/m^2), share seen", lit_, {}});
+    if (!hasLight_) return;
+    views.push_back({"position", "world position of the gathered pixels (m)", levels().position(levels().options().firstLevel), {}});
+    views.push_back({"gathered", "before the filter, times the weight: radiance rgb (W/(sr m^2)), seen share, open share; weight",
+                     gathered(true), {}});
+    if (options_.half)
+        views.push_back({"filtered", "irradiance rgb (W/m^2), validity, ambient occlusion", sized(filteredLight_), {}});
 }
 
 std::uint64_t ScreenView::bytes() const {
-    return gbuffer_.bytes() + pyramid_.bytes() + levels_.bytes() + counts_.bytes() + patterns_[0].bytes() + patterns_[1].bytes();
+    return gbuffer_.bytes() + irradianceTarget_.bytes() + validityTarget_.bytes() + ambientTarget_.bytes() +
+           withLight_.bytes() + plain_.bytes() + light_.bytes() + ambient_.bytes() + filteredLight_.bytes() +
+           filteredAmbient_.bytes() + counts_.bytes() + upsampleCounts_.bytes();
 }
 
 std::uint64_t ScreenView::estimateBytes(const ScreenOptions& options, const LWViewDesc& view, bool uploads) {
-    return GBufferInput::estimateBytes(view, kNeeds, uploads) +
-           PyramidLevels::estimateBytes(view.maxWidth, view.maxHeight, options.pyramid()) +
-           ScreenLevels::estimateBytes(view.maxWidth, view.maxHeight, options.range(), options.interleave) +
-           2 * patternBytes(options) + LW_SCREEN_COUNTERS * sizeof(cl_int);
+    std::uint64_t total = GBufferInput::estimateBytes(view, kLightNeeds, uploads) + 2 * kCountBytes +
+                          OutputTarget::estimateBytes(view, 3, uploads) + 2 * OutputTarget::estimateBytes(view, 1, uploads);
+    for (const bool light : {true, false})
+        total += PyramidLevels::estimateBytes(view.maxWidth, view.maxHeight, pyramidOptions(options, light));
+    const std::uint64_t planes = WeightedFilter::planes(true) + WeightedFilter::planes(false) + (options.half ? 5 + 1 : 0);
+    return total + planes * sizeof(float) * paddedWidth(options.gathered(view.maxWidth)) * options.gathered(view.maxHeight);
+}
+
+std::vector<LWChoice> unusedByScreen(const LWFrame& frame) {
+    constexpr const char* kReason = "not used: this technique takes light from the view's own pixels only";
+    std::vector<LWChoice> unused;
+    if (frame.sourceViewCount) unused.push_back({"frame.sourceViews", kReason});
+    if (frame.geometry) unused.push_back({"frame.geometry", kReason});
+    if (frame.blockerCount) unused.push_back({"frame.blockers", kReason});
+    if (frame.lightCount) unused.push_back({"frame.lights", kReason});
+    if (frame.vplCount) unused.push_back({"frame.vpls", kReason});
+    if (frame.environment[0] > 0.0f || frame.environment[1] > 0.0f || frame.environment[2] > 0.0f)
+        unused.push_back({"frame.environment", kReason});
+    return unused;
 }
 
 }  // namespace lightwell

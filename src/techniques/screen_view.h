@@ -1,82 +1,88 @@
-// What technique screen_space keeps of one picture, a view's own or another camera's: its G-buffer's pyramid, and the
-// light of every level of it.
+// One view's part of a technique that looks at the view's own pixels: inputs, the pyramid of them, and the way from
+// weighted sums per gathered pixel to the host's images. A part of the techniques' frame: `horizon` and `ao` differ in
+// what they gather.
 #pragma once
 
-#include <string>
-#include <vector>
+#include <cstdint>
+#include <optional>
 
+#include "compute/report.h"
 #include "inputs/camera.h"
 #include "inputs/gbuffer_input.h"
+#include "inputs/output_target.h"
+#include "inputs/view.h"
+#include "passes/joint_bilateral.h"
 #include "passes/mip_pyramid.h"
-#include "passes/screen_combine.h"
-#include "passes/screen_gather.h"
+#include "passes/weighted_filter.h"
 #include "techniques/technique.h"
 
 namespace lightwell {
 
 struct ScreenOptions {
-    std::uint32_t start = 2;  // level of the pyramid: 0 full, 1 half, 2 quarter resolution
-    std::uint32_t levels = 4, samples = 64, interleave = 4, seed = 0;
-    double radius = 20.0;  // texels, of an image of kRadiusRows rows
-    bool bounded = true, cameras = false;
+    bool half = false;                  // gathers every second pixel and row
+    std::uint32_t columns = 1, rows = 1;  // of the filter's window
+    std::uint32_t levels = 1;           // of the pyramid, from the gathered one on
+    std::uint32_t extras = 0;           // PyramidPlanes beside radiance
 
-    static constexpr double kRadiusRows = 720.0;
-    LevelRange range() const { return {start, start + levels - 1}; }
-    PyramidOptions pyramid() const { return {ScreenGather::kExtras, start == 0 ? 0u : 1u, range().last}; }
-    // The radius in texels of every level, for an image of so many rows.
-    double radiusAt(std::uint32_t rows) const { return radius * rows / kRadiusRows; }
+    std::uint32_t gathered(std::uint32_t along) const { return half ? JointBilateral::halved(along) : along; }
 };
 
-// The passes of a technique; its pictures share them.
-struct ScreenPasses {
-    ScreenPasses(Device& device, const ScreenOptions& options)
-        : pyramid(device, ScreenGather::kExtras), gather(device, options.interleave),
-          combine(device, {options.interleave, 1u << options.start, options.levels > 1, options.cameras}) {}
-    MipPyramid pyramid;
-    ScreenGather gather;
-    ScreenCombine combine;
+// Kernels that views share.
+class ScreenPasses {
+public:
+    ScreenPasses(Device& device, const ScreenOptions& options);
+
+private:
+    friend class ScreenView;
+    MipPyramid withLight_, plain_;
+    WeightedFilter filterLight_, filterAmbient_;
+    std::optional<JointBilateral> upsampleAll_, upsampleOne_;  // half resolution only
 };
 
 class ScreenView {
 public:
-    ScreenView(Device& device, const ScreenOptions& options, std::uint32_t maxWidth, std::uint32_t maxHeight);
+    ScreenView(Device& device, const ScreenOptions& options);
 
-    // Throws what light() would say of the images. Nothing is enqueued.
-    static void check(Device& device, const View& view, const LWGBuffer& gbuffer, const std::string& name);
-    // From the host's images to the light of the first level.
-    void light(Executor& executor, ScreenPasses& passes, const View& view, const LWGBuffer& gbuffer, const std::string& name);
-    // To the outputs, or none, after light().
-    void finish(Executor& executor, ScreenPasses& passes, const Planes& irradiance, const Planes& validity);
-    // Raises outputs made by finish() to what `other` sees.
-    void join(Executor& executor, ScreenPasses& passes, const ScreenView& other, const Planes& irradiance, const Planes& validity);
+    // Throws what lwRender says of outputs that such a technique cannot make.
+    static void check(Device& device, const View& view, const LWOutput& output, const char* technique);
 
-    void startFrame() { isLit_ = false; }
-    bool isLit() const { return isLit_; }
-    std::uint32_t maxWidth() const { return maxWidth_; }
-    std::uint32_t maxHeight() const { return maxHeight_; }
+    // Inputs, outputs and the pyramid; what has to be gathered stands below.
+    void begin(Executor& executor, const View& view, const LWGBuffer& gbuffer, const LWOutput& output, const Camera& camera,
+               ScreenPasses& passes);
+    bool wantsLight() const { return wantsLight_; }
+    bool wantsAmbient() const { return bool(open_); }
+    const PyramidLevels& levels() const { return wantsLight_ ? withLight_ : plain_; }
+    // Room for the weighted sums of this frame (WeightedFilter::planes).
+    Planes gathered(bool light) const;
+    // Filters and up-samples them to the host's images; withAmbient: light's sums hold the ambient occlusion asked for.
+    void finishLight(Executor& executor, ScreenPasses& passes, bool withAmbient);
+    void finishAmbient(Executor& executor, ScreenPasses& passes);
+    void end(Executor& executor);
+
+    void startFrame() { isRendered_ = false; }
     void report(Device& device, Report& report) const;
+    static void startReport(Report& report);  // the counts, at 0
     void addDebugViews(std::vector<DebugView>& views) const;
     std::uint64_t bytes() const;
-    // The most that bytes() becomes for a view. `uploads`: FrameShape::uploads.
     static std::uint64_t estimateBytes(const ScreenOptions& options, const LWViewDesc& view, bool uploads);
 
 private:
-    void makePatterns(Executor& executor, std::uint32_t rows);
-    void gatherLevels(Executor& executor, ScreenPasses& passes);
+    void reserve(const View& view);
+    Planes sized(const PlanarImage& image) const;
 
     Device& device_;
     ScreenOptions options_;
-    std::uint32_t maxWidth_, maxHeight_;
     GBufferInput gbuffer_;
-    PyramidLevels pyramid_;
-    ScreenLevels levels_;
-    Buffer patterns_[2];  // of the first level's disc, and of the others' ring
-    std::uint32_t patternRows_ = 0;
-    Buffer counts_;
-    std::vector<Planes> contributions_;  // by level, of the last frame
-    Planes lit_;                         // all levels together
-    Camera camera_;
-    bool isLit_ = false;  // since the last startFrame
+    OutputTarget irradianceTarget_, validityTarget_, ambientTarget_;
+    PyramidLevels withLight_, plain_;
+    PlanarImage light_, ambient_, filteredLight_, filteredAmbient_;
+    Buffer counts_, upsampleCounts_;  // rejected pixels, rejected radiances; rejected pixels once more, fallbacks
+    Planes irradiance_, validity_, open_;
+    std::uint32_t width_ = 0, height_ = 0;  // of the gathered image
+    bool wantsLight_ = false, isRendered_ = false, hasLight_ = false;
 };
+
+// What a frame brings that such a technique does not read: said in the stats, so that nobody waits for its light.
+std::vector<LWChoice> unusedByScreen(const LWFrame& frame);
 
 }  // namespace lightwell

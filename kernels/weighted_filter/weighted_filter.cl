@@ -1,0 +1,74 @@
+// Edge-aware box filter of weighted sums: what neighbouring pixels of one surface gathered with different patterns is
+// added up over a window and divided by the sum of the weights. LW_LIGHT 1: planes radiance rgb, seen share, open share,
+// weight; 0: open share, weight.
+#ifndef LW_LIGHT
+#define LW_LIGHT 1
+#endif
+#include "shared/edge_weight.h"
+#include "shared/neighbours.h"
+
+#if LW_LIGHT
+#define LW_PLANES 6
+#else
+#define LW_PLANES 2
+#endif
+
+// Adds row j of the window, of which the row at `p`, `n`, `g` holds the pixels. `inside`, a constant: all columns exist.
+LW_FN void add_row(real* sum, const lw_surface s, __global const float* position, int p, int positionPlane,
+                   __global const float* normal, int n, int normalPlane, __global const float* gathered, int g,
+                   int gatheredPlane, int x, int width, int firstColumn, int columns, int ownRow, const int inside) {
+#define LW_TAP(image, at) (inside ? load(image, (at) + x + i) : load_shifted(image, (at), x, i, width))
+    for (int i = firstColumn; i < firstColumn + columns; ++i) {
+        real w = edge_weight(s, LW_TAP(position, p), LW_TAP(position, p + positionPlane), LW_TAP(position, p + 2 * positionPlane),
+                             LW_TAP(normal, n), LW_TAP(normal, n + normalPlane), LW_TAP(normal, n + 2 * normalPlane), s.scale);
+        // The pixel itself counts in full, whatever rounding makes of its own tests.
+        if (ownRow && i == 0) w = ones_(s.valid);
+        if (!inside) {
+            const lanei column = lanei_iota() + (lanei)(x + i);
+            w = select_((real)0.0f, w, and_(column >= (lanei)0, column < (lanei)width));
+        }
+        for (int a = 0; a < LW_PLANES; ++a) sum[a] = fma_(w, LW_TAP(gathered, g + a * gatheredPlane), sum[a]);
+    }
+#undef LW_TAP
+}
+
+// One work-item = LW_WIDTH adjacent pixels. position, normal: 3 planes each (normal: unit or zero). irradiance (3 planes,
+// W/m^2), validity and open (1 plane each): where the means go, or null.
+__kernel void weighted_filter_filter(__global const float* position, int4 positionLayout, __global const float* normal,
+                                     int4 normalLayout, int width, int height, int columns, int rows,
+                                     __global const float* gathered, int4 gatheredLayout, __global float* irradiance,
+                                     int4 irradianceLayout, __global float* validity, int4 validityLayout,
+                                     __global float* open, int4 openLayout) {
+    const int x = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);
+    if (x >= width || y >= height) return;
+    lw_surface s = load_surface(position, positionLayout, normal, normalLayout, x, y);
+    s.valid = and_(s.valid, lanei_iota() + (lanei)x < (lanei)width);
+    const int rowCount = min(rows, height), firstRow = clamp(y - (rows - 1) / 2, 0, height - rowCount);
+    const int firstColumn = -(columns - 1) / 2;
+    const int inside = columns == 1 || (shift_inside(x, firstColumn, width) && shift_inside(x, firstColumn + columns - 1, width));
+    real sum[LW_PLANES];
+    for (int a = 0; a < LW_PLANES; ++a) sum[a] = (real)0.0f;
+    for (int j = firstRow; j < firstRow + rowCount; ++j) {
+        const int p = positionLayout.x + j * positionLayout.y, n = normalLayout.x + j * normalLayout.y;
+        const int g = gatheredLayout.x + j * gatheredLayout.y;
+        if (inside)
+            add_row(sum, s, position, p, positionLayout.z, normal, n, normalLayout.z, gathered, g, gatheredLayout.z, x, width,
+                    firstColumn, columns, j == y, 1);
+        else
+            add_row(sum, s, position, p, positionLayout.z, normal, n, normalLayout.z, gathered, g, gatheredLayout.z, x, width,
+                    firstColumn, columns, j == y, 0);
+    }
+    const mask lit = and_(s.valid, sum[LW_PLANES - 1] > 0.0f);
+    const real scale = select_((real)0.0f, 1.0f / sum[LW_PLANES - 1], lit), zero = (real)0.0f;
+#if LW_LIGHT
+    if (irradiance) {
+        const int o = irradianceLayout.x + y * irradianceLayout.y + x;
+        for (int a = 0; a < 3; ++a) store(select_(zero, M_PI_F * scale * sum[a], lit), irradiance, o + a * irradianceLayout.z);
+    }
+    // Means of shares: rounding must not lift them above 1.
+    if (validity)
+        store(select_(zero, fmin(scale * sum[3], (real)1.0f), lit), validity, validityLayout.x + y * validityLayout.y + x);
+#endif
+    if (open)
+        store(select_(zero, fmin(scale * sum[LW_PLANES - 2], (real)1.0f), lit), open, openLayout.x + y * openLayout.y + x);
+}

@@ -1,0 +1,112 @@
+// Lines run through pixel centres: every direction is a vector of small integers without a common factor, and a step k
+// lies k of them away. A plane then meets the horizon of its own pixels exactly, at every step and angle of view; rounded
+// places would lie beside the slice and shadow floors seen at grazing angles.
+#include "passes/horizon_pattern.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace lightwell {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+// Texels are looked up at places shifted by up to this share of a texel to either side, differently for each step, besides
+// the pixels' own shifts. 0: the borders of texels line up over all steps and show. Larger: steps leave their line.
+constexpr double kPhaseShare = 0.25;
+// A step looks at texels of half the width that it stands for. A coarser level shows the nearest surface of a larger block
+// only: narrow floors between nearer things vanish, and their light with them. A finer one sees less of its stretch.
+constexpr int kFinerLevels = 1;
+
+struct Line {
+    int x, y;
+    double angle;
+};
+
+// Half of the directions with coordinates up to `reach`, by angle in [0, pi).
+std::vector<Line> linesWithin(int reach) {
+    std::vector<Line> lines;
+    for (int y = 0; y <= reach; ++y)
+        for (int x = -reach; x <= reach; ++x) {
+            if (y == 0 && x <= 0) continue;
+            if (std::gcd(std::abs(x), y) == 1) lines.push_back({x, y, std::atan2(double(y), double(x))});
+        }
+    std::sort(lines.begin(), lines.end(), [](const Line& a, const Line& b) { return a.angle < b.angle; });
+    return lines;
+}
+
+std::vector<Line> linesOf(std::uint32_t directions) {
+    int reach = 1;
+    while (linesWithin(reach).size() < directions) ++reach;
+    return linesWithin(reach);
+}
+
+double fraction(double x) { return x - std::floor(x); }
+
+// Steps of one side: 1, 2, .. up to twice the density pixels apart, then as many again on each coarser level. `every`:
+// pixels of the full image per pixel here.
+void addSteps(HorizonPattern& pattern, const Line& line, int side, std::uint32_t density, double reach, double every) {
+    const double length = std::hypot(double(line.x), double(line.y));
+    const int last = 2 * int(density) - 1;
+    for (int doubling = 0; doubling < LW_HORIZON_LEVELS + kFinerLevels; ++doubling)
+        for (int k = doubling == 0 ? 1 : int(density); k <= last; ++k) {
+            const double scale = std::ldexp(length, doubling);
+            if (k * scale > reach && !(doubling == 0 && k == 1)) return;
+            lw_horizon_step step{};
+            step.level = std::max(0, doubling - kFinerLevels);
+            const int multiple = side * k << (doubling - step.level);
+            step.dx = multiple * line.x;
+            step.dy = multiple * line.y;
+            const double n = double(pattern.steps.size() + 1);  // an additive sequence of two dimensions (Roberts 2018)
+            const double shift = std::ldexp(2.0 * kPhaseShare, step.level);
+            step.phaseX = int(std::lround((fraction(0.7548776662 * n) - 0.5) * shift));
+            step.phaseY = int(std::lround((fraction(0.5698402910 * n) - 0.5) * shift));
+            // The first step of a doubling follows one of half the width.
+            step.begin = float((k - (doubling > 0 && k == int(density) ? 0.25 : 0.5)) * scale * every);
+            step.at = float(k * scale * every);
+            step.end = float((k + 0.5) * scale * every);
+            pattern.steps.push_back(step);
+            pattern.levels = std::max(pattern.levels, std::uint32_t(step.level) + 1);
+        }
+}
+
+}  // namespace
+
+HorizonPattern horizonPattern(const HorizonPatternOptions& options, double reach, double every) {
+    const std::vector<Line> lines = linesOf(options.directions);
+    const std::size_t count = lines.size(), rows = options.rows, perRow = count / rows;
+    static constexpr std::size_t kRowOrder[3][4] = {{0}, {0, 1}, {0, 2, 1, 3}};  // neighbours far apart
+    const std::size_t* order = kRowOrder[rows == 4 ? 2 : rows - 1];
+    HorizonPattern pattern;
+    pattern.slices.resize(count);
+    for (std::size_t row = 0; row < rows; ++row)
+        for (std::size_t i = 0; i < perRow; ++i) {
+            const std::size_t at = order[row] + i * rows;
+            const Line& line = lines[at];
+            const double before = at == 0 ? lines.back().angle - kPi : lines[at - 1].angle;
+            const double after = at + 1 == count ? lines.front().angle + kPi : lines[at + 1].angle;
+            const double length = std::hypot(double(line.x), double(line.y));
+            lw_horizon_slice& slice = pattern.slices[row + i * rows];
+            slice = {};
+            slice.dx = float(line.x / length);
+            slice.dy = float(line.y / length);
+            slice.share = float((after - before) / (2.0 * kPi));
+            // Away from 0 and 1: a border that only rounding keeps from a whole sector must not lose it.
+            slice.rounding = float(0.05 + 0.9 * fraction(0.6180339887 * double(at + 1)));
+            slice.first[0] = cl_int(pattern.steps.size());
+            addSteps(pattern, line, 1, options.density, reach, every);
+            slice.steps = cl_int(pattern.steps.size()) - slice.first[0];
+            slice.first[1] = cl_int(pattern.steps.size());
+            addSteps(pattern, line, -1, options.density, reach, every);
+        }
+    return pattern;
+}
+
+std::uint32_t horizonLevels(std::uint32_t density, double reach) {
+    int doublings = 1;
+    while (doublings < LW_HORIZON_LEVELS + kFinerLevels && double(density) * std::ldexp(1.0, doublings) <= reach) ++doublings;
+    return std::uint32_t(std::max(1, doublings - kFinerLevels));
+}
+
+}  // namespace lightwell

@@ -1,0 +1,25 @@
+// Weighted sums that neighbouring pixels gathered with different patterns, made means over an edge-aware window.
+#pragma once
+
+#include "compute/buffer.h"
+#include "compute/executor.h"
+
+namespace lightwell {
+
+class WeightedFilter {
+public:
+    // light: of radiance (3 planes), seen share, open share and weight; else of open share and weight alone.
+    WeightedFilter(Device& device, bool light);
+
+    static std::uint32_t planes(bool light) { return light ? 6 : 2; }
+
+    // Pass "weighted_filter.filter" (".filter_ambient" without light). Of the results each may be empty.
+    void record(Executor& executor, const Planes& position, const Planes& normal, std::uint32_t columns, std::uint32_t rows,
+                const Planes& gathered, const Planes& irradiance, const Planes& validity, const Planes& open);
+
+private:
+    bool light_;
+    Kernel& filter_;
+};
+
+}  // namespace lightwell

@@ -1,0 +1,38 @@
+// One frame of a technique that looks at the view's own pixels, through the C API.
+#pragma once
+
+#include "support/scoped_api.h"
+#include "support/view_scene.h"
+
+namespace lightwell::test {
+
+inline ScreenResult renderScreen(TestTechnique& technique, const TestView& view, LWDevice device, const LWGBuffer& gbuffer,
+                                 unsigned outputs = kIrradiance | kValidity | kAmbient) {
+    PlanarPixels irradiance(view.width(), view.height(), 3), validity(view.width(), view.height(), 1),
+        ambient(view.width(), view.height(), 1);
+    LWOutput output{};
+    output.structSize = sizeof output;
+    if (outputs & kIrradiance) output.irradiance = irradiance.image();
+    if (outputs & kValidity) output.validity = validity.image();
+    if (outputs & kAmbient) output.ambientOcclusion = ambient.image();
+    technique.update(LWFrame{sizeof(LWFrame), 0, 0, 0, 0, 0, 0, nullptr, nullptr, nullptr, nullptr, nullptr, {0, 0, 0}, nullptr});
+    const LWStatus status = lwRender(technique, view, &gbuffer, &output);
+    INFO(lastError(device));
+    REQUIRE(status == LW_SUCCESS);
+    REQUIRE(lwFinish(device) == LW_SUCCESS);
+    ScreenResult result;
+    if (outputs & kIrradiance) result.irradiance = irradiance.packed();
+    if (outputs & kValidity) result.validity = validity.packed();
+    if (outputs & kAmbient) result.ambient = ambient.packed();
+    return result;
+}
+
+// On a fresh technique.
+inline ScreenResult renderScreen(LWDevice device, const char* name, const void* desc, DrawnView& drawn,
+                                 unsigned outputs = kIrradiance | kValidity | kAmbient) {
+    TestTechnique technique(device, name, desc);
+    TestView view(device, drawn.position.width(), drawn.position.height());
+    return renderScreen(technique, view, device, drawn.gbuffer, outputs);
+}
+
+}  // namespace lightwell::test
