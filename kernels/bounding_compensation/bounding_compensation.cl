@@ -130,9 +130,9 @@ __kernel void bounding_compensation_senders(__global const float* position, int4
         const real byFlux = scale[0] * (0.25f * M_1_PI_F * M_1_PI_F) / fmax(mean, (real)FLT_MIN);
         real vpl = uniformArea ? (real)(scale[1] * (0.25f * M_1_PI_F)) : byFlux;
         vpl = select_(zero, fmin(vpl, (real)(LW_LARGEST_DISTANCE * LW_LARGEST_DISTANCE)), lit);
-        const real values[LW_SENDER_PLANES] = {s.px, s.py, s.pz, s.nx, s.ny, s.nz, r, g, b,
+        const real values[LW_COMPENSATION_PLANES] = {s.px, s.py, s.pz, s.nx, s.ny, s.nz, r, g, b,
                                                select_(zero, area, lit), vpl};
-        for (int a = 0; a < LW_SENDER_PLANES; ++a) store(values[a], senders, lw_sender_run(layout, a, y, j) + at);
+        for (int a = 0; a < LW_COMPENSATION_PLANES; ++a) store(values[a], senders, lw_sender_run(layout, a, y, j) + at);
         const mask far = and_(lit, 4.0f * vpl > mostPixels * across);
         if (any_(far)) capped += count_(far);
     }

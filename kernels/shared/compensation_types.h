@@ -10,7 +10,7 @@
 #define LW_SENDER_RADIANCE 6
 #define LW_SENDER_PIXEL 9
 #define LW_SENDER_VPL 10
-#define LW_SENDER_PLANES 11
+#define LW_COMPENSATION_PLANES 11
 // Empty columns before and after every run: no sample of a vector at the image's edge reads beyond.
 #define LW_SENDER_BORDER 16
 
@@ -40,7 +40,7 @@ typedef struct {
 LW_SIZE_CHECK(lw_sender_layout, 16);
 
 LW_FN lw_int lw_sender_run(lw_sender_layout s, lw_int plane, lw_int y, lw_int residue) {
-    return ((y * s.interleave + residue) * LW_SENDER_PLANES + plane) * s.run;
+    return ((y * s.interleave + residue) * LW_COMPENSATION_PLANES + plane) * s.run;
 }
 
 #endif

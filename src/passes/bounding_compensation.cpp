@@ -27,7 +27,7 @@ std::size_t samplesBytes(const CompensationOptions& options) {
 }
 
 std::uint64_t senderFloats(const lw_sender_layout& layout) {
-    return std::uint64_t(LW_SENDER_PLANES) * std::uint64_t(layout.height) * std::uint64_t(layout.interleave) *
+    return std::uint64_t(LW_COMPENSATION_PLANES) * std::uint64_t(layout.height) * std::uint64_t(layout.interleave) *
            std::uint64_t(layout.run);
 }
 
