@@ -56,7 +56,7 @@ double deviationOf(const Image& image, double mean) {
 
 }  // namespace
 
-TEST_CASE("light that halves leaves less than 5 % of the change behind after 8 frames", "[temporal_history]") {
+TEST_CASE("light that halves leaves less than 5 % of the change behind after 8 frames", "[temporal_history][large]") {
     const auto width = GENERATE(1u, 16u);
     const auto shared = GENERATE(false, true);
     const auto spread = GENERATE(0.0, 0.1);
@@ -81,7 +81,7 @@ TEST_CASE("light that halves leaves less than 5 % of the change behind after 8 f
     CHECK(std::abs(mean - after) < 0.05 * std::abs(1.0 - after) + noise);
 }
 
-TEST_CASE("light that goes up and down all the time is followed within its noise", "[temporal_history]") {
+TEST_CASE("light that goes up and down all the time is followed within its noise", "[temporal_history][large]") {
     const auto width = GENERATE(1u, 16u);
     const auto shared = GENERATE(false, true);
     const auto period = GENERATE(40.0, 80.0);
@@ -101,7 +101,7 @@ TEST_CASE("light that goes up and down all the time is followed within its noise
     CHECK(std::sqrt(square) < 0.35 * 0.8 / std::sqrt(2.0));
 }
 
-TEST_CASE("noise falls though history is held to its frame's light", "[temporal_history]") {
+TEST_CASE("noise falls though history is held to its frame's light", "[temporal_history][large]") {
     const auto width = GENERATE(1u, 16u);
     const auto shared = GENERATE(false, true);
     CAPTURE(width, shared);
