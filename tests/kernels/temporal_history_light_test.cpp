@@ -161,7 +161,7 @@ TEST_CASE("a cut keeps nothing", "[temporal_history]") {
     CHECK(history.fresh() == 35 * 7);
 }
 
-TEST_CASE("another size takes its history from the picture of the old one", "[temporal_history]") {
+TEST_CASE("another size takes its history from the picture of the old one", "[temporal_history][large]") {
     const auto width = GENERATE(1u, 16u);
     KernelRig rig(width);
     HistoryRig history(rig, frames(16, 0.0f), 96, 48);
