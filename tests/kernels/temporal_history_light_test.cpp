@@ -56,7 +56,7 @@ double deviationOf(const Image& image, double mean) {
 
 }  // namespace
 
-TEST_CASE("light that halves leaves less than 5 % of the change behind after 8 frames", "[temporal_history]") {
+TEST_CASE("light that halves leaves less than 5 % of the change behind after 8 frames", "[temporal_history][large]") {
     const auto width = GENERATE(1u, 16u);
     const auto shared = GENERATE(false, true);
     const auto spread = GENERATE(0.0, 0.1);
@@ -81,7 +81,7 @@ TEST_CASE("light that halves leaves less than 5 % of the change behind after 8 f
     CHECK(std::abs(mean - after) < 0.05 * std::abs(1.0 - after) + noise);
 }
 
-TEST_CASE("light that goes up and down all the time is followed within its noise", "[temporal_history]") {
+TEST_CASE("light that goes up and down all the time is followed within its noise", "[temporal_history][large]") {
     const auto width = GENERATE(1u, 16u);
     const auto shared = GENERATE(false, true);
     const auto period = GENERATE(40.0, 80.0);
@@ -101,7 +101,7 @@ TEST_CASE("light that goes up and down all the time is followed within its noise
     CHECK(std::sqrt(square) < 0.35 * 0.8 / std::sqrt(2.0));
 }
 
-TEST_CASE("noise falls though history is held to its frame's light", "[temporal_history]") {
+TEST_CASE("noise falls though history is held to its frame's light", "[temporal_history][large]") {
     const auto width = GENERATE(1u, 16u);
     const auto shared = GENERATE(false, true);
     CAPTURE(width, shared);
@@ -124,22 +124,28 @@ TEST_CASE("noise falls though history is held to its frame's light", "[temporal_
 
 TEST_CASE("500 frames: no drift", "[temporal_history][large]") {
     KernelRig rig(16);
-    HistoryRig still(rig, frames(64), 35, 7), varied(rig, frames(64), 35, 7);
+    HistoryRig still(rig, frames(64), 35, 7), free(rig, frames(64, 0.0f), 35, 7), bound(rig, frames(64), 35, 7);
     Frame frame(35, 7);
     frame.look(pixelCamera(35, 7), flat);
     Frame constant = frame;
     constant.shine([](std::uint32_t x, std::uint32_t y) { return Vec{0.3 + 0.017 * x, 1e-6 + 0.1 * y, 3e4 / (1.0 + x)}; });
-    double early = 0.0, late = 0.0;
+    double early[2] = {}, late[2] = {};
     for (std::uint32_t f = 0; f < 500; ++f) {
         // The same light: to the bit.
         REQUIRE(bitDifference(still.render(constant).planes, constant.light.planes) == "");
-        // Samples that come again after 16 frames, as techniques' do: the mean stays theirs.
+        // Samples that come again after 16 frames: the mean stays theirs.
         shine(frame, 1.0, 0.3, false, f % 16);
-        const double mean = meanOf(varied.render(frame));
-        if (f >= 240 && f < 256) early += mean / 16;
-        if (f >= 480 && f < 496) late += mean / 16;
+        HistoryRig* rigs[2] = {&free, &bound};
+        for (int i = 0; i < 2; ++i) {
+            const double mean = meanOf(rigs[i]->render(frame));
+            if (f >= 240 && f < 256) early[i] += mean / 16;
+            if (f >= 480 && f < 496) late[i] += mean / 16;
+        }
     }
-    CHECK(late == Approx(early).epsilon(1e-4));
+    // What is left of the start after 240 frames of share 1/64, 2 %, of its distance to the mean, and rounding.
+    CHECK(late[0] == Approx(early[0]).epsilon(5e-5));
+    // s goes up and down by sixteenths and does not come back to where it was, so that other frames are clipped now and then.
+    CHECK(late[1] == Approx(early[1]).epsilon(5e-4));
 }
 
 TEST_CASE("a cut keeps nothing", "[temporal_history]") {
@@ -155,7 +161,7 @@ TEST_CASE("a cut keeps nothing", "[temporal_history]") {
     CHECK(history.fresh() == 35 * 7);
 }
 
-TEST_CASE("another size takes its history from the picture of the old one", "[temporal_history]") {
+TEST_CASE("another size takes its history from the picture of the old one", "[temporal_history][large]") {
     const auto width = GENERATE(1u, 16u);
     KernelRig rig(width);
     HistoryRig history(rig, frames(16, 0.0f), 96, 48);

@@ -77,7 +77,7 @@ TEST_CASE("a static view is the mean of its frames, and its variance falls as 1/
     }
 }
 
-TEST_CASE("a picture that moves by whole pixels takes its history along", "[temporal_history]") {
+TEST_CASE("a picture that moves by whole pixels takes its history along", "[temporal_history][large]") {
     const auto width = GENERATE(1u, 16u);
     const auto orthographic = GENERATE(false, true);
     const auto byMotion = GENERATE(false, true);
@@ -113,7 +113,7 @@ TEST_CASE("a picture that moves by whole pixels takes its history along", "[temp
     CHECK(history.fresh() == fresh);
 }
 
-TEST_CASE("a linear ramp passes through moves by parts of a pixel as it is", "[temporal_history]") {
+TEST_CASE("a linear ramp passes through moves by parts of a pixel as it is", "[temporal_history][large]") {
     const auto width = GENERATE(1u, 16u);
     const auto step = GENERATE(std::make_pair(0.25, 0.0), std::make_pair(-1.4, 0.6), std::make_pair(0.0, 3.5));
     CAPTURE(width, step.first, step.second);
@@ -176,7 +176,7 @@ TEST_CASE("what comes out from behind something starts anew, nothing else", "[te
     CHECK(bitDifference(out.planes, second.light.planes) == "");
 }
 
-TEST_CASE("nothing crosses an edge of depth or normals while a picture moves", "[temporal_history]") {
+TEST_CASE("nothing crosses an edge of depth or normals while a picture moves", "[temporal_history][large]") {
     const auto width = GENERATE(1u, 16u);
     const auto byNormal = GENERATE(false, true);
     KernelRig rig(width);
