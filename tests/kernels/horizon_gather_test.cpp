@@ -11,6 +11,7 @@
 #include "passes/weighted_filter.h"
 #include "reference/horizon_twin.h"
 #include "support/kernel_rig.h"
+#include "support/packed_light.h"
 #include "support/view_scene.h"
 
 using namespace lightwell;
@@ -72,12 +73,6 @@ std::vector<float> gathered(KernelRig& rig, DrawnView& drawn, const Case& c, std
         *twin = reference::horizonGather(read, horizonPattern(c.pattern, reach, 1.0), camera, c.ranges, c.pattern, h, c.light, c.uniform);
     }
     return rig.downloadPlanes(rig.planes(out, w, h, planes));
-}
-
-double meanOf(const std::vector<float>& values) {
-    double sum = 0.0;
-    for (const float v : values) sum += double(v);
-    return sum / double(values.size());
 }
 
 TestCamera cameraOf(bool orthographic) {

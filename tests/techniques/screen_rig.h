@@ -27,6 +27,14 @@ inline ScreenResult renderScreen(TestTechnique& technique, const TestView& view,
     return result;
 }
 
+// A lit floor patch and the wall over its far edge, all in view.
+inline ViewScene litScene(double radiance = 1.0) {
+    ViewScene scene;
+    scene.quad({-0.5, 0, 0}, {1, 0, 0}, {0, 0, 1}, radiance);
+    scene.quad({-0.5, 0, 0}, {1, 0, 0}, {0, 1, 0}, 0.0);
+    return scene;
+}
+
 // On a fresh technique.
 inline ScreenResult renderScreen(LWDevice device, const char* name, const void* desc, DrawnView& drawn,
                                  unsigned outputs = kIrradiance | kValidity | kAmbient) {
