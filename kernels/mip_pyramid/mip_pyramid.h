@@ -34,25 +34,25 @@ LW_FN real pixel_area(const lw_surface s, real depth, const LwPyramidCamera c) {
 }
 
 // b instead of a: the first surface, one that sends before one that only receives, the nearer one.
-LW_FN mask goes_before(const lw_texel a, const lw_texel b) {
-    mask before = b.depth < a.depth;
+LW_FN mask goes_before(const lw_texel* a, const lw_texel* b) {
+    mask before = b->depth < a->depth;
 #if LW_PYRAMID_AREA
-    const mask sends = b.area > 0.0f, rival = a.area > 0.0f;
+    const mask sends = b->area > 0.0f, rival = a->area > 0.0f;
     before = or_(and_(sends, not_(rival)), and_(before, or_(sends, not_(rival))));
 #endif
-    return and_(b.s.valid, or_(not_(a.s.valid), before));
+    return and_(b->s.valid, or_(not_(a->s.valid), before));
 }
 
-LW_FN void keep_nearer(lw_texel* kept, const lw_texel other) {
-    const mask take = goes_before(*kept, other);
-    kept->s.px = select_(kept->s.px, other.s.px, take);
-    kept->s.py = select_(kept->s.py, other.s.py, take);
-    kept->s.pz = select_(kept->s.pz, other.s.pz, take);
-    kept->s.nx = select_(kept->s.nx, other.s.nx, take);
-    kept->s.ny = select_(kept->s.ny, other.s.ny, take);
-    kept->s.nz = select_(kept->s.nz, other.s.nz, take);
-    kept->area = select_(kept->area, other.area, take);
-    kept->depth = select_(kept->depth, other.depth, take);
+LW_FN void keep_nearer(lw_texel* kept, const lw_texel* other) {
+    const mask take = goes_before(kept, other);
+    kept->s.px = select_(kept->s.px, other->s.px, take);
+    kept->s.py = select_(kept->s.py, other->s.py, take);
+    kept->s.pz = select_(kept->s.pz, other->s.pz, take);
+    kept->s.nx = select_(kept->s.nx, other->s.nx, take);
+    kept->s.ny = select_(kept->s.ny, other->s.ny, take);
+    kept->s.nz = select_(kept->s.nz, other->s.nz, take);
+    kept->area = select_(kept->area, other->area, take);
+    kept->depth = select_(kept->depth, other->depth, take);
     kept->s.valid = or_(kept->s.valid, take);
 }
 
@@ -61,7 +61,7 @@ LW_FN void keep_nearer(lw_texel* kept, const lw_texel other) {
 // of areas: the plain mean.
 LW_FN lw_texel merged(const lw_texel* child, int first) {
     lw_texel t = child[first];
-    for (int i = 1; i < 4; ++i) keep_nearer(&t, child[(first + i) & 3]);
+    for (int i = 1; i < 4; ++i) keep_nearer(&t, child + ((first + i) & 3));
     real weight = (real)0.0f;
     t.r = t.g = t.b = (real)0.0f;
     for (int i = 0; i < 4; ++i) {

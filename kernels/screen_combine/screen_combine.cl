@@ -16,15 +16,17 @@ __kernel void screen_combine_add(__global const float* fine, int4 fineLayout, in
     if (x >= width || y >= height) return;
     real p[6][LW_INTERLEAVE];
     LW_UNROLL for (int a = 0; a < 6; ++a) load_dealt(p[a], fine, fineLayout.x + a * fineLayout.z + y * fineLayout.y, x, width);
-    lw_surface s[LW_INTERLEAVE];
-    LW_UNROLL for (int phase = 0; phase < LW_INTERLEAVE; ++phase)
-        s[phase] = make_surface(p[0][phase], p[1][phase], p[2][phase], p[3][phase], p[4][phase], p[5][phase]);
-    lw_light_sum up[LW_INTERLEAVE];
-    upsample_light(up, s, coarse, coarseLayout, light, lightLayout, hx, y, coarseRows, width);
+    real up[LW_LIGHT_PLANES][LW_INTERLEAVE];
+    LW_UNROLL for (int phase = 0; phase < LW_INTERLEAVE; ++phase) {
+        const lw_surface s = make_surface(p[0][phase], p[1][phase], p[2][phase], p[3][phase], p[4][phase], p[5][phase]);
+        lw_light_sum found;
+        upsample_light(&found, &s, phase, coarse, coarseLayout, light, lightLayout, hx, y, coarseRows, width);
+        LW_UNROLL for (int a = 0; a < LW_LIGHT_PLANES; ++a) up[a][phase] = found.v[a];
+    }
     LW_UNROLL for (int a = 0; a < LW_LIGHT_PLANES; ++a) {
         real v[LW_INTERLEAVE];
         load_dealt(v, own, ownLayout.x + a * ownLayout.z + y * ownLayout.y, x, width);
-        LW_UNROLL for (int phase = 0; phase < LW_INTERLEAVE; ++phase) v[phase] += up[phase].v[a];
+        LW_UNROLL for (int phase = 0; phase < LW_INTERLEAVE; ++phase) v[phase] += up[a][phase];
         store_dealt(v, sum, sumLayout.x + a * sumLayout.z + y * sumLayout.y, x, width);
     }
 }
@@ -43,35 +45,30 @@ __kernel void screen_combine_finish(__global const float* position, int4 positio
         load_dealt(p[a], position, positionLayout.x + a * positionLayout.z + y * positionLayout.y, x, width);
         load_dealt(p[3 + a], normal, normalLayout.x + a * normalLayout.z + y * normalLayout.y, x, width);
     }
-    lw_surface s[LW_INTERLEAVE];
-    LW_UNROLL for (int phase = 0; phase < LW_INTERLEAVE; ++phase)
-        s[phase] = make_surface(p[0][phase], p[1][phase], p[2][phase], p[3][phase], p[4][phase], p[5][phase]);
-    lw_light_sum up[LW_INTERLEAVE];
-#if LW_INTERLEAVE == 1
-    const lw_lit_texel t = load_lit(texels, texelLayout, light, lightLayout, x, y);
-    for (int a = 0; a < LW_LIGHT_PLANES; ++a) up[0].v[a] = select_((real)0.0f, t.v[a], s[0].valid);
-#else
-    const int lost = upsample_light(up, s, texels, texelLayout, light, lightLayout, hx, y, texelRows, width);
-    if (lost) atomic_add(counts + LW_SCREEN_FALLBACKS, lost);
-#endif
-    int saturated = 0;
+    real out[LW_LIGHT_PLANES][LW_INTERLEAVE];
+    int lost = 0, saturated = 0;
     LW_UNROLL for (int phase = 0; phase < LW_INTERLEAVE; ++phase) {
-        // Down-sampled light is already at the limit where it was above it.
+        const lw_surface s = make_surface(p[0][phase], p[1][phase], p[2][phase], p[3][phase], p[4][phase], p[5][phase]);
+        lw_light_sum found;
+#if LW_INTERLEAVE == 1
+        lw_lit_texel t;
+        load_lit(&t, texels, texelLayout, light, lightLayout, x, y);
+        LW_UNROLL for (int a = 0; a < LW_LIGHT_PLANES; ++a) found.v[a] = select_((real)0.0f, t.v[a], s.valid);
+#else
+        lost += upsample_light(&found, &s, phase, texels, texelLayout, light, lightLayout, hx, y, texelRows, width);
+#endif
+        // Levels are already at the limit where they were above it.
         const real most = (real)LW_LARGEST_IRRADIANCE;
-        const mask full = fmax(up[phase].v[0], fmax(up[phase].v[1], up[phase].v[2])) >= most;
+        const mask full = fmax(found.v[0], fmax(found.v[1], found.v[2])) >= most;
         if (any_(full)) saturated += count_(full);
-        for (int a = 0; a < 3; ++a) up[phase].v[a] = fmin(up[phase].v[a], most);
-        up[phase].v[LW_LIGHT_SHARE] = fmin(up[phase].v[LW_LIGHT_SHARE], (real)1.0f);
+        LW_UNROLL for (int a = 0; a < 3; ++a) out[a][phase] = fmin(found.v[a], most);
+        out[LW_LIGHT_SHARE][phase] = fmin(found.v[LW_LIGHT_SHARE], (real)1.0f);
     }
+    if (lost) atomic_add(counts + LW_SCREEN_FALLBACKS, lost);
     if (saturated) atomic_add(counts + LW_SCREEN_SATURATED, saturated);
-    real v[LW_INTERLEAVE];
-    if (hasIrradiance)
-        for (int a = 0; a < 3; ++a) {
-            LW_UNROLL for (int phase = 0; phase < LW_INTERLEAVE; ++phase) v[phase] = up[phase].v[a];
-            store_dealt(v, irradiance, irradianceLayout.x + a * irradianceLayout.z + y * irradianceLayout.y, x, width);
-        }
-    if (hasValidity) {
-        LW_UNROLL for (int phase = 0; phase < LW_INTERLEAVE; ++phase) v[phase] = up[phase].v[LW_LIGHT_SHARE];
-        store_dealt(v, validity, validityLayout.x + y * validityLayout.y, x, width);
+    if (hasIrradiance) {
+        LW_UNROLL for (int a = 0; a < 3; ++a)
+            store_dealt(out[a], irradiance, irradianceLayout.x + a * irradianceLayout.z + y * irradianceLayout.y, x, width);
     }
+    if (hasValidity) store_dealt(out[LW_LIGHT_SHARE], validity, validityLayout.x + y * validityLayout.y, x, width);
 }

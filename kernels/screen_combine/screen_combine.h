@@ -10,30 +10,39 @@
 #include "shared/screen_types.h"
 #include "shared/surface.h"
 
-// Light summed by weight; a pixel of an image whose texels are LW_INTERLEAVE pixels wide.
+// Structs are handed on by pointer: by value, PoCL copies them through memory, tap by tap.
+
+// Light summed by weight.
 typedef struct { real v[LW_LIGHT_PLANES], weight; } lw_light_sum;
 
 // A pyramid's texels and their light, LW_WIDTH side by side.
-typedef struct { lw_surface s; real v[LW_LIGHT_PLANES]; } lw_lit_texel;
+typedef struct { real px, py, pz, nx, ny, nz, v[LW_LIGHT_PLANES]; } lw_lit_texel;
 
 // Texels from column x on; rows have borders without a surface.
-LW_FN lw_lit_texel load_lit(__global const float* texels, int4 texelLayout, __global const float* light, int4 lightLayout,
-                            int x, int y) {
-    lw_lit_texel t;
+LW_FN void load_lit(lw_lit_texel* t, __global const float* texels, int4 texelLayout, __global const float* light,
+                    int4 lightLayout, int x, int y) {
     const int at = texelLayout.x + y * texelLayout.y + x, from = lightLayout.x + y * lightLayout.y + x;
-    t.s.px = load(texels, at);
-    t.s.py = load(texels, at + texelLayout.z);
-    t.s.pz = load(texels, at + 2 * texelLayout.z);
-    t.s.nx = load(texels, at + 3 * texelLayout.z);
-    t.s.ny = load(texels, at + 4 * texelLayout.z);
-    t.s.nz = load(texels, at + 5 * texelLayout.z);
-    t.s.valid = squared_length(t.s.nx, t.s.ny, t.s.nz) > 0.25f;
-    for (int a = 0; a < LW_LIGHT_PLANES; ++a) t.v[a] = load(light, from + a * lightLayout.z);
-    return t;
+    t->px = load(texels, at);
+    t->py = load(texels, at + texelLayout.z);
+    t->pz = load(texels, at + 2 * texelLayout.z);
+    t->nx = load(texels, at + 3 * texelLayout.z);
+    t->ny = load(texels, at + 4 * texelLayout.z);
+    t->nz = load(texels, at + 5 * texelLayout.z);
+    LW_UNROLL for (int a = 0; a < LW_LIGHT_PLANES; ++a) t->v[a] = load(light, from + a * lightLayout.z);
 }
 
-LW_FN void add_lit(lw_light_sum* sum, real w, const lw_lit_texel t) {
-    for (int a = 0; a < LW_LIGHT_PLANES; ++a) sum->v[a] = fma_(w, t.v[a], sum->v[a]);
+// Weight of a texel for a surface: nothing across an edge, nothing of a texel without a surface (its normal is zero).
+LW_FN real lit_weight(const lw_surface* s, const lw_lit_texel* t) {
+    return edge_weight(*s, t->px, t->py, t->pz, t->nx, t->ny, t->nz, (real)1.0f);
+}
+
+LW_FN void clear_sum(lw_light_sum* sum) {
+    LW_UNROLL for (int a = 0; a < LW_LIGHT_PLANES; ++a) sum->v[a] = (real)0.0f;
+    sum->weight = (real)0.0f;
+}
+
+LW_FN void add_lit(lw_light_sum* sum, real w, const lw_lit_texel* t) {
+    LW_UNROLL for (int a = 0; a < LW_LIGHT_PLANES; ++a) sum->v[a] = fma_(w, t->v[a], sum->v[a]);
     sum->weight += w;
 }
 
@@ -45,31 +54,27 @@ LW_FN float spline_weight(int tap, int phase) {
     return 0.5f * t * t;
 }
 
-// The light of pixels x = LW_INTERLEAVE * hx + phase + .. of row y, from texels hx ..: sum[phase], to be divided by its
-// weight. `lit` by likeness of normals alone instead of the edge test: for pixels that no texel passes it for.
-LW_FN void gather_texels(lw_light_sum* sum, const lw_surface* s, __global const float* texels, int4 texelLayout,
+// The light of pixels LW_INTERLEAVE * hx + phase, .. of row y, to be divided by its weight. byLikeness, a constant: by
+// likeness of normals alone instead of the edge test, for pixels that no texel passes it for.
+LW_FN void gather_texels(lw_light_sum* sum, const lw_surface* s, int phase, __global const float* texels, int4 texelLayout,
                          __global const float* light, int4 lightLayout, int hx, int y, int texelRows, const int byLikeness) {
-    LW_UNROLL for (int phase = 0; phase < LW_INTERLEAVE; ++phase) {
-        for (int a = 0; a < LW_LIGHT_PLANES; ++a) sum[phase].v[a] = (real)0.0f;
-        sum[phase].weight = (real)0.0f;
-    }
+    clear_sum(sum);
     for (int j = -1; j <= 1; ++j) {
         const int hy = y / LW_INTERLEAVE + j;
         if (hy < 0 || hy >= texelRows) continue;
         const float rowWeight = spline_weight(j, y % LW_INTERLEAVE);
-        for (int i = -1; i <= 1; ++i) {
-            const lw_lit_texel t = load_lit(texels, texelLayout, light, lightLayout, hx + i, hy);
-            LW_UNROLL for (int phase = 0; phase < LW_INTERLEAVE; ++phase) {
-                const float tent = rowWeight * spline_weight(i, phase);
-                real w;
-                if (byLikeness) {
-                    const real alike = fma_(t.s.nx, s[phase].nx, fma_(t.s.ny, s[phase].ny, t.s.nz * s[phase].nz));
-                    w = select_((real)0.0f, (fmax(alike, (real)0.0f) + 1e-3f) * tent, t.s.valid);
-                } else {
-                    w = tent * edge_weight(s[phase], t.s.px, t.s.py, t.s.pz, t.s.nx, t.s.ny, t.s.nz, (real)1.0f);
-                }
-                add_lit(&sum[phase], w, t);
+        LW_UNROLL for (int i = -1; i <= 1; ++i) {
+            lw_lit_texel t;
+            load_lit(&t, texels, texelLayout, light, lightLayout, hx + i, hy);
+            const float tent = rowWeight * spline_weight(i, phase);
+            real w;
+            if (byLikeness) {
+                const real alike = fma_(t.nx, s->nx, fma_(t.ny, s->ny, t.nz * s->nz));
+                w = select_((real)0.0f, (fmax(alike, (real)0.0f) + 1e-3f) * tent, squared_length(t.nx, t.ny, t.nz) > 0.25f);
+            } else {
+                w = tent * lit_weight(s, &t);
             }
+            add_lit(sum, w, &t);
         }
     }
 }
@@ -79,29 +84,21 @@ LW_FN void gather_texels(lw_light_sum* sum, const lw_surface* s, __global const 
 
 // What gather_texels finds, divided; surfaces that no texel of their own reaches are lit by likeness of normals.
 // Returns how many of the first `width` columns those are.
-LW_FN int upsample_light(lw_light_sum* sum, const lw_surface* s, __global const float* texels, int4 texelLayout,
+LW_FN int upsample_light(lw_light_sum* sum, const lw_surface* s, int phase, __global const float* texels, int4 texelLayout,
                          __global const float* light, int4 lightLayout, int hx, int y, int texelRows, int width) {
-    gather_texels(sum, s, texels, texelLayout, light, lightLayout, hx, y, texelRows, 0);
-    mask lost[LW_INTERLEAVE], some = splat_mask(0);
-    LW_UNROLL for (int phase = 0; phase < LW_INTERLEAVE; ++phase) {
-        lost[phase] = and_(s[phase].valid, not_(sum[phase].weight > LW_LOST_WEIGHT));
-        some = or_(some, lost[phase]);
-    }
+    gather_texels(sum, s, phase, texels, texelLayout, light, lightLayout, hx, y, texelRows, 0);
+    const mask lost = and_(s->valid, not_(sum->weight > LW_LOST_WEIGHT));
     int count = 0;
-    if (any_(some)) {
-        lw_light_sum rest[LW_INTERLEAVE];
-        gather_texels(rest, s, texels, texelLayout, light, lightLayout, hx, y, texelRows, 1);
-        LW_UNROLL for (int phase = 0; phase < LW_INTERLEAVE; ++phase) {
-            for (int a = 0; a < LW_LIGHT_PLANES; ++a) sum[phase].v[a] = select_(sum[phase].v[a], rest[phase].v[a], lost[phase]);
-            sum[phase].weight = select_(sum[phase].weight, rest[phase].weight, lost[phase]);
-            const lanei column = (lanei_iota() + (lanei)hx) * LW_INTERLEAVE + (lanei)phase;
-            count += count_(and_(lost[phase], column < (lanei)width));
-        }
+    if (any_(lost)) {
+        lw_light_sum rest;
+        gather_texels(&rest, s, phase, texels, texelLayout, light, lightLayout, hx, y, texelRows, 1);
+        LW_UNROLL for (int a = 0; a < LW_LIGHT_PLANES; ++a) sum->v[a] = select_(sum->v[a], rest.v[a], lost);
+        sum->weight = select_(sum->weight, rest.weight, lost);
+        const lanei column = (lanei_iota() + (lanei)hx) * LW_INTERLEAVE + (lanei)phase;
+        count = count_(and_(lost, column < (lanei)width));
     }
-    LW_UNROLL for (int phase = 0; phase < LW_INTERLEAVE; ++phase) {
-        const real scale = select_((real)0.0f, 1.0f / sum[phase].weight, and_(s[phase].valid, sum[phase].weight > 0.0f));
-        for (int a = 0; a < LW_LIGHT_PLANES; ++a) sum[phase].v[a] *= scale;
-    }
+    const real scale = select_((real)0.0f, 1.0f / sum->weight, and_(s->valid, sum->weight > 0.0f));
+    LW_UNROLL for (int a = 0; a < LW_LIGHT_PLANES; ++a) sum->v[a] *= scale;
     return count;
 }
 

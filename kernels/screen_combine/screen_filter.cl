@@ -16,7 +16,9 @@ __kernel void screen_combine_filter(__global const float* texels, int4 texelLayo
                                     int4 filteredLayout) {
     const int x = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);
     if (x >= width || y >= height) return;
-    const lw_lit_texel own = load_lit(texels, texelLayout, light, lightLayout, x, y);
+    lw_lit_texel own;
+    load_lit(&own, texels, texelLayout, light, lightLayout, x, y);
+    const lw_surface s = make_surface(own.px, own.py, own.pz, own.nx, own.ny, own.nz);
     const int firstRow = clamp(y - LW_BACK, 0, max(height - LW_INTERLEAVE, 0)), rows = min(LW_INTERLEAVE, height);
     const lanei column = lanei_iota() + (lanei)x;
     // Where each lane's window begins, less its own column: -LW_BACK but at the border.
@@ -24,17 +26,17 @@ __kernel void screen_combine_filter(__global const float* texels, int4 texelLayo
     const int inside = x - LW_BACK >= 0 && x + LW_WIDTH + LW_INTERLEAVE - 1 - LW_BACK <= width;
     const int from = inside ? -LW_BACK : 1 - LW_INTERLEAVE, to = inside ? LW_INTERLEAVE - LW_BACK : LW_INTERLEAVE;
     lw_light_sum sum;
-    for (int a = 0; a < LW_LIGHT_PLANES; ++a) sum.v[a] = (real)0.0f;
-    sum.weight = (real)0.0f;
-    if (any_(own.s.valid))
+    clear_sum(&sum);
+    if (any_(s.valid))
         for (int j = 0; j < rows; ++j)
             for (int i = from; i < to; ++i) {
-                const lw_lit_texel t = load_lit(texels, texelLayout, light, lightLayout, x + i, firstRow + j);
-                real w = edge_weight(own.s, t.s.px, t.s.py, t.s.pz, t.s.nx, t.s.ny, t.s.nz, (real)1.0f);
+                lw_lit_texel t;
+                load_lit(&t, texels, texelLayout, light, lightLayout, x + i, firstRow + j);
+                real w = lit_weight(&s, &t);
                 if (!inside) w = select_((real)0.0f, w, and_((lanei)i >= start, (lanei)i < start + LW_INTERLEAVE));
-                add_lit(&sum, w, t);
+                add_lit(&sum, w, &t);
             }
-    const real scale = select_((real)0.0f, 1.0f / sum.weight, and_(own.s.valid, sum.weight > 0.0f));
+    const real scale = select_((real)0.0f, 1.0f / sum.weight, and_(s.valid, sum.weight > 0.0f));
     const int o = filteredLayout.x + y * filteredLayout.y + x;
     for (int a = 0; a < LW_LIGHT_PLANES; ++a) store(sum.v[a] * scale, filtered, o + a * filteredLayout.z);
 }
