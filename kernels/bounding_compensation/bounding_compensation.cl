@@ -49,6 +49,7 @@ __kernel void bounding_compensation_halve(__global const float* position, int4 p
     if (hx >= (width + 1) / 2 || hy >= (height + 1) / 2) return;
     const int rowEnd = (width + 15) & ~15;
     const lw_surface s = load_surface(halfPosition, halfPositionLayout, halfNormal, halfNormalLayout, hx, hy);
+    const lw_edges edges = edges_of(s, (real)1.0f);
     const lanei column = lanei_iota() * 2 + (lanei)x;
     const real zero = (real)0.0f;
     real sum[3] = {zero, zero, zero}, weight = zero;
@@ -66,7 +67,7 @@ __kernel void bounding_compensation_halve(__global const float* position, int4 p
         }
         for (int i = 0; i < 2; ++i) {
             const lw_surface q = make_surface(v[i][0], v[i][1], v[i][2], v[i][3], v[i][4], v[i][5]);
-            const real w = edge_weight(s, q.px, q.py, q.pz, q.nx, q.ny, q.nz, (real)1.0f);
+            const real w = edge_weight(edges, q.px, q.py, q.pz, q.nx, q.ny, q.nz);
             const mask on = and_(and_(q.valid, s.valid), and_(w > 0.0f, column + (lanei)i < (lanei)width));
             for (int c = 0; c < 3; ++c) sum[c] += select_(zero, v[i][6 + c], on);
             weight += ones_(on);

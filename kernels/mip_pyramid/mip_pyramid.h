@@ -62,11 +62,12 @@ LW_FN void keep_nearer(lw_texel* kept, const lw_texel* other) {
 LW_FN lw_texel merged(const lw_texel* child, int first) {
     lw_texel t = child[first];
     for (int i = 1; i < 4; ++i) keep_nearer(&t, child + ((first + i) & 3));
+    const lw_edges edges = edges_of(t.s, (real)1.0f);
     real weight = (real)0.0f;
     t.r = t.g = t.b = (real)0.0f;
     for (int i = 0; i < 4; ++i) {
         const lw_texel* c = child + i;
-        const real agrees = edge_weight(t.s, c->s.px, c->s.py, c->s.pz, c->s.nx, c->s.ny, c->s.nz, (real)1.0f);
+        const real agrees = edge_weight(edges, c->s.px, c->s.py, c->s.pz, c->s.nx, c->s.ny, c->s.nz);
         const mask on = and_(c->s.valid, and_(t.s.valid, agrees > 0.0f));
 #if LW_PYRAMID_AREA
         const real w = select_((real)0.0f, c->area, on);

@@ -32,8 +32,8 @@ LW_FN void load_lit(lw_lit_texel* t, __global const float* texels, int4 texelLay
 }
 
 // Weight of a texel for a surface: nothing across an edge, nothing of a texel without a surface (its normal is zero).
-LW_FN real lit_weight(const lw_surface* s, const lw_lit_texel* t) {
-    return edge_weight(*s, t->px, t->py, t->pz, t->nx, t->ny, t->nz, (real)1.0f);
+LW_FN real lit_weight(const lw_edges* s, const lw_lit_texel* t) {
+    return edge_weight(*s, t->px, t->py, t->pz, t->nx, t->ny, t->nz);
 }
 
 LW_FN void clear_sum(lw_light_sum* sum) {
@@ -59,6 +59,7 @@ LW_FN float spline_weight(int tap, int phase) {
 LW_FN void gather_texels(lw_light_sum* sum, const lw_surface* s, int phase, __global const float* texels, int4 texelLayout,
                          __global const float* light, int4 lightLayout, int hx, int y, int texelRows, const int byLikeness) {
     clear_sum(sum);
+    const lw_edges edges = edges_of(*s, (real)1.0f);
     for (int j = -1; j <= 1; ++j) {
         const int hy = y / LW_INTERLEAVE + j;
         if (hy < 0 || hy >= texelRows) continue;
@@ -72,7 +73,7 @@ LW_FN void gather_texels(lw_light_sum* sum, const lw_surface* s, int phase, __gl
                 const real alike = fma_(t.nx, s->nx, fma_(t.ny, s->ny, t.nz * s->nz));
                 w = select_((real)0.0f, (fmax(alike, (real)0.0f) + 1e-3f) * tent, squared_length(t.nx, t.ny, t.nz) > 0.25f);
             } else {
-                w = tent * lit_weight(s, &t);
+                w = tent * lit_weight(&edges, &t);
             }
             add_lit(sum, w, &t);
         }

@@ -19,6 +19,7 @@ __kernel void screen_combine_filter(__global const float* texels, int4 texelLayo
     lw_lit_texel own;
     load_lit(&own, texels, texelLayout, light, lightLayout, x, y);
     const lw_surface s = make_surface(own.px, own.py, own.pz, own.nx, own.ny, own.nz);
+    const lw_edges edges = edges_of(s, (real)1.0f);
     const int firstRow = clamp(y - LW_BACK, 0, max(height - LW_INTERLEAVE, 0)), rows = min(LW_INTERLEAVE, height);
     const lanei column = lanei_iota() + (lanei)x;
     // Where each lane's window begins, less its own column: -LW_BACK but at the border.
@@ -32,7 +33,7 @@ __kernel void screen_combine_filter(__global const float* texels, int4 texelLayo
             for (int i = from; i < to; ++i) {
                 lw_lit_texel t;
                 load_lit(&t, texels, texelLayout, light, lightLayout, x + i, firstRow + j);
-                real w = lit_weight(&s, &t);
+                real w = lit_weight(&edges, &t);
                 if (!inside) w = select_((real)0.0f, w, and_((lanei)i >= start, (lanei)i < start + LW_INTERLEAVE));
                 add_lit(&sum, w, &t);
             }

@@ -20,7 +20,7 @@ LW_FN void add_neighbour(lw_joined* sum, const lw_surface s, real tent, mask ins
     // A texel of area f l shows a surface f wide and l long: l^2 = area^2 / f^2.
     const real extent2 = fmax(area * area / footprint2, footprint2);
     const mask near = squared_length(px - s.px, py - s.py, pz - s.pz) <= (LW_JOIN_REACH * LW_JOIN_REACH) * extent2;
-    const real w = select_((real)0.0f, tent * edge_weight(s, px, py, pz, nx, ny, nz, (real)1.0f), and_(inside, near));
+    const real w = select_((real)0.0f, tent * edge_weight(edges_of(s, (real)1.0f), px, py, pz, nx, ny, nz), and_(inside, near));
     for (int a = 0; a < LW_LIGHT_PLANES; ++a) sum->v[a] = fma_(w, gather(light, lit + a * lightPlane), sum->v[a]);
     sum->weight += w;
 }

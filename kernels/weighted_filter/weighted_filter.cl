@@ -14,15 +14,15 @@
 #endif
 
 // Adds row j of the window, of which the row at `p`, `n`, `g` holds the pixels. `inside`, a constant: all columns exist.
-LW_FN void add_row(real* sum, const lw_surface s, __global const float* position, int p, int positionPlane,
+LW_FN void add_row(real* sum, const lw_edges edges, mask valid, __global const float* position, int p, int positionPlane,
                    __global const float* normal, int n, int normalPlane, __global const float* gathered, int g,
                    int gatheredPlane, int x, int width, int firstColumn, int columns, int ownRow, const int inside) {
 #define LW_TAP(image, at) (inside ? load(image, (at) + x + i) : load_shifted(image, (at), x, i, width))
     for (int i = firstColumn; i < firstColumn + columns; ++i) {
-        real w = edge_weight(s, LW_TAP(position, p), LW_TAP(position, p + positionPlane), LW_TAP(position, p + 2 * positionPlane),
-                             LW_TAP(normal, n), LW_TAP(normal, n + normalPlane), LW_TAP(normal, n + 2 * normalPlane), s.scale);
+        real w = edge_weight(edges, LW_TAP(position, p), LW_TAP(position, p + positionPlane), LW_TAP(position, p + 2 * positionPlane),
+                             LW_TAP(normal, n), LW_TAP(normal, n + normalPlane), LW_TAP(normal, n + 2 * normalPlane));
         // The pixel itself counts in full, whatever rounding makes of its own tests.
-        if (ownRow && i == 0) w = ones_(s.valid);
+        if (ownRow && i == 0) w = ones_(valid);
         if (!inside) {
             const lanei column = lanei_iota() + (lanei)(x + i);
             w = select_((real)0.0f, w, and_(column >= (lanei)0, column < (lanei)width));
@@ -43,6 +43,7 @@ __kernel void weighted_filter_filter(__global const float* position, int4 positi
     if (x >= width || y >= height) return;
     lw_surface s = load_surface(position, positionLayout, normal, normalLayout, x, y);
     s.valid = and_(s.valid, lanei_iota() + (lanei)x < (lanei)width);
+    const lw_edges edges = edges_of(s, s.scale);
     const int rowCount = min(rows, height), firstRow = clamp(y - (rows - 1) / 2, 0, height - rowCount);
     const int firstColumn = -(columns - 1) / 2;
     const int inside = columns == 1 || (shift_inside(x, firstColumn, width) && shift_inside(x, firstColumn + columns - 1, width));
@@ -52,10 +53,10 @@ __kernel void weighted_filter_filter(__global const float* position, int4 positi
         const int p = positionLayout.x + j * positionLayout.y, n = normalLayout.x + j * normalLayout.y;
         const int g = gatheredLayout.x + j * gatheredLayout.y;
         if (inside)
-            add_row(sum, s, position, p, positionLayout.z, normal, n, normalLayout.z, gathered, g, gatheredLayout.z, x, width,
+            add_row(sum, edges, s.valid, position, p, positionLayout.z, normal, n, normalLayout.z, gathered, g, gatheredLayout.z, x, width,
                     firstColumn, columns, j == y, 1);
         else
-            add_row(sum, s, position, p, positionLayout.z, normal, n, normalLayout.z, gathered, g, gatheredLayout.z, x, width,
+            add_row(sum, edges, s.valid, position, p, positionLayout.z, normal, n, normalLayout.z, gathered, g, gatheredLayout.z, x, width,
                     firstColumn, columns, j == y, 0);
     }
     const mask lit = and_(s.valid, sum[LW_PLANES - 1] > 0.0f);
