@@ -7,7 +7,8 @@
 
 #define LW_UNROLL _Pragma("unroll")
 
-// Frames after which s is known well enough to clip by.
+// Frames after which s of a new surface is known well enough to clip by. What was forgotten later leaves s known: three frames
+// without bounds would drag light that goes on changing.
 #define LW_LEARNING 4.0f
 // Frames that m is a mean over, at most. Larger: (1 - 1/3)^8 = 4 % of a change are left in m, and so in the history, after 8
 // frames; 10 % would be with 4. Smaller: m follows noise, and the history with it.
@@ -16,6 +17,9 @@
 #define LW_TREND_AHEAD (2.0f / 3.0f)
 // Frames that b is a mean over. Larger: b lags where light goes up and then down. Smaller: it follows noise.
 #define LW_TREND_FRAMES 4.0f
+// b, in s * light, from which the mean forgets for the light's being in motion, all of it at half as much again. Larger: lag where
+// light changes steadily. Smaller: noise of more than half of the light, whose b comes as far by chance, is averaged less.
+#define LW_TREND_TELLS 1.0f
 // Deviation of m + 2/3 b from the light's mean over that of Y from m + b, of independent noise, rounded up.
 #define LW_RECENT_REACH 0.5f
 // Slope with which the mean forgets: all at half of the distance cut off (light twice as far from its past as the bounds
@@ -62,11 +66,13 @@ LW_FN real follow(real* past, const real* own, const int count, real age, real g
         past[c] = select_(fma_(more, clamp(own[c] * whole, (real)0.0f, (real)1.0f), past[c]), past[c] * less, aim < before);
     const real leap = away - *b;
     const mask back = or_(and_(leap > 0.0f, *b < 0.0f), and_(leap < 0.0f, *b > 0.0f));
+    const real told = fabs(trend) / fmax(*s * light, (real)1e-37f);
+    const real steady = select_((real)1.0f, clamp(3.0f - told * (2.0f / LW_TREND_TELLS), (real)0.0f, (real)1.0f), trusted);
     const real step = select_((real)LW_SPREAD_DOWN, select_((real)1.0f, (real)LW_SPREAD_UP, back), fabs(leap) > *s * light);
     *m = fma_(recent - now, share, now);
     *b = trend * share;
     *s = clamp(*s * step, (real)LW_LEAST_SPREAD, (real)1.0f);
-    return share;
+    return fmin(share, steady);  // m and b know of the motion
 }
 
 #endif

@@ -13,7 +13,8 @@
 // taken for noise. Frames are counted, not summed, since jumps of the light shall not weigh more than they are many. History is
 // brought between the bounds (clamping, Karis 2014)
 //   m + 2/3 b -+ gamma / 2 * s * light,
-// and forgets where much of it was cut off, or where a frame is more than some 5 deviations of Y away. Bounds from the 3 x 3
+// and forgets where much of it was cut off, where a frame is more than some 5 deviations of Y away, or where b says that light is
+// in motion. Bounds from the 3 x 3
 // pixels around, the usual choice, do not work here: samples that all pixels share, such as VPLs, move whole
 // patches up and down from frame to frame with next to no difference between neighbours, and at the edge of a moving
 // shadow neighbours differ by all of its light.
@@ -50,7 +51,7 @@
 
 typedef struct {
     real mixed[LW_MIXED];
-    real age, weight;
+    real age, learnt, weight;
 } lw_past;
 
 // One tap for the surface `s` (its place in the frame before). `uniform`, a constant: all lanes' taps lie side by side, from
@@ -61,7 +62,7 @@ LW_FN void add_tap(lw_past* past, const lw_surface s, real tolerance, __global c
     __global const int* words = (__global const int*)before;
     const laneu word = as_laneu_(uniform ? loadi(words, at + LW_WORD_PLANE * plane)
                                          : gatheri(words, index + (lanei)(LW_WORD_PLANE * plane)));
-    const real age = to_real(word >> 24);
+    const real age = age_of(word);
     const real dx = LW_READ(LW_POSITION_PLANE) - s.px, dy = LW_READ(LW_POSITION_PLANE + 1) - s.py,
                dz = LW_READ(LW_POSITION_PLANE + 2) - s.pz;
     const real off = fma_(dx, s.nx, fma_(dy, s.ny, dz * s.nz));
@@ -70,6 +71,7 @@ LW_FN void add_tap(lw_past* past, const lw_surface s, real tolerance, __global c
     LW_UNROLL for (int c = 0; c < LW_MIXED; ++c)
         past->mixed[c] = fma_(w, select_((real)0.0f, LW_READ(c), same), past->mixed[c]);
     past->age = fma_(w, age, past->age);
+    past->learnt = fma_(w, learnt_of(word), past->learnt);
     past->weight += w;
 #undef LW_READ
 }
@@ -96,7 +98,7 @@ LW_FN lw_past look_up(lw_surface s, mask wanted, int x, int y, int mode, const L
                       real* speed) {
     lw_past past;
     LW_UNROLL for (int c = 0; c < LW_MIXED; ++c) past.mixed[c] = (real)0.0f;
-    past.age = past.weight = *speed = (real)0.0f;
+    past.age = past.learnt = past.weight = *speed = (real)0.0f;
     lanei column = lanei_iota() + (lanei)x, row = (lanei)y;
     real fx = (real)0.0f, fy = (real)0.0f;
     const real ox = s.px - r.origin.x, oy = s.py - r.origin.y, oz = s.pz - r.origin.z;
@@ -177,7 +179,7 @@ __kernel void temporal_history_blend(__global const float* position, int4 positi
     }
     LW_UNROLL for (int c = 0; c < LW_VALUES; ++c) own[c] = select_((real)0.0f, own[c], finite);
 
-    mask known = splat_mask(0);
+    mask known = splat_mask(0), learnt = splat_mask(0);
     real age = (real)0.0f;
     real past[LW_MIXED];
     LW_UNROLL for (int c = 0; c < LW_MIXED; ++c) past[c] = (real)0.0f;
@@ -189,6 +191,7 @@ __kernel void temporal_history_blend(__global const float* position, int4 positi
         const real most = fmax(frames * LW_HALVING_SPEED / (LW_HALVING_SPEED + speed) - 1.0f, (real)0.0f);
         LW_UNROLL for (int c = 0; c < LW_MIXED; ++c) past[c] = found.mixed[c] * scale;
         age = select_((real)0.0f, fmin(floor(fma_(found.age, scale, (real)0.5f)), most), known);
+        learnt = and_(known, or_(found.learnt * scale > 0.5f, age >= LW_LEARNING));
     }
     real share = (real)1.0f, m[LW_KINDS], noise[LW_KINDS], trend[LW_KINDS];
     LW_UNROLL for (int k = 0; k < LW_KINDS; ++k) {
@@ -197,7 +200,7 @@ __kernel void temporal_history_blend(__global const float* position, int4 positi
         trend[k] = past[LW_VALUES + 2 * LW_KINDS + k];
     }
     if (any_(known)) {
-        const mask trusted = and_(splat_mask(gamma > 0.0f), and_(known, and_(finite, age >= LW_LEARNING)));
+        const mask trusted = and_(splat_mask(gamma > 0.0f), and_(learnt, finite));
         real keep = (real)1.0f;
         LW_UNROLL for (int k = 0; k < LW_KINDS; ++k)
             keep = fmin(keep, follow(past + (k ? k + 2 : 0), own + (k ? k + 2 : 0), k ? 1 : 3, age, (real)gamma, trusted, &m[k], &noise[k], &trend[k]));
@@ -230,7 +233,7 @@ __kernel void temporal_history_blend(__global const float* position, int4 positi
     store(s.py, after, o + (LW_POSITION_PLANE + 1) * plane);
     store(s.pz, after, o + (LW_POSITION_PLANE + 2) * plane);
     const lanei grown = to_lanei(fmax(age + select_((real)0.0f, (real)1.0f, finite), (real)1.0f) + 0.5f);
-    store(pack_word(s.nx, s.ny, s.nz, selecti_((lanei)0, grown, or_(known, finite))), (__global uint*)after, o + LW_WORD_PLANE * plane);
+    store(pack_word(s.nx, s.ny, s.nz, selecti_((lanei)0, grown, or_(known, finite)), learnt), (__global uint*)after, o + LW_WORD_PLANE * plane);
     const mask fresh = and_(surface, not_(known));
     if (any_(fresh)) atomic_add(counts, count_(fresh));
 }
@@ -241,5 +244,5 @@ __kernel void temporal_history_age(__global const float* history, int4 layout, i
     const int x = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);
     if (x >= width || y >= height) return;
     const laneu word = as_laneu_(loadi((__global const int*)history, layout.x + LW_WORD_PLANE * layout.z + y * layout.y + x));
-    store(to_real(word >> 24), age, ageLayout.x + y * ageLayout.y + x);
+    store(age_of(word), age, ageLayout.x + y * ageLayout.y + x);
 }
