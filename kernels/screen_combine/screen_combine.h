@@ -32,8 +32,8 @@ LW_FN void load_lit(lw_lit_texel* t, __global const float* texels, int4 texelLay
 }
 
 // Weight of a texel for a surface: nothing across an edge, nothing of a texel without a surface (its normal is zero).
-LW_FN real lit_weight(const lw_edges* s, const lw_lit_texel* t) {
-    return edge_weight(*s, t->px, t->py, t->pz, t->nx, t->ny, t->nz);
+LW_FN real lit_weight(const lw_edges* e, const lw_lit_texel* t) {
+    return edge_weight(*e, t->px, t->py, t->pz, t->nx, t->ny, t->nz);
 }
 
 LW_FN void clear_sum(lw_light_sum* sum) {
@@ -58,6 +58,7 @@ LW_FN float spline_weight(int tap, int phase) {
 // likeness of normals alone instead of the edge test, for pixels that no texel passes it for.
 LW_FN void gather_texels(lw_light_sum* sum, const lw_surface* s, int phase, __global const float* texels, int4 texelLayout,
                          __global const float* light, int4 lightLayout, int hx, int y, int texelRows, const int byLikeness) {
+    const lw_edges edges = edges_of(*s, (real)1.0f);
     clear_sum(sum);
     const lw_edges edges = edges_of(*s, (real)1.0f);
     for (int j = -1; j <= 1; ++j) {
