@@ -60,7 +60,6 @@ LW_FN void gather_texels(lw_light_sum* sum, const lw_surface* s, int phase, __gl
                          __global const float* light, int4 lightLayout, int hx, int y, int texelRows, const int byLikeness) {
     const lw_edges edges = edges_of(*s, (real)1.0f);
     clear_sum(sum);
-    const lw_edges edges = edges_of(*s, (real)1.0f);
     for (int j = -1; j <= 1; ++j) {
         const int hy = y / LW_INTERLEAVE + j;
         if (hy < 0 || hy >= texelRows) continue;
