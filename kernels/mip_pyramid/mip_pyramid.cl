@@ -8,10 +8,17 @@
 
 typedef struct { real even, odd; } lw_pair;
 
-// Columns x .. x + 2 LW_WIDTH - 1 of a row that may be read up to rowEnd.
+// One load of the whole register: PoCL's vload16 comes as quarters, and a shuffle of quarters as loads of single lanes.
+#if LW_WIDTH > 1 && defined(POCL_DEVICE_ADDRESS_BITS)
+LW_FN real load_whole(__global const float* p) { return *(__global const lw_loose_real*)p; }
+#else
+LW_FN real load_whole(__global const float* p) { return load(p, 0); }
+#endif
+
+// Columns x .. x + 2 LW_WIDTH - 1 of a row that may be read up to rowEnd; beyond, the first half again.
 LW_FN lw_pair load_pair(__global const float* image, int row, int x, int rowEnd) {
-    const real a = load(image, row + x);
-    const real b = x + LW_WIDTH < rowEnd ? load(image, row + x + LW_WIDTH) : (real)0.0f;
+    const real a = load_whole(image + row + x);
+    const real b = load_whole(image + row + (x + LW_WIDTH < rowEnd ? x + LW_WIDTH : x));
     const lw_pair pair = {even_(a, b), odd_(a, b)};
     return pair;
 }

@@ -19,8 +19,10 @@ __kernel void screen_combine_filter(__global const float* texels, int4 texelLayo
                                     int4 filteredLayout) {
     const int x = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);
     if (x >= width || y >= height) return;
+    lw_lit_row row;
     lw_lit_texel own;
-    load_lit(&own, texels, texelLayout, light, lightLayout, x, y);
+    lit_row(&row, texels, texelLayout, light, lightLayout, x, y);
+    load_lit(&own, &row, 0);
     const lw_surface s = make_surface(own.px, own.py, own.pz, own.nx, own.ny, own.nz);
     lw_light_sum sum;
     clear_sum(&sum);
@@ -28,12 +30,14 @@ __kernel void screen_combine_filter(__global const float* texels, int4 texelLayo
         add_lit(&sum, ones_(s.valid), &own);
     } else if (any_(s.valid)) {
         const lw_edges edges = edges_of(s, (real)1.0f);
-        for (int j = max(-LW_REACH, -y); j <= min(LW_REACH, height - 1 - y); ++j)
+        for (int j = max(-LW_REACH, -y); j <= min(LW_REACH, height - 1 - y); ++j) {
+            lit_row(&row, texels, texelLayout, light, lightLayout, x, y + j);
             LW_UNROLL for (int i = -LW_REACH; i <= LW_REACH; ++i) {
                 lw_lit_texel t;
-                load_lit(&t, texels, texelLayout, light, lightLayout, x + i, y + j);
+                load_lit(&t, &row, i);
                 add_lit(&sum, lit_weight(&edges, &t) * (window_weight(i) * window_weight(j)), &t);
             }
+        }
     }
     const real scale = select_((real)0.0f, 1.0f / sum.weight, and_(s.valid, sum.weight > 0.0f));
     const int o = filteredLayout.x + y * filteredLayout.y + x;
