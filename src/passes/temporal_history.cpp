@@ -111,8 +111,9 @@ void TemporalHistory::record(Executor& executor, const HistoryFrame& frame, cons
     if (view.camera_) {
         const bool rests = view.width_ == now.width && view.height_ == now.height &&
                            std::memcmp(&view.matrices_, &camera, sizeof camera) == 0;
-        // Motion vectors lead one frame back, so that a view that was not rendered in the last one goes by its cameras.
-        const bool moves = frame.motion && view.updates_ <= 1;
+        // Motion vectors lead one frame back: a view that was not rendered in the last one, or is for the second time in
+        // this one, goes by its cameras.
+        const bool moves = frame.motion && view.updates_ == 1;
         mode = moves ? LW_HISTORY_MOTION : rests ? LW_HISTORY_STILL : LW_HISTORY_REPROJECT;
         where = reprojection(*view.camera_, view.width_, view.height_, now);
     }

@@ -65,7 +65,8 @@ public:
         : rig_(rig), history_(rig.device(), options), view_(rig.device(), options, maxWidth, maxHeight) {}
 
     // `into`: where the mean goes, else memory of its own.
-    reference::Image render(const Frame& frame, bool forget = false, const Planes* into = nullptr) {
+    // `again`: once more in the same frame.
+    reference::Image render(const Frame& frame, bool forget = false, const Planes* into = nullptr, bool again = false) {
         constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
         const std::uint32_t w = frame.width(), h = frame.height();
         const Guarded p = rig_.uploadPlanes(frame.position.planes, w, h, 3, kNaN), n = rig_.uploadPlanes(frame.normal.planes, w, h, 3, 1.0f);
@@ -77,7 +78,7 @@ public:
         if (frame.motion) images.motion = rig_.planes(m, w, h, 3);
         images.current = rig_.planes(e, w, h, 3);
         images.irradiance = into ? *into : rig_.planes(out, w, h, 3);
-        view_.startFrame(forget);
+        if (!again) view_.startFrame(forget);
         history_.record(rig_.executor(), images, frame.camera, view_);
         rig_.device().finish();
         reference::Image result(w, h);
