@@ -475,11 +475,12 @@ LW_API void lwDefaultSsvp(LWSsvpDesc* desc);
  *  taken to come evenly from all directions. Validity of the sum: v1 + (1 - v1) v2.
  *
  *  It keeps both alive, and drives them: its lwUpdate and lwRender are theirs with the same arguments. A host that updates
- *  or renders them itself in between changes what the next lwRender sees. Stats and debug views have their names
+ *  or renders them itself in between changes what the next lwRender sees. Should the second refuse a frame that the first
+ *  has accepted, or lwUpdate of either fail half-way, lwRender answers LW_ERROR_NOT_UPDATED until both have accepted one. Stats and debug views have their names
  *  behind "first." and "second.". */
 typedef struct LWFallbackDesc {
     uint32_t structSize;
-    LWTechnique first, second; /**< of the same device; two different ones. Neither has a default */
+    LWTechnique first, second; /**< of the same device; different ones, that share no part. Neither has a default */
 } LWFallbackDesc;
 
 LW_API void lwDefaultFallback(LWFallbackDesc* desc);

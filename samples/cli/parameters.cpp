@@ -137,10 +137,26 @@ void Parameters::set(const std::string& assignment) {
     assign(*parameter, value);
 }
 
+bool Parameters::setEverywhere(const std::string& name, const std::string& value) {
+    bool isAny = has(name);
+    if (isAny) assign(*find(name), value);
+    for (auto& [place, part] : parts_) isAny = part.setEverywhere(name, value) || isAny;
+    return isAny;
+}
+
+bool Parameters::hasAnywhere(const std::string& name) const {
+    return has(name) || std::any_of(parts_.begin(), parts_.end(), [&](const auto& part) { return part.second.hasAnywhere(name); });
+}
+
 void Parameters::assign(const LWParameter& parameter, const std::string& text) {
     if (parameter.kind == LW_PARAMETER_TECHNIQUE) {
         requireOneOf(fmt::format("--set {}", parameter.name), text, choicesOf(parameter));
-        parts_.at(parameter.name) = Parameters(text);
+        Parameters& part = parts_.at(parameter.name);
+        if (part.technique() == text) return;
+        if (part.resolved() != part.defaults().resolved())
+            throw UsageError(fmt::format("--set {0}={1}: expected before {0}.KEY=VALUE, whose values are those of {2}",
+                                         parameter.name, text, part.technique()));
+        part = Parameters(text);
         return;
     }
     const double value = parseValue(parameter, text);

@@ -32,6 +32,9 @@ public:
     const std::string& technique() const { return technique_; }
     bool needsDevice() const;  // false: the host's own technique
     bool has(const std::string& name) const { return find(name) != nullptr; }
+    // Here and in the techniques that are parameters, wherever there is one of this name; false where none has it.
+    bool setEverywhere(const std::string& name, const std::string& value);
+    bool hasAnywhere(const std::string& name) const;
     // Of a technique of the host's own.
     const void* descriptor() const { return bytes_.data(); }
     // Every parameter as it stands, in the table's order; those of a technique that is a parameter behind it.

@@ -90,9 +90,7 @@ Parameters parseParameters(const RenderOptions& options) {
     for (const std::string& assignment : options.assignments) parameters.set(assignment);
     if (!options.seed.empty()) {
         parseUnsigned("--seed", options.seed);
-        if (parameters.has("seed"))
-            parameters.set("seed=" + options.seed);
-        else
+        if (!parameters.setEverywhere("seed", options.seed))
             fmt::print(stderr, "note: technique {} draws no random numbers; --seed changes nothing\n",
                        options.technique);
     }

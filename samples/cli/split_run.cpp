@@ -40,13 +40,13 @@ constexpr std::pair<const char*, const char*> kFullResolution[] = {{"resolution"
                                                                    {"interleave", "1"}};
 
 Parameters withSeed(Parameters parameters, int seed) {
-    if (parameters.has("seed")) parameters.set(fmt::format("seed={}", seed));
+    parameters.setEverywhere("seed", std::to_string(seed));
     return parameters;
 }
 
 Parameters atFullResolution(Parameters parameters) {
     for (const auto& [name, value] : kFullResolution)
-        if (parameters.has(name)) parameters.set(fmt::format("{}={}", name, value));
+        parameters.setEverywhere(name, value);
     return parameters;
 }
 
@@ -250,7 +250,7 @@ Json Splitter::splitPoint(const ChartView& view, const ChartedPoint& point,
     const JudgedTruth& own = view.truths().at(modelledBounces(point.sweep.parameters));
     const JudgedTruth& all = allBounces(view, own);
     studio::ErrorSplitter splitter(own.truth.image, all.truth.image);
-    const int patterns = point.sweep.parameters.has("seed") ? options_.patterns : 1;
+    const int patterns = point.sweep.parameters.hasAnywhere("seed") ? options_.patterns : 1;
     const studio::GBuffer judged = view.picks().pick(view.inputs().gbuffer());
     std::size_t vplCount = 0;
     for (int seed = 0; seed < patterns; ++seed) {

@@ -1,6 +1,7 @@
 // What stands behind the API's handles.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -58,6 +59,7 @@ struct TechniqueObject : Object {
     std::unique_ptr<FrameRecord> record;  // of the last lwUpdate; null before the first
     bool begun = false;    // an lwUpdate was recorded, or failed on the way
     bool updated = false;  // ... and the last one succeeded
+    bool broken = false;   // the last one, its own or that of what it is part of, left its world part half made
     std::uint64_t failures = 0;  // that the device had seen at the last lwUpdate
     std::uint64_t frameIndex = 0;
 
@@ -67,7 +69,15 @@ struct TechniqueObject : Object {
     std::vector<std::shared_ptr<TechniqueObject>> parts;
 
     // Whether the world part is what the last lwUpdate recorded. A command that failed may have been one of it.
-    bool current() const { return updated && failures == device->device.failures(); }
+    bool current() const { return updated && failures == device->device.failures() && isWhole(); }
+    // Nothing of it, and of its parts, was left half updated.
+    bool isWhole() const {
+        return !broken && std::all_of(parts.begin(), parts.end(), [](const auto& part) { return part->isWhole(); });
+    }
+    void setBroken(bool is) {
+        broken = is;
+        for (const auto& part : parts) part->setBroken(is);
+    }
 
     // What the last lwGetStats pointed to.
     std::vector<LWPassTime> passes;

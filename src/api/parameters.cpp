@@ -51,6 +51,19 @@ bool allows(const LWParameter& parameter, double value) {
          value);
 }
 
+using Members = std::vector<std::pair<const TechniqueObject*, const char*>>;  // and the parameter that they came by
+
+// A technique that stands in a tree twice would be updated and rendered twice a frame, and keep a history of its own
+// pictures: each of `part` and its parts must be new.
+void addMembers(Members& members, const TechniqueObject& part, const char* name) {
+    for (const auto& [member, before] : members)
+        if (member == &part)
+            fail(LW_ERROR_INVALID_ARGUMENT, "desc.", name, ": expected another technique than desc.", before,
+                 " and what it is made of, got one that both hold");
+    members.emplace_back(&part, name);
+    for (const auto& inner : part.parts) addMembers(members, *inner, name);
+}
+
 }  // namespace
 
 const TechniqueEntry& findTechniqueEntry(const char* name) {
@@ -93,6 +106,7 @@ std::vector<std::uint64_t> readDescriptor(const TechniqueEntry& entry, const voi
 std::vector<std::shared_ptr<TechniqueObject>> partsOf(Call& call, const TechniqueEntry& entry,
                                                       const std::vector<std::uint64_t>& descriptor) {
     std::vector<std::shared_ptr<TechniqueObject>> parts;
+    Members members;
     for (std::uint32_t i = 0; i < entry.info.parameterCount; ++i) {
         const LWParameter& parameter = entry.info.parameters[i];
         if (parameter.kind != LW_PARAMETER_TECHNIQUE) continue;
@@ -100,6 +114,7 @@ std::vector<std::shared_ptr<TechniqueObject>> partsOf(Call& call, const Techniqu
         const std::string argument = std::string("desc.") + parameter.name;
         if (!handle) fail(LW_ERROR_INVALID_ARGUMENT, argument, ": expected a technique, got null");
         parts.push_back(call.techniqueOfDevice(handle, argument.c_str()));
+        addMembers(members, *parts.back(), parameter.name);
     }
     return parts;
 }

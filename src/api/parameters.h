@@ -18,8 +18,8 @@ const TechniqueEntry& findTechniqueEntry(const char* name);
 // allow means the default. Throws INVALID_ARGUMENT naming parameter, expected, got.
 std::vector<std::uint64_t> readDescriptor(const TechniqueEntry& entry, const void* desc);
 
-// The techniques that a descriptor names, in the order of the parameters. Throws INVALID_ARGUMENT for null,
-// INVALID_HANDLE for what is no technique of this device.
+// The techniques that a descriptor names, in the order of the parameters. Throws INVALID_ARGUMENT for null and
+// where one stands twice in the tree, INVALID_HANDLE for what is no technique of this device.
 std::vector<std::shared_ptr<TechniqueObject>> partsOf(Call& call, const TechniqueEntry& entry,
                                                       const std::vector<std::uint64_t>& descriptor);
 

@@ -42,7 +42,7 @@ LWStatus lwGetStats(LWTechnique technique, LWStats* stats) {
             result.hostCopyBytes = object->record->executor.copiedBytes();
         }
         Report report;
-        if (object->current() || !object->begun) report = object->technique->report();
+        if (object->current() || (!object->begun && object->isWhole())) report = object->technique->report();
         call.wait();
         report.resolve();  // before anything is thrown: it waits for reads on their way, now with the lock held
         call.owner()->device.settle();

@@ -199,12 +199,13 @@ LWStatus lwUpdate(LWTechnique technique, const LWFrame* frame) {
             record->executor.signal(sync.get());
             record->executor.flush();
         } catch (const Error& error) {
-            if (!refusedUnchanged(error.status())) object->updated = false;
+            if (!refusedUnchanged(error.status())) object->setBroken(true);
             throw;
         } catch (...) {
-            object->updated = false;
+            object->setBroken(true);
             throw;
         }
+        object->setBroken(false);
         object->record = std::move(record);
         object->frameIndex = own.get().frameIndex;
         object->updated = true;
@@ -220,7 +221,7 @@ LWStatus lwRender(LWTechnique technique, LWView view, const LWGBuffer* gbuffer, 
         const LWOutput ownOutput = readStruct(output, "output");
         checkOutput(ownOutput);
         const SyncArgument sync(ownOutput.sync, call.owner()->device.context(), "output.sync");
-        if (!object->updated)
+        if (!object->updated || !object->isWhole())
             fail(LW_ERROR_NOT_UPDATED, "technique: expected a successful lwUpdate before, got none");
         call.owner()->device.raiseFailure();
         if (!object->current())

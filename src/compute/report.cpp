@@ -54,6 +54,7 @@ const char* Report::keep(std::string name) {
 void Report::add(const std::string& part, Report other) {
     const auto named = [&](const char* name) { return keep(part + "." + name); };
     const std::size_t first = counts.size();
+    if (other.device_) device_ = other.device_;  // before what is pending: should memory run out here, both wait for it
     for (const LWCount& count : other.counts) counts.push_back({named(count.name), count.value});
     for (const LWChoice& choice : other.choices) choices.push_back({named(choice.name), choice.reason});
     for (Pending& pending : other.pending_) pending_.push_back({first + pending.count, std::move(pending.value)});
@@ -61,7 +62,6 @@ void Report::add(const std::string& part, Report other) {
         pending.name = named(pending.name);
         pendingChoices_.push_back(std::move(pending));
     }
-    if (other.device_) device_ = other.device_;
     other.pending_.clear();  // now read for this report
     other.pendingChoices_.clear();
     names_.splice(names_.end(), other.names_);  // reasons may be of a part's own part

@@ -22,8 +22,8 @@ struct KMeansOptions {
     bool warmStart = true;  // seeds are the previous frame's means; otherwise every frame begins with k-means++
 };
 
-// Where another pass wants the clusters of this frame to start: lw_cluster each, of which normal,
-// position and its w are read, and a bit each (LW_KMEANS_MOST of them) set where there shall be none.
+// Where another pass wants the clusters of this frame to start: lw_cluster each, of which normal, position and its w, and
+// the former medoid's slot are read, and a bit each (LW_KMEANS_MOST of them) set where there shall be none.
 struct ClusterSeeds {
     const Buffer& clusters;
     const Buffer& dead;

@@ -60,9 +60,9 @@ public:
           join_(device.programs().kernel("fallback/fallback", "fallback_join")) {}
 
     void update(Executor& executor, const LWFrame& frame) override {
+        first_->update(executor, frame);  // what it refuses leaves both as they were
         // Should the second refuse the frame, the first has it already: the two no longer belong together.
         isWhole_ = false;
-        first_->update(executor, frame);
         second_->update(executor, frame);
         isWhole_ = true;
         states_.purge();
@@ -219,8 +219,6 @@ const LWParameter kParameters[] = {
 }  // namespace
 
 std::unique_ptr<Technique> joinTechniques(Device& device, const std::vector<std::shared_ptr<Technique>>& techniques) {
-    if (techniques[0] == techniques[1])
-        fail(LW_ERROR_INVALID_ARGUMENT, "desc.second: expected another technique than desc.first, got the same handle");
     return std::make_unique<Fallback>(device, techniques[0], techniques[1]);
 }
 

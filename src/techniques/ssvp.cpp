@@ -199,6 +199,7 @@ Report SsvpTechnique::report() {
     report.counts.push_back({"upsample_fallbacks", 0});
     report.counts.push_back({"saturated_pixels", 0});
     if (history_) report.counts.push_back({"history_new", 0});
+    if (compensation_) report.counts.push_back({"compensation_capped", 0});
     states_.each([&](const InterleavedView& state) { state.report(device_, report, gather_.order()); });
     return report;
 }

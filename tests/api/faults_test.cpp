@@ -273,3 +273,28 @@ TEST_CASE("a log callback that throws locks nobody out", "[faults]") {
     CHECK(lwReleaseTechnique(technique) == LW_SUCCESS);
     CHECK(lwReleaseDevice(device) == LW_SUCCESS);
 }
+
+TEST_CASE("an update that fails half-way is one of all that hold the technique", "[faults]") {
+    Whole scene;
+    ApiRig rig(deviceWith("1"), scene);
+    LWFallbackDesc desc;
+    lwDefaultFallback(&desc);
+    desc.first = rig.technique;
+    REQUIRE(lwCreateSsvp(rig.device, nullptr, &desc.second) == LW_SUCCESS);
+    LWTechnique joined = nullptr;
+    REQUIRE(lwCreateFallback(rig.device, &desc, &joined) == LW_SUCCESS);
+    const auto renders = [&](LWTechnique technique) { return lwRender(technique, rig.view, &scene.gbuffer, &scene.output); };
+    for (const bool byPart : {true, false}) {
+        for (const LWTechnique technique : {rig.technique, joined}) REQUIRE(lwUpdate(technique, &scene.frame) == LW_SUCCESS);
+        {
+            const ClFault fault(0, CL_OUT_OF_RESOURCES);
+            CHECK(isDriverError(lwUpdate(byPart ? rig.technique : joined, &scene.frame)));
+        }
+        for (const LWTechnique technique : {rig.technique, joined}) CHECK(renders(technique) == LW_ERROR_NOT_UPDATED);
+        REQUIRE(lwUpdate(joined, &scene.frame) == LW_SUCCESS);
+        CHECK(renders(joined) == LW_SUCCESS);
+        CHECK(lwFinish(rig.device) == LW_SUCCESS);
+    }
+    lwReleaseTechnique(joined);
+    lwReleaseTechnique(desc.second);
+}

@@ -230,16 +230,18 @@ class Render(CommandLine):
 
     def test_techniques_that_are_parameters(self):
         report = self.json("render", "cornell", "--technique", "fallback", *SIZE, "--frames", "1", "--json", "--set",
-                           "first=rsm", "second=rsm", "--set", "second.vpls=64")
+                           "first=rsm", "second=rsm", "--set", "second.vpls=64", "--seed", "7")
         parameters = report["parameters"]
         self.assertEqual((parameters["first"], parameters["second"]), ("rsm", "rsm"))
         self.assertEqual((parameters["first.vpls"], parameters["second.vpls"]), (256, 64))
+        self.assertEqual((parameters["first.seed"], parameters["second.seed"]), (7, 7))
         self.assertEqual((report["counts"]["first.vpls"], report["counts"]["second.vpls"]), (256, 64))
         self.assertIn("fallback.join", [one["name"] for one in report["passes"]])
         joined = ["render", "cornell", "--technique", "fallback", "--out", self.path("never.exr"), "--set"]
         self.refused([*joined, "second.samplings=1"], "samplings", "sampling")
         self.refused([*joined, "third.vpls=1"], "third.vpls", "second.KEY")
         self.refused([*joined, "second=none"], "second", "ssvp")
+        self.refused([*joined, "second.clusters=16", "second=rsm"], "second=rsm", "second.KEY")
 
     def test_json_and_pictures(self):
         picture, display = self.path("a.exr"), self.path("a.png")

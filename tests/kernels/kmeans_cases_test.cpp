@@ -99,24 +99,6 @@ TEST_CASE("of equally near means the first, of equally near members the first", 
     CHECK(third.assignment == std::vector<cl_int>{1, 0, 0});
 }
 
-TEST_CASE("a medoid stays until another member is twice as near to the mean", "[kmeans]") {
-    KernelRig rig(GENERATE(1u, 16u));
-    KMeans pass(rig.device(), optionsOf(1));
-    // Two members about the mean and a far one that moves it: to where each of them is how far from it?
-    auto at = [&](double x) { return makeVpl({x, 0, 0}, {0, 1, 0}, {1, 1, 1}, 0.1); };
-    auto medoid = [&](double left, double right, bool restart) {
-        // The far pair keeps the box, and with it the scale, where it is; the mean is (left + right) / 4.
-        return cluster(rig, pass, {at(left), at(right), at(-8), at(8)}, restart).clusters[0].medoidPosition.s[3];
-    };
-    CHECK(medoid(-0.9, 1.1, true) == 0.0f);    // mean 0.05: 0.95 and 1.05 away
-    CHECK(medoid(-1.1, 0.9, false) == 0.0f);   // 1.05 and 0.95: stays
-    CHECK(medoid(-1.3, 0.7, false) == 0.0f);   // 1.15 and 0.85
-    CHECK(medoid(-1.7, 0.3, false) == 1.0f);   // 1.35 and 0.65: more than twice
-    CHECK(medoid(-1.1, 0.9, false) == 1.0f);
-    CHECK(medoid(-0.7, 1.3, false) == 1.0f);   // 0.85 and 1.15: stays on its side, too
-    CHECK(medoid(-0.7, 1.3, true) == 0.0f);    // a cut begins anew
-}
-
 TEST_CASE("warm starts keep clusters in their places and give a dying one another", "[kmeans]") {
     KernelRig rig(GENERATE(1u, 16u));
     std::vector<Vec> centres;
