@@ -204,7 +204,9 @@ __kernel void temporal_history_blend(__global const float* position, int4 positi
         real keep = (real)1.0f;
         LW_UNROLL for (int k = 0; k < LW_KINDS; ++k)
             keep = fmin(keep, follow(past + (k ? k + 2 : 0), own + (k ? k + 2 : 0), k ? 1 : 3, age, (real)gamma, trusted, &m[k], &noise[k], &trend[k]));
-        age = age * keep;
+        // Where the noise is known half of the light stays what the bounds allow: a frame far off may be the only one such, and
+        // would flash.
+        age = fmax(age * keep, select_((real)0.0f, fmin(age, (real)1.0f), learnt));
         share = 1.0f / (age + 1.0f);
     }
     // A frame that is no number adds nothing to the history, and nothing comes of it without one.

@@ -59,7 +59,8 @@ TEST_CASE("the estimate is what a frame comes to hold", "[api][memory]") {
     const auto desc = GENERATE(descOf(256, 4, 1, LW_RESOLUTION_FULL), descOf(0, 1, 0, LW_RESOLUTION_FULL),
                                descOf(1000, 8, 0, LW_RESOLUTION_HALF), descOf(64, 2, 1, LW_RESOLUTION_HALF),
                                descOf(4096, 1, 1, LW_RESOLUTION_HALF), descOf(256, 4, 1, LW_RESOLUTION_FULL, 8),
-                               descOf(256, 1, 1, LW_RESOLUTION_FULL, 8), descOf(256, 2, 1, LW_RESOLUTION_HALF, 8));
+                               descOf(256, 1, 1, LW_RESOLUTION_FULL, 8), descOf(256, 2, 1, LW_RESOLUTION_HALF, 8),
+                               descOf(256, 1, 1, LW_RESOLUTION_HALF, 8));
     const std::uint32_t authored = GENERATE(0u, 1u, 77u);
     CAPTURE(unified, desc.vpls, desc.interleave, desc.filter, desc.resolution, authored);
     ApiScene scene(25, 11);

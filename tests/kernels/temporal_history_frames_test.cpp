@@ -203,3 +203,25 @@ TEST_CASE("light of any size, dark frames between, leaves numbers", "[temporal_h
         for (const float e : history.render(frame).planes) REQUIRE((e >= 0.0f && e <= 1e30f));
     }
 }
+
+TEST_CASE("rare bright frames keep their mean", "[temporal_history][large]") {
+    KernelRig rig(16);
+    HistoryRig history(rig, frames(32, 3.0f), kWidth, kHeight);
+    const TestCamera camera = pixelCamera(kWidth, kHeight);
+    double sum = 0.0, square = 0.0, own = 0.0, ownSquare = 0.0, count = 0.0;
+    for (std::uint32_t f = 0; f < 256; ++f) {
+        Frame frame = frameOf(camera, f);
+        frame.shine([&](std::uint32_t x, std::uint32_t y) {
+            const double e = number(x, y, f) < 0.125 ? 3.1 : 0.7;
+            return Vec{e, 0.5 * e, e};
+        });
+        const Image out = history.render(frame);
+        for (std::uint32_t i = 0; i < kWidth * kHeight && f >= 64; ++i) {
+            const double got = double(out.planes[i]), given = double(frame.light.planes[i]);
+            sum += got, square += got * got, own += given, ownSquare += given * given, count += 1.0;
+        }
+    }
+    // The mean of 78,000 frames of deviation 0.8, some 30 of which go into a picture.
+    CHECK(sum / own == Approx(1.0).margin(0.02));
+    CHECK(square - sum * sum / count < 0.75 * (ownSquare - own * own / count));
+}
