@@ -62,30 +62,34 @@ LW_FN void keep_nearer(lw_texel* kept, const lw_texel* other) {
 // radiance weighted by it, so that the flux of a surface is the same on every level and comes from the middle of it. (The
 // nearest child's own place is up to half a texel nearer the camera: a floor that lights the wall behind it is then farther
 // from the wall by that, and the wall 3 % brighter where rings are 10 texels wide.) Children that only receive have no area;
-// where all do, the kept one's place stays. Without the plane: the kept child's place, and the plain mean.
+// where all do, they count alike for the place. Without the plane: the kept child's place, and the plain mean.
 LW_FN lw_texel merged(const lw_texel* child, const int first) {
     lw_texel t = child[first];
     LW_UNROLL for (int i = 1; i < 4; ++i) keep_nearer(&t, &child[(first + i) & 3]);
     const lw_edges edges = edges_of(t.s, (real)1.0f);
     const real keptDepth = t.depth;
-    real w[4], weight = (real)0.0f;
+    real w[4], weight = (real)0.0f, count = (real)0.0f;
     LW_UNROLL for (int i = 0; i < 4; ++i) {
         const lw_texel* c = &child[i];
-        const mask on = and_(and_(c->s.valid, t.s.valid),
-                             edge_weight(edges, c->s.px, c->s.py, c->s.pz, c->s.nx, c->s.ny, c->s.nz) > 0.0f);
+        w[i] = ones_(and_(and_(c->s.valid, t.s.valid),
+                          edge_weight(edges, c->s.px, c->s.py, c->s.pz, c->s.nx, c->s.ny, c->s.nz) > 0.0f));
+        count += w[i];
 #if LW_PYRAMID_AREA
-        w[i] = select_((real)0.0f, c->area, on);
-#else
-        w[i] = ones_(on);
+        weight = fma_(w[i], c->area, weight);
 #endif
-        weight += w[i];
     }
-    // Shares first: radiance times area might leave float's range.
-    const real scale = select_((real)0.0f, 1.0f / weight, weight > 1e-37f);
+    // By area where there is any that the quotients can be taken of, else all alike. Shares first: radiance times area might
+    // leave float's range.
+    const mask sends = weight > 1e-37f;
+    const real whole = select_(count, weight, sends), scale = select_((real)0.0f, 1.0f / whole, whole > 0.0f);
     t.r = t.g = t.b = (real)0.0f;
     LW_UNROLL for (int i = 0; i < 4; ++i) {
         const lw_texel* c = &child[i];
+#if LW_PYRAMID_AREA
+        const real share = select_(w[i], w[i] * c->area, sends) * scale;
+#else
         const real share = w[i] * scale;
+#endif
         t.r = fma_(share, c->r, t.r);
         t.g = fma_(share, c->g, t.g);
         t.b = fma_(share, c->b, t.b);

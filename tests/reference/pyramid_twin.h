@@ -99,20 +99,17 @@ inline PyramidLevel pyramidReduce(const PyramidLevel& fine, bool lastFirst) {
             PyramidTexel mean = kept;
             mean.area = mean.depth = 0;
             mean.radiance = mean.s.position = {};
+            std::vector<PyramidTexel> shown;
             for (const PyramidTexel& child : children)
                 if (edgeWeight(kept.s, child.s) > 0) {
+                    shown.push_back(child);
                     mean.area += child.area;
-                    mean.depth += child.depth * child.area;
-                    mean.radiance = mean.radiance + child.radiance * child.area;
-                    mean.s.position = mean.s.position + child.s.position * child.area;
                 }
-            if (mean.area > 0) {
-                mean.depth /= mean.area;
-                mean.radiance = mean.radiance * (1.0 / mean.area);
-                mean.s.position = mean.s.position * (1.0 / mean.area);
-            } else {
-                mean.depth = kept.depth;
-                mean.s.position = kept.s.position;
+            for (const PyramidTexel& child : shown) {  // all alike where none sends
+                const double share = mean.area > 0 ? child.area / mean.area : 1.0 / double(shown.size());
+                mean.depth += child.depth * share;
+                mean.radiance = mean.radiance + child.radiance * share;
+                mean.s.position = mean.s.position + child.s.position * share;
             }
             level.texels.push_back(mean);
         }
