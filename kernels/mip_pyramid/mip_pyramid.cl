@@ -44,7 +44,8 @@ LW_FN lw_texel pixel_texel(real px, real py, real pz, real nx, real ny, real nz,
     t.r = select_(zero, r, sends);
     t.g = select_(zero, g, sends);
     t.b = select_(zero, b, sends);
-    t.area = select_(zero, pixel_area(t.s, t.depth, camera), sends);
+    const real area = pixel_area(t.s, t.depth, camera);
+    t.area = select_(-area, area, sends);
     if (any_(t.s.rejected)) rejected[0] += count_(t.s.rejected);
     const mask bad = and_(t.s.valid, not_(sane));
     if (any_(bad)) rejected[1] += count_(bad);

@@ -12,7 +12,7 @@
 typedef struct {
     lw_surface s;  // unit normal; zero without a surface
     real r, g, b;  // direct radiance, W/(sr m^2)
-    real area;     // of the surface that the texel shows, m^2; 0: it sends nothing
+    real area;     // of the surface that the texel shows, m^2; negative: it only receives
     real depth;    // along the camera's axis
 } lw_texel;
 
@@ -61,31 +61,36 @@ LW_FN void keep_nearer(lw_texel* kept, const lw_texel* other) {
 // What the children on the kept surface show together. With the plane of areas: their total area, and place and mean
 // radiance weighted by it, so that the flux of a surface is the same on every level and comes from the middle of it. (The
 // nearest child's own place is up to half a texel nearer the camera: a floor that lights the wall behind it is then farther
-// from the wall by that, and the wall 3 % brighter where rings are 10 texels wide.) Children that only receive have no area;
-// where all do, the kept one's place stays. Without the plane: the kept child's place, and the plain mean.
+// from the wall by that, and the wall 3 % brighter where rings are 10 texels wide.) Children that only receive
+// count where none sends. Without the plane: the kept child's place, and the plain mean.
 LW_FN lw_texel merged(const lw_texel* child, const int first) {
     lw_texel t = child[first];
     LW_UNROLL for (int i = 1; i < 4; ++i) keep_nearer(&t, &child[(first + i) & 3]);
     const lw_edges edges = edges_of(t.s, (real)1.0f);
     const real keptDepth = t.depth;
-    real w[4], weight = (real)0.0f;
+    real w[4], weight = (real)0.0f, silent = (real)0.0f;
     LW_UNROLL for (int i = 0; i < 4; ++i) {
         const lw_texel* c = &child[i];
-        const mask on = and_(and_(c->s.valid, t.s.valid),
-                             edge_weight(edges, c->s.px, c->s.py, c->s.pz, c->s.nx, c->s.ny, c->s.nz) > 0.0f);
+        w[i] = ones_(and_(and_(c->s.valid, t.s.valid),
+                          edge_weight(edges, c->s.px, c->s.py, c->s.pz, c->s.nx, c->s.ny, c->s.nz) > 0.0f));
 #if LW_PYRAMID_AREA
-        w[i] = select_((real)0.0f, c->area, on);
+        silent = fma_(w[i], fmax(-c->area, (real)0.0f), silent);
+        weight = fma_(w[i], fmax(c->area, (real)0.0f), weight);
 #else
-        w[i] = ones_(on);
-#endif
         weight += w[i];
+#endif
     }
-    // Shares first: radiance times area might leave float's range.
-    const real scale = select_((real)0.0f, 1.0f / weight, weight > 1e-37f);
+    // Shares first: radiance times area might leave float's range. Areas whose inverse does are none.
+    const mask sends = weight > 0.0f;
+    const real whole = select_(silent, weight, sends), scale = select_((real)0.0f, 1.0f / whole, whole > 1e-37f);
     t.r = t.g = t.b = (real)0.0f;
     LW_UNROLL for (int i = 0; i < 4; ++i) {
         const lw_texel* c = &child[i];
+#if LW_PYRAMID_AREA
+        const real share = w[i] * fmax(select_(-c->area, c->area, sends), (real)0.0f) * scale;
+#else
         const real share = w[i] * scale;
+#endif
         t.r = fma_(share, c->r, t.r);
         t.g = fma_(share, c->g, t.g);
         t.b = fma_(share, c->b, t.b);
@@ -96,7 +101,7 @@ LW_FN lw_texel merged(const lw_texel* child, const int first) {
         t.depth = fma_(share, c->depth - keptDepth, t.depth);
 #endif
     }
-    t.area = weight;
+    t.area = select_(-silent, weight, sends);
     return t;
 }
 

@@ -24,6 +24,8 @@ __kernel void screen_gather_deal(__global const float* level, int4 levelLayout, 
     for (int plane = 0; plane < LW_SENDER_PLANES; ++plane) {
         real v[LW_INTERLEAVE];
         load_dealt(v, level, levelLayout.x + plane * levelLayout.z + y * levelLayout.y, x, width);
+        if (plane == LW_SENDER_AREA)  // negative: receives only
+            LW_UNROLL for (int phase = 0; phase < LW_INTERLEAVE; ++phase) v[phase] = fmax(v[phase], (real)0.0f);
         const int at = dealtLayout.x + plane * dealtLayout.z + y * dealtLayout.y + i;
         LW_UNROLL for (int phase = 0; phase < LW_INTERLEAVE; ++phase) store(v[phase], dealt, at + phase * dealtLayout.w);
     }

@@ -16,7 +16,7 @@ class Camera;
 // Planes beside position (3) and normal (3, unit or zero), in this order.
 enum PyramidPlanes : std::uint32_t {
     kPyramidRadiance = 1,  // 3: direct radiance, W/(sr m^2)
-    kPyramidArea = 2,      // 1: of the surface that the texel shows, m^2; 0: it sends nothing. Radiance is then weighted
+    kPyramidArea = 2,      // 1: of the surface that the texel shows, m^2; negative: it only receives. Radiance is then weighted
                            // by it, and pixels that only receive never hide one that sends
     kPyramidDepth = 4      // 1: along the camera's axis; 0 without a surface
 };

@@ -110,7 +110,7 @@ void ScreenPicture::addDebugViews(std::vector<DebugView>& views) const {
     views.push_back({"start_position", "world position of the first level's texels (m)", pyramid_.position(options_.start), {}});
     views.push_back({"start_normal", "their unit normals", pyramid_.normal(options_.start), {}});
     views.push_back({"start_radiance", "direct radiance averaged over each (W/(sr m^2))", pyramid_.radiance(options_.start), {}});
-    views.push_back({"start_area", "area of the surface that each shows (m^2)", pyramid_.area(options_.start), {}});
+    views.push_back({"start_area", "area of the surface that each shows (m^2); negative: only receives", pyramid_.area(options_.start), {}});
     for (std::size_t i = 0; i < contributions_.size(); ++i)
         views.push_back({kLevelNames[i], "what the level gathers: irradiance rgb (W/m^2), share of the hemisphere seen",
                          contributions_[i], {}});

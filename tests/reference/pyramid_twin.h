@@ -67,12 +67,13 @@ inline PyramidLevel pyramidBase(const Image& position, const Image& normal, cons
             }
             const Vec v = t.s.position - camera.eye, l = radiance.get(x, y);
             t.depth = -v.z;
+            const double length = std::sqrt(dot(v, v)), cosAlpha = t.depth / length;
+            const double cosBeta = std::max(0.02, -dot(t.s.normal, v) / length);
+            t.area = -camera.pixelArea() * t.depth * t.depth * cosAlpha / cosBeta;  // negative: receives only
             const auto sane = [](double c) { return c >= 0.0 && c <= 1e30; };
             if (only(x, y) || !sane(l.x) || !sane(l.y) || !sane(l.z)) continue;
             t.radiance = l;
-            const double length = std::sqrt(dot(v, v)), cosAlpha = t.depth / length;
-            const double cosBeta = std::max(0.02, -dot(t.s.normal, v) / length);
-            t.area = camera.pixelArea() * t.depth * t.depth * cosAlpha / cosBeta;
+            t.area = -t.area;
         }
     return base;
 }
@@ -99,20 +100,18 @@ inline PyramidLevel pyramidReduce(const PyramidLevel& fine, bool lastFirst) {
             PyramidTexel mean = kept;
             mean.area = mean.depth = 0;
             mean.radiance = mean.s.position = {};
+            std::vector<PyramidTexel> shown;
             for (const PyramidTexel& child : children)
                 if (edgeWeight(kept.s, child.s) > 0) {
+                    if ((child.area > 0) != (kept.area > 0)) continue;  // those that only receive, where none sends
+                    shown.push_back(child);
                     mean.area += child.area;
-                    mean.depth += child.depth * child.area;
-                    mean.radiance = mean.radiance + child.radiance * child.area;
-                    mean.s.position = mean.s.position + child.s.position * child.area;
                 }
-            if (mean.area > 0) {
-                mean.depth /= mean.area;
-                mean.radiance = mean.radiance * (1.0 / mean.area);
-                mean.s.position = mean.s.position * (1.0 / mean.area);
-            } else {
-                mean.depth = kept.depth;
-                mean.s.position = kept.s.position;
+            for (const PyramidTexel& child : shown) {
+                const double share = child.area / mean.area;
+                mean.depth += child.depth * share;
+                mean.radiance = mean.radiance + child.radiance * share;
+                mean.s.position = mean.s.position + child.s.position * share;
             }
             level.texels.push_back(mean);
         }

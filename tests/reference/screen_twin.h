@@ -34,7 +34,7 @@ inline std::vector<double> fromTexel(const Surface& s, const ScreenLevel& level,
     const double d2 = dot(to, to), d = std::sqrt(d2);
     if (d == 0.0) return {0, 0, 0, 0};
     const double c = std::max(0.0, dot(to, s.normal) / d), cp = std::max(0.0, -dot(to, q.normal) / d);
-    const double area = weight * double(level.area[level.position.at(x, y)]);
+    const double area = weight * std::max(0.0, double(level.area[level.position.at(x, y)]));
     const double w = std::min(c * cp * area / (d2 + (bounded ? 0.25 * (1.0 + 3.0 * cp * cp) * area / pi : 0.0)), 1e6);
     const Vec l = level.radiance.get(x, y);
     return {w * l.x, w * l.y, w * l.z, w / pi};

@@ -24,6 +24,9 @@ constexpr double kSampledBias = 0.01, kSampledError = 0.06;
 // What the bound takes: a sample stands for 4.9 texels of the first level, which next to the corner are as near as they are
 // wide, so the more the coarser that level's 360, 180 and 90 rows are.
 constexpr double kBoundTakes[] = {0.02, 0.03, 0.045};
+// Rings of 7 texels: 1 / r^2 again, with the noise of one seed. Pixels next to the edge, half a pixel from it, see squares that are
+// as wide as they are near as points.
+constexpr double kOrthographicBias = 0.03, kPixelsBias = 0.01;
 constexpr double kStartChange = 0.04;
 // A level's light is up-sampled by weights that sum to 1, level by level.
 constexpr double kWeightRounding = 1e-5;
@@ -175,4 +178,58 @@ TEST_CASE("bounded light has no spikes, unbounded light has", "[screen_space]") 
     CAPTURE(largest[0], largest[1]);
     CHECK(largest[1] < kPi);  // half of the hemisphere at the most, and the noise of 8 samples
     CHECK(largest[0] > 2.0 * kPi);
+}
+
+TEST_CASE("an orthographic camera sees the same light, either way of depth", "[screen_space]") {
+    // A valley of two perpendicular planes, the left one lit, seen from above: x in [-1, 1], y in [-1/2, 1/2], z = |x|.
+    TestDevice device(16);
+    const std::uint32_t w = 160, h = 80;
+    PlanarPixels position(w, h, 3), normal(w, h, 3), radiance(w, h, 3);
+    const double half = std::sqrt(0.5);
+    for (std::uint32_t y = 0; y < h; ++y)
+        for (std::uint32_t x = 0; x < w; ++x) {
+            const double px = 2.0 * (x + 0.5) / w - 1.0;
+            position.set(x, y, {px, 0.5 - (y + 0.5) / h, std::abs(px)});
+            normal.set(x, y, {px < 0 ? half : -half, 0, half});
+            if (px < 0) radiance.set(x, y, {1, 1, 1});
+        }
+    LWGBuffer gbuffer{};
+    gbuffer.structSize = sizeof gbuffer;
+    gbuffer.position = position.image();
+    gbuffer.normal = normal.image();
+    gbuffer.directRadiance = radiance.image();
+    for (int i = 0; i < 4; ++i) gbuffer.camera.view[5 * i] = gbuffer.camera.projection[5 * i] = 1.0f;
+    gbuffer.camera.view[11] = -5.0f;
+    gbuffer.camera.projection[5] = 2.0f;
+    LWScreenSpaceDesc desc = descOf(LW_START_FULL, 5, 256, 64.0f);
+    desc.bounded = 0;
+    // What all lit pixels give to all others, in double precision: 2 / w / cos 45 by 1 / h each.
+    double pixels = 0.0;
+    const double area = 2.0 / w / half / h;
+    for (std::uint32_t at = 0; at < w / 2 * h; ++at)
+        for (std::uint32_t from = 0; from < w / 2 * h; ++from) {
+            const std::uint32_t rx = w / 2 + at % (w / 2), ry = at / (w / 2), sx = from % (w / 2), sy = from / (w / 2);
+            const Vec to = position.get(sx, sy) - position.get(rx, ry);
+            const double d2 = dot(to, to), c = dot(to, normal.get(rx, ry)), cp = -dot(to, normal.get(sx, sy));
+            pixels += c * cp * area / (d2 * d2);
+        }
+    std::vector<float> first;
+    for (const float depth : {-0.1f, 0.1f}) {  // reversed: 1 at the near plane
+        gbuffer.camera.projection[10] = depth;
+        gbuffer.camera.projection[11] = depth < 0.0f ? 0.0f : 1.0f;
+        TestTechnique technique(device, "screen_space", &desc);
+        TestView view(device, w, h);
+        const Result result = render(technique, view, gbuffer, device);
+        double got = 0.0, truth = 0.0;
+        for (std::uint32_t y = 0; y < h; ++y)
+            for (std::uint32_t x = w / 2; x < w; ++x) {
+                got += result.e(std::size_t(y) * w + x);
+                truth += polygonIrradiance({{0, -0.5, 0}, {0, 0.5, 0}, {-1, 0.5, 1}, {-1, -0.5, 1}}, position.get(x, y), normal.get(x, y), kPi);
+            }
+        CAPTURE(depth, pixels / truth);
+        CHECK(got / pixels == Approx(1.0).margin(kOrthographicBias));
+        CHECK(pixels / truth == Approx(1.0).margin(kPixelsBias));
+        if (first.empty()) first = result.irradiance;
+        CHECK(result.irradiance == first);
+    }
 }

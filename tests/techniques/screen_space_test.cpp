@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "support/corner_picture.h"
 
@@ -180,4 +181,26 @@ TEST_CASE("screen_space refuses what it cannot use, counts what it leaves out, a
     const std::uint64_t bytes = technique.stats().deviceBytes;
     CHECK(bytes <= estimate);
     CHECK(bytes > estimate / 4);
+}
+
+TEST_CASE("pictures of any shape, of radii far beyond them and of any numbers stay finite", "[screen_space]") {
+    TestDevice device(GENERATE(1u, 16u));
+    const auto [w, h] = GENERATE(std::make_pair(1u, 1u), std::make_pair(2u, 1u), std::make_pair(3u, 5u), std::make_pair(17u, 2u));
+    LWScreenSpaceDesc desc = descOf(GENERATE(LW_START_FULL, LW_START_QUARTER), 6, 8, 64.0f);
+    desc.bounded = GENERATE(0u, 1u);
+    CAPTURE(w, h, desc.start, desc.bounded);
+    CornerPicture picture(w, h);
+    // The largest that is taken, at the largest distance, beside what is not.
+    picture.radiance.set(0, 0, {1e30, 1e30, 1e30});
+    if (w > 1) picture.position.set(1, 0, {1e9, 0, -1e9});
+    if (h > 2) {
+        picture.radiance.set(0, 1, {std::nan(""), -1, 1});
+        picture.normal.set(1, 1, {std::nan(""), 0, 1});
+        picture.position.set(2, 1, {0, std::numeric_limits<double>::infinity(), 0});
+        for (std::uint32_t x = 0; x < w; ++x) picture.mask.at(x, 2, 0) = 1.0f;
+        picture.gbuffer.receiveMask = picture.mask.image();
+    }
+    const Result result = render(device, desc, picture);
+    for (const float v : result.irradiance) REQUIRE((v >= 0.0f && v <= 1e36f));
+    for (const float v : result.validity) REQUIRE((v >= 0.0f && v <= 1.0f));
 }
