@@ -112,9 +112,10 @@ __kernel void mip_pyramid_base(LW_BASE_ARGUMENTS) {
 }
 
 // One work-item = LW_WIDTH texels of a level, from 2 x 2 of the finer one. width, height: the finer level's size.
-// first: which child is first among equals, 0 (top left) or 2 (bottom right).
+// first: which child is first among equals, 0 (top left) or 2 (bottom right). sampled: that child is kept wherever it lies,
+// and where it shows no surface neither does the texel.
 __kernel void mip_pyramid_reduce(__global const float* fine, int4 fineLayout, int width, int height, __global float* level,
-                                 int4 levelLayout, LwPyramidCamera camera, int first) {
+                                 int4 levelLayout, LwPyramidCamera camera, int first, int sampled) {
     const int x = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);
     if (2 * x >= width || 2 * y >= height) return;
     lw_texel child[4];
@@ -143,6 +144,14 @@ __kernel void mip_pyramid_reduce(__global const float* fine, int4 fineLayout, in
             t.depth = axial_depth(t.s, camera);
             child[j ? 3 - i : i] = t;
         }
+    }
+    if (sampled) {
+        const mask valid = child[first].s.valid;
+        child[first].depth = (real)-MAXFLOAT;
+        child[first].s.nx = select_((real)0.0f, child[first].s.nx, valid);
+        child[first].s.ny = select_((real)0.0f, child[first].s.ny, valid);
+        child[first].s.nz = select_((real)0.0f, child[first].s.nz, valid);
+        for (int i = 0; i < 4; ++i) child[i].s.valid = and_(child[i].s.valid, valid);
     }
     store_texel(merged(child, first), level, levelLayout.x + y * levelLayout.y + x, levelLayout.z);
 }

@@ -52,6 +52,7 @@ std::vector<float> gathered(KernelRig& rig, DrawnView& drawn, const Case& c, std
     PyramidOptions options;
     options.extras = c.light ? kPyramidRadiance : 0u;
     options.firstLevel = 0;
+    options.sampled = true;
     options.lastLevel = horizonLevels(c.pattern.density, reach) - 1;
     PyramidLevels levels(rig.device(), w, h, options);
     MipPyramid(rig.device(), options.extras)
