@@ -43,67 +43,79 @@ typedef struct {
 } lw_side;
 
 LW_FN lanei border_of(real sectors, float side, real middle, float rounding) {
-    return to_lanei(clamp(fma_((real)side, sectors, middle) + rounding, (real)0.0f, (real)LW_HORIZON_SECTORS));
+    const real border = fma_((real)side, sectors, middle) + rounding;
+    return to_lanei(smaller(larger(border, (real)0.0f), (real)LW_HORIZON_SECTORS));
 }
 
-// One step. In the slice, with V as one axis and the line across it as the other, the plane of what is seen there runs
-// between the rays at step.begin and step.end; directions to both ends need no length, so no division is left:
+// What a step shows from its nearest to its farthest point in angle from V, unnormalised: the point's part along V and
+// the distance on the line that it stands at.
+typedef struct { real firstX, firstS, lastX, lastS, across, back; } lw_piece;
+
+// In the slice, with V as one axis and the line across it as the other, the plane of what is seen at a step runs between
+// the rays at step.begin and step.end; directions to both ends need no length, so no division is left:
 //   perspective  depth of the plane at distance s:  z_q m / (m - (s - s_q) n.l),  m = -n.ray
 //   end          p + slant V (1 - z / z_p) + z s l,  all over z_p and times the denominator
-// The back lies `thickness` farther along the same rays. docs/techniques/horizon.md derives it.
-LW_FN void look(lw_found* found, const lw_seen s, const lw_receiver p, const lw_arc arc, const lw_side side,
-                const lw_horizon_step step, const lw_horizon_view view, float rounding) {
-    const real dx = s.px - p.px, dy = s.py - p.py, dz = s.pz - p.pz;
-    const real d2 = squared_length(dx, dy, dz);
-    const mask seen = and_(s.inside, squared_length(s.nx, s.ny, s.nz) > 0.25f);
-    const real up = fma_(dx, p.nx, fma_(dy, p.ny, dz * p.nz));
-    const mask above = and_(up > 0.0f, up * up > LW_ABOVE_PLANE * LW_ABOVE_PLANE * d2);
-    const real towards = fma_(dx, s.nx, fma_(dy, s.ny, dz * s.nz));
-    const real facingEye = fma_(p.vx, s.nx, fma_(p.vy, s.ny, p.vz * s.nz));
-    const real tilt = fma_((real)side.lx, s.nx, fma_((real)side.ly, s.ny, side.lz * s.nz));
-    real beginX, endX, beginY, endY, backX, backY;
-    if (view.eye.w != 0.0f) {
-        const real deeper = fma_(dx, (real)view.axis.x, fma_(dy, (real)view.axis.y, dz * view.axis.z));
-        const real ratio = fma_(deeper, p.inverseDepth, (real)1.0f);
-        const real m = fmax(fma_(-towards, p.inverseDepth, p.slant * facingEye), LW_LEAST_VIEW_COSINE * ratio);
-        const real mr = m * ratio, turn = tilt * ratio;
-        const real begin = fmax(fma_((real)(step.at - step.begin), turn, m), LW_EXTENSION * m);
-        const real end = fmax(fma_((real)(step.at - step.end), turn, m), LW_EXTENSION * m);
-        beginX = fma_(p.slant, begin - mr, mr * (step.begin * side.along));
-        endX = fma_(p.slant, end - mr, mr * (step.end * side.along));
-        beginY = mr * (step.begin * arc.across);
-        endY = mr * (step.end * arc.across);
-        backX = -view.perI.w * mr;
-        backY = (real)(1.0f + view.perI.w);
+// across: what the distance on the line is multiplied with to be the part across V; back: what the back lies farther
+// along the view. docs/techniques/horizon.md derives it.
+LW_FN void cut(lw_piece* piece, const lw_seen* s, real dx, real dy, real dz, real towards, const lw_receiver* p,
+               const lw_arc* arc, const lw_side* side, const lw_horizon_step* step, const lw_horizon_view* view) {
+    const real facingEye = fma_(p->vx, s->nx, fma_(p->vy, s->ny, p->vz * s->nz));
+    const real tilt = fma_((real)side->lx, s->nx, fma_((real)side->ly, s->ny, side->lz * s->nz));
+    real beginX, endX, scale;
+    if (view->eye.w != 0.0f) {
+        const real deeper = fma_(dx, (real)view->axis.x, fma_(dy, (real)view->axis.y, dz * view->axis.z));
+        const real ratio = fma_(deeper, p->inverseDepth, (real)1.0f);
+        const real m = larger(fma_(-towards, p->inverseDepth, p->slant * facingEye), LW_LEAST_VIEW_COSINE * ratio);
+        const real turn = tilt * ratio, least = LW_EXTENSION * m;
+        scale = m * ratio;
+        const real begin = larger(fma_((real)(step->at - step->begin), turn, m), least);
+        const real end = larger(fma_((real)(step->at - step->end), turn, m), least);
+        beginX = fma_(p->slant, begin - scale, scale * (step->begin * side->along));
+        endX = fma_(p->slant, end - scale, scale * (step->end * side->along));
     } else {
-        const real m = fmax(facingEye, (real)LW_LEAST_VIEW_COSINE);
-        const real along = m * fma_(dx, p.vx, fma_(dy, p.vy, dz * p.vz));
-        beginX = fma_((real)(step.at - step.begin), tilt, along);
-        endX = fma_((real)(step.at - step.end), tilt, along);
-        beginY = m * (step.begin * arc.across);
-        endY = m * (step.end * arc.across);
-        backX = -view.perI.w * m;
-        backY = (real)1.0f;
+        scale = larger(facingEye, (real)LW_LEAST_VIEW_COSINE);
+        const real along = scale * fma_(dx, p->vx, fma_(dy, p->vy, dz * p->vz));
+        beginX = fma_((real)(step->at - step->begin), tilt, along);
+        endX = fma_((real)(step->at - step->end), tilt, along);
     }
-    const real beginCosine = beginX * inverse_root(fma_(beginX, beginX, beginY * beginY));
-    const real endCosine = endX * inverse_root(fma_(endX, endX, endY * endY));
-    const mask beginLast = beginCosine < endCosine;
-    const real lastX = select_(endX, beginX, beginLast), lastY = select_(endY, beginY, beginLast);
-    const real lastS = select_((real)step.end, (real)step.begin, beginLast);
-    const real behindX = fma_(backX, view.eye.w != 0.0f ? fma_(-lastS, side.along, p.slant) : (real)1.0f, lastX);
-    const real behindY = lastY * backY;
+    // Which end is farther from V follows from cotangents alone: both lie at positive distances.
+    const mask beginLast = beginX * step->end < endX * step->begin;
+    piece->firstX = select_(beginX, endX, beginLast);
+    piece->lastX = select_(endX, beginX, beginLast);
+    piece->firstS = select_((real)step->begin, (real)step->end, beginLast);
+    piece->lastS = select_((real)step->end, (real)step->begin, beginLast);
+    piece->across = scale * arc->across;
+    piece->back = -view->perI.w * scale;
+}
+
+// One step. The back lies `thickness` farther along the rays of the front.
+LW_FN void look(lw_found* found, const lw_seen* s, const lw_receiver* p, const lw_arc* arc, const lw_side* side,
+                const lw_horizon_step* step, const lw_horizon_view* view, float rounding) {
+    const real dx = s->px - p->px, dy = s->py - p->py, dz = s->pz - p->pz;
+    const real d2 = squared_length(dx, dy, dz);
+    const real up = fma_(dx, p->nx, fma_(dy, p->ny, dz * p->nz));
+    const real towards = fma_(dx, s->nx, fma_(dy, s->ny, dz * s->nz));
+    lw_piece piece;
+    cut(&piece, s, dx, dy, dz, towards, p, arc, side, step, view);
+    const real firstY = piece.across * piece.firstS, lastY = piece.across * piece.lastS;
+    const int perspective = view->eye.w != 0.0f;
+    const real behindX = fma_(piece.back, perspective ? fma_(-piece.lastS, side->along, p->slant) : (real)1.0f, piece.lastX);
+    const real behindY = perspective ? lastY * (1.0f + view->perI.w) : lastY;
+    const real front = piece.firstX * inverse_root(fma_(piece.firstX, piece.firstX, firstY * firstY));
     const real back = behindX * inverse_root(fma_(behindX, behindX, behindY * behindY));
-    const real highest = select_(side.horizon, clamp(fmax(beginCosine, endCosine), side.horizon, (real)1.0f), above);
-    const real lowest = select_(side.horizon, clamp(back, side.horizon, highest), above);
-    const lanei front = border_of(sectors_to(side.measure, highest), side.sign, arc.middle, rounding);
-    const lanei behind = border_of(sectors_to(side.measure, lowest), side.sign, arc.middle, rounding);
-    const laneu bits = selectu_((laneu)0u, sectors_below(max(front, behind)) & ~sectors_below(min(front, behind)), seen);
-    found->near |= selectu_((laneu)0u, bits, d2 < p.range2);
+    const real highest = smaller(larger(front, side->horizon), (real)1.0f);
+    const real lowest = smaller(larger(back, side->horizon), highest);
+    const lanei from = border_of(sectors_to(side->measure, highest), side->sign, arc->middle, rounding);
+    const lanei to = border_of(sectors_to(side->measure, lowest), side->sign, arc->middle, rounding);
+    const mask seen = and_(and_(s->inside, squared_length(s->nx, s->ny, s->nz) > 0.25f),
+                           and_(up > 0.0f, up * up > LW_ABOVE_PLANE * LW_ABOVE_PLANE * d2));
+    const laneu bits = selectu_((laneu)0u, sectors_below(from) ^ sectors_below(to), seen);
+    found->near |= selectu_((laneu)0u, bits, d2 < p->range2);
 #if LW_LIGHT
     const real share = select_((real)0.0f, count_sectors(bits & ~found->covered), towards < 0.0f);
-    found->r = fma_(share, s.r, found->r);
-    found->g = fma_(share, s.g, found->g);
-    found->b = fma_(share, s.b, found->b);
+    found->r = fma_(share, s->r, found->r);
+    found->g = fma_(share, s->g, found->g);
+    found->b = fma_(share, s->b, found->b);
     found->seen += share;
     found->covered |= bits;
 #endif
@@ -146,7 +158,8 @@ __kernel void horizon_gather_gather(__global const float* pyramid, int4 layout, 
                                     lw_horizon_view view, __global float* gathered, int4 gatheredLayout) {
     const int x = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);
     if (x >= width || y >= height) return;
-    const lw_seen self = fetch(pyramid + layout.x + y * layout.y + x, layout.z, 0, 0);
+    lw_seen self;
+    fetch(&self, pyramid + layout.x + y * layout.y + x, layout.z, 0, 0);
     const mask valid = squared_length(self.nx, self.ny, self.nz) > 0.25f;
     const real zero = (real)0.0f;
     real sumR = zero, sumG = zero, sumB = zero, sumSeen = zero, sumOpen = zero, sumWeight = zero;
@@ -183,16 +196,16 @@ __kernel void horizon_gather_gather(__global const float* pyramid, int4 layout, 
                     const int phase = start & ((1 << level) - 1);
                     if (row < 0 || row >= step.rows || column >= step.columns || column + ((LW_WIDTH - 1 + phase) >> level) < 0)
                         continue;
-                    s = fetch(pyramid + step.first + row * step.rowStride + column, step.planeStride, level, phase);
+                    fetch(&s, pyramid + step.first + row * step.rowStride + column, step.planeStride, level, phase);
                 } else {
                     const int most = 3 << (level - LW_HORIZON_BLEND);
                     const int row = ((y + step.phaseY - most) >> level) + step.dy, column = ((start - most) >> level) + step.dx;
                     if (row < -1 || row >= step.rows || column >= step.columns ||
                         ((start + LW_WIDTH - 1 + most) >> level) + step.dx < 0)
                         continue;
-                    s = fetch_blended(pyramid + step.first, step, start, y + step.phaseY, columnShift, rowShift, column, row);
+                    fetch_blended(&s, pyramid + step.first, &step, start, y + step.phaseY, columnShift, rowShift, column, row);
                 }
-                look(&found, s, p, arc, side, step, view, slice.rounding);
+                look(&found, &s, &p, &arc, &side, &step, &view, slice.rounding);
             }
         }
         const real weight = arc.weight;

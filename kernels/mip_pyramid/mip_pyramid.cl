@@ -119,10 +119,21 @@ __kernel void mip_pyramid_base(LW_BASE_ARGUMENTS) {
     add_rejected(rejected, counts);
 }
 
+// Child k is kept wherever it lies; where it shows no surface no other counts either.
+LW_FN void keep_sample(lw_texel* child, const int k) {
+    const mask valid = child[k].s.valid;
+    child[k].depth = (real)-MAXFLOAT;
+    child[k].s.nx = select_((real)0.0f, child[k].s.nx, valid);
+    child[k].s.ny = select_((real)0.0f, child[k].s.ny, valid);
+    child[k].s.nz = select_((real)0.0f, child[k].s.nz, valid);
+    LW_UNROLL for (int i = 0; i < 4; ++i) child[i].s.valid = and_(child[i].s.valid, valid);
+}
+
 // One work-item = LW_WIDTH texels of a level, from 2 x 2 of the finer one. width, height: the finer level's size.
-// first: which child is first among equals, 0 (top left) or 2 (bottom right).
+// first: which child is first among equals, 0 (top left) or 2 (bottom right). sampled: that child is kept wherever it lies,
+// and where it shows no surface neither does the texel.
 __kernel void mip_pyramid_reduce(__global const float* fine, int4 fineLayout, int width, int height, __global float* level,
-                                 int4 levelLayout, LwPyramidCamera camera, int first) {
+                                 int4 levelLayout, LwPyramidCamera camera, int first, int sampled) {
     const int x = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);
     if (2 * x >= width || 2 * y >= height) return;
     lw_texel child[4];
@@ -151,6 +162,10 @@ __kernel void mip_pyramid_reduce(__global const float* fine, int4 fineLayout, in
             t.depth = axial_depth(t.s, camera);
             child[j ? 3 - i : i] = t;
         }
+    }
+    if (sampled) {
+        if (first) keep_sample(child, 2);
+        else keep_sample(child, 0);
     }
     const lw_texel t = first ? merged(child, 2) : merged(child, 0);
     store_texel(&t, level, levelLayout.x + y * levelLayout.y + x, levelLayout.z);

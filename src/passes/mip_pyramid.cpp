@@ -83,7 +83,7 @@ void MipPyramid::record(Executor& executor, const Planes& position, const Planes
     for (; k < options.lastLevel; ++k) {
         const Planes fine = levels.level(k), coarse = levels.level(k + 1);
         executor.run("mip_pyramid.reduce", reduce_, itemsOver(coarse, reduce_), groupOf(reduce_), fine, cl_int(fine.width),
-                     cl_int(fine.height), coarse, eye, cl_int(k % 2 ? 2 : 0));
+                     cl_int(fine.height), coarse, eye, cl_int(k % 2 ? 2 : 0), cl_int(options.sampled));
     }
 }
 

@@ -25,6 +25,9 @@ struct PyramidOptions {
     std::uint32_t extras = 0;      // PyramidPlanes
     std::uint32_t firstLevel = 1;  // 0: with a checked copy of the base; 1: from half resolution on
     std::uint32_t lastLevel = 1;   // level k has 1 / 2^k of the columns and rows, rounded up
+    // Levels above the first keep one child for all four, background too, in place of the nearest: surfaces then keep their
+    // size in the mean, where the nearest grow by up to half a texel. Not with kPyramidArea or kPyramidDepth.
+    bool sampled = false;
     std::uint32_t planes() const {
         return 6 + (extras & kPyramidRadiance ? 3 : 0) + (extras & kPyramidArea ? 1 : 0) + (extras & kPyramidDepth ? 1 : 0);
     }

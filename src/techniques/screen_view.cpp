@@ -16,6 +16,7 @@ PyramidOptions pyramidOptions(const ScreenOptions& options, bool light) {
     PyramidOptions pyramid;
     pyramid.extras = options.extras | (light ? kPyramidRadiance : 0u);
     pyramid.firstLevel = options.half ? 1 : 0;
+    pyramid.sampled = true;
     pyramid.lastLevel = pyramid.firstLevel + options.levels - 1;
     return pyramid;
 }

@@ -52,6 +52,7 @@ std::vector<float> gathered(KernelRig& rig, DrawnView& drawn, const Case& c, std
     PyramidOptions options;
     options.extras = c.light ? kPyramidRadiance : 0u;
     options.firstLevel = 0;
+    options.sampled = true;
     options.lastLevel = horizonLevels(c.pattern.density, reach) - 1;
     PyramidLevels levels(rig.device(), w, h, options);
     MipPyramid(rig.device(), options.extras)
@@ -153,5 +154,28 @@ TEST_CASE("the filter makes means of its own surface", "[horizon_gather]") {
                 REQUIRE(double(validity[i]) == Approx(on * 0.25).margin(1e-6));
                 REQUIRE(double(open[i]) == Approx(on * 0.75).margin(1e-6));
             }
+    }
+}
+
+TEST_CASE("the filter's window is centred: a ramp stays where it is", "[horizon_gather]") {
+    const auto width = GENERATE(1u, 16u);
+    KernelRig rig(width);
+    const auto [w, h] = testSize({37, 29});
+    ViewScene wall;
+    wall.quad({-9, -9, 0}, {18, 0, 0}, {0, 18, 0}, 1.0);
+    DrawnView drawn(wall, lookAt({0, 0, 2}, {0, 0, 0}, 0.5), w, h);
+    const Guarded p = rig.uploadPlanes(drawn.position.packed(), w, h, 3, 0.0f), n = rig.uploadPlanes(drawn.normal.packed(), w, h, 3, 0.0f);
+    std::vector<float> sums(std::size_t(w) * h * 2, 1.0f);
+    for (std::uint32_t y = 0; y < h; ++y)
+        for (std::uint32_t x = 0; x < w; ++x) sums[std::size_t(y) * w + x] = 0.01f * float(x) + 0.015f * float(y);
+    const Guarded s = rig.uploadPlanes(sums, w, h, 2, 0.0f), o = rig.makePlanes(w, h, 1);
+    for (const std::uint32_t rows : {1u, 2u, 4u}) {
+        WeightedFilter(rig.device(), false)
+            .record(rig.executor(), rig.planes(p, w, h, 3), rig.planes(n, w, h, 3), 4, rows, rig.planes(s, w, h, 2), {}, {}, rig.planes(o, w, h, 1));
+        rig.device().finish();
+        const auto open = rig.downloadPlanes(rig.planes(o, w, h, 1));
+        for (std::uint32_t y = 2; y + 2 < h; ++y)
+            for (std::uint32_t x = 2; x + 2 < w; ++x)
+                REQUIRE(double(open[std::size_t(y) * w + x]) == Approx(double(sums[std::size_t(y) * w + x])).margin(1e-5));
     }
 }

@@ -206,6 +206,38 @@ TEST_CASE("a texel is the nearest pixel of exactly its own block", "[mip_pyramid
             }
 }
 
+TEST_CASE("a sampled texel is one pixel of its block, background too", "[mip_pyramid]") {
+    const auto width = GENERATE(1u, 16u);
+    KernelRig rig(width);
+    const auto [w, h] = testSize(std::make_pair(147u, 45u));
+    const PinholeCamera camera{{0, 0, 0}, 0.5, w, h};
+    Scene scene(w, h);
+    const Image noise = reference::randomImage(w, h, 9);
+    for (std::uint32_t y = 0; y < h; ++y)
+        for (std::uint32_t x = 0; x < w; ++x) {
+            if (noise.get(x, y).y < 0.3) continue;
+            scene.position.set(x, y, camera.ray(x + 0.5, y + 0.5) * (2.0 + noise.get(x, y).x));
+            scene.normal.set(x, y, {0, 0, 1});
+        }
+    PyramidOptions options{0, 0, 5};
+    options.sampled = true;
+    const Read read = build(rig, scene, camera, options);
+    std::uint32_t offset = 0;  // of the pixel in its block: the last bit of every second level, so that it stays about the middle
+    for (std::uint32_t k = 0; k <= 5; ++k) {
+        for (std::uint32_t y = 0; y < PyramidLevels::sizeAt(h, k); ++y)
+            for (std::uint32_t x = 0; x < PyramidLevels::sizeAt(w, k); ++x) {
+                const std::uint32_t i = (x << k) + offset, j = (y << k) + offset;
+                const bool on = i < w && j < h && scene.normal.get(i, j).z > 0;
+                const Vec got = read.position[k].get(x, y), n = read.normal[k].get(x, y);
+                CAPTURE(k, x, y);
+                REQUIRE((n.z > 0) == on);
+                if (!on) REQUIRE(n.x * n.x + n.y * n.y == 0.0);
+                if (on) REQUIRE((got.x == scene.position.get(i, j).x && got.z == scene.position.get(i, j).z));
+            }
+        if (k % 2) offset += 1u << k;
+    }
+}
+
 TEST_CASE("areas of texels sum to the area seen and their flux is that of the base, on every level", "[mip_pyramid]") {
     // A plane seen at a slant fills the image: its area between the rays through the corners is a closed form.
     const auto width = GENERATE(1u, 16u);

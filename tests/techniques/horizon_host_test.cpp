@@ -201,3 +201,38 @@ TEST_CASE("horizon refuses what it cannot use or make", "[horizon]") {
     CHECK(technique.count("rejected_pixels") == 1);
     CHECK(technique.count("rejected_radiances") == 1);
 }
+
+TEST_CASE("thin views, wide and narrow cameras, far reaches: shares stay shares, and no output depends on another", "[horizon]") {
+    TestDevice device(GENERATE(1u, 16u));
+    const auto [w, h] = GENERATE(std::make_pair(1u, 1u), std::make_pair(1u, 37u), std::make_pair(53u, 1u), std::make_pair(19u, 3u));
+    const bool isAo = GENERATE(false, true);
+    LWHorizonDesc horizon = descOf(40, 8, GENERATE(LW_RESOLUTION_FULL, LW_RESOLUTION_HALF));
+    horizon.interleave = 4;
+    horizon.reach = 4.0f;
+    horizon.thickness = 10.0f;
+    LWAoDesc ao;
+    lwDefaultAo(&ao);
+    ao.resolution = horizon.resolution;
+    ao.radius = 10.0f;
+    TestTechnique technique(device, isAo ? "ao" : "horizon", isAo ? static_cast<const void*>(&ao) : &horizon);
+    TestView view(device, w, h);
+    for (const double half : {1e-3, 0.42, 60.0}) {
+        CAPTURE(w, h, isAo, half);
+        DrawnView drawn(litScene(3.0), lookAt({0.7, 1.4, 2.4}, {0, 0.2, 0.1}, half), w, h);
+        drawn.position.at(w / 2, h / 2, 1) = std::numeric_limits<float>::infinity();
+        drawn.normal.at(w / 3, h - 1, 2) = std::numeric_limits<float>::quiet_NaN();
+        const auto all = renderScreen(technique, view, device, drawn.gbuffer);
+        for (std::size_t i = 0; i < all.validity.size(); ++i) {
+            REQUIRE((all.validity[i] >= 0.0f && all.validity[i] <= 1.0f));
+            REQUIRE((all.ambient[i] >= 0.0f && all.ambient[i] <= 1.0f));
+        }
+        for (const float e : all.irradiance) REQUIRE((e >= 0.0f && std::isfinite(e)));
+        for (unsigned outputs = 1; outputs < 7; ++outputs) {
+            const auto some = renderScreen(technique, view, device, drawn.gbuffer, outputs);
+            CAPTURE(outputs);
+            if (outputs & kIrradiance) CHECK(some.irradiance == all.irradiance);
+            if (outputs & kValidity) CHECK(some.validity == all.validity);
+            for (std::size_t i = 0; i < some.ambient.size(); ++i) REQUIRE(double(some.ambient[i]) == Approx(double(all.ambient[i])).margin(kRounding));
+        }
+    }
+}
