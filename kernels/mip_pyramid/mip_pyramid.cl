@@ -1,16 +1,24 @@
 // Mip pyramid of a G-buffer and its direct light: each texel keeps position and normal of the child nearest the
-// camera (Soler et al. 2009, section 4) and the mean radiance of the children on that surface. Texel (i, j) of level k
-// shows exactly the base pixels i 2^k .. (i+1) 2^k - 1, so nothing drifts from level to level; what of a last column or
-// row lies beyond the image is no child. Among children at the same depth the first wins, and which is first changes
-// from level to level (top left, bottom right): a wall facing the camera keeps points about its texels' centres.
+// camera (Soler et al. 2009, section 4) and the mean radiance of the children on that surface; where it holds what they
+// show as an area, too, it stands in the middle of that. Texel (i, j) of level k shows exactly the base pixels
+// i 2^k .. (i+1) 2^k - 1, so nothing drifts from level to level; what of a last column or row lies beyond the image is no
+// child. Among children at the same depth the first wins, and which is first changes from level to level (top left, bottom
+// right): a wall facing the camera keeps points about its texels' centres.
 #include "mip_pyramid.h"
 
 typedef struct { real even, odd; } lw_pair;
 
-// Columns x .. x + 2 LW_WIDTH - 1 of a row that may be read up to rowEnd.
+// One load of the whole register: PoCL's vload16 comes as quarters, and a shuffle of quarters as loads of single lanes.
+#if LW_WIDTH > 1 && defined(POCL_DEVICE_ADDRESS_BITS)
+LW_FN real load_whole(__global const float* p) { return *(__global const lw_loose_real*)p; }
+#else
+LW_FN real load_whole(__global const float* p) { return load(p, 0); }
+#endif
+
+// Columns x .. x + 2 LW_WIDTH - 1 of a row that may be read up to rowEnd; beyond, the first half again.
 LW_FN lw_pair load_pair(__global const float* image, int row, int x, int rowEnd) {
-    const real a = load(image, row + x);
-    const real b = x + LW_WIDTH < rowEnd ? load(image, row + x + LW_WIDTH) : (real)0.0f;
+    const real a = load_whole(image + row + x);
+    const real b = load_whole(image + row + (x + LW_WIDTH < rowEnd ? x + LW_WIDTH : x));
     const lw_pair pair = {even_(a, b), odd_(a, b)};
     return pair;
 }
@@ -74,7 +82,7 @@ __kernel void mip_pyramid_copy(LW_BASE_ARGUMENTS) {
     const lw_texel t = pixel_texel(load(position, p), load(position, p + positionLayout.z), load(position, p + 2 * positionLayout.z),
                                    load(normal, n), load(normal, n + normalLayout.z), load(normal, n + 2 * normalLayout.z), r, g, b,
                                    only, lanei_iota() + (lanei)x < (lanei)width, camera, rejected);
-    store_texel(t, level, levelLayout.x + y * levelLayout.y + x, levelLayout.z);
+    store_texel(&t, level, levelLayout.x + y * levelLayout.y + x, levelLayout.z);
     add_rejected(rejected, counts);
 }
 
@@ -84,13 +92,13 @@ __kernel void mip_pyramid_base(LW_BASE_ARGUMENTS) {
     if (2 * x >= width || 2 * y >= height) return;
     const int rowEnd = (width + 15) & ~15;
     const lanei column = lanei_iota() * 2 + (lanei)(2 * x);
-    lw_texel child[4];
+    lw_texel child[4];  // round the block, so that a level may start with the corner across
     int rejected[2] = {0, 0};
-    for (int j = 0; j < 2; ++j) {
+    LW_UNROLL for (int j = 0; j < 2; ++j) {
         const int row = min(2 * y + j, height - 1);
         const mask rowInside = splat_mask(2 * y + j < height);
         lw_pair v[10];
-        for (int a = 0; a < 3; ++a) {
+        LW_UNROLL for (int a = 0; a < 3; ++a) {
             v[a] = load_pair(position, positionLayout.x + a * positionLayout.z + row * positionLayout.y, 2 * x, rowEnd);
             v[3 + a] = load_pair(normal, normalLayout.x + a * normalLayout.z + row * normalLayout.y, 2 * x, rowEnd);
             v[6 + a].even = v[6 + a].odd = (real)0.0f;
@@ -100,14 +108,13 @@ __kernel void mip_pyramid_base(LW_BASE_ARGUMENTS) {
         }
         v[9].even = v[9].odd = (real)0.0f;
         if (hasMask) v[9] = load_pair(receiveMask, receiveMaskLayout.x + row * receiveMaskLayout.y, 2 * x, rowEnd);
-        child[2 * j] = pixel_texel(v[0].even, v[1].even, v[2].even, v[3].even, v[4].even, v[5].even, v[6].even, v[7].even, v[8].even,
+        child[3 * j] = pixel_texel(v[0].even, v[1].even, v[2].even, v[3].even, v[4].even, v[5].even, v[6].even, v[7].even, v[8].even,
                                    v[9].even, and_(rowInside, column < (lanei)width), camera, rejected);
-        child[2 * j + 1] = pixel_texel(v[0].odd, v[1].odd, v[2].odd, v[3].odd, v[4].odd, v[5].odd, v[6].odd, v[7].odd, v[8].odd,
+        child[1 + j] = pixel_texel(v[0].odd, v[1].odd, v[2].odd, v[3].odd, v[4].odd, v[5].odd, v[6].odd, v[7].odd, v[8].odd,
                                        v[9].odd, and_(rowInside, column + 1 < (lanei)width), camera, rejected);
     }
-    // Round the block, so that every second level may start with the corner across.
-    const lw_texel round[4] = {child[0], child[1], child[3], child[2]};
-    store_texel(merged(round, 0), level, levelLayout.x + y * levelLayout.y + x, levelLayout.z);
+    const lw_texel t = merged(child, 0);
+    store_texel(&t, level, levelLayout.x + y * levelLayout.y + x, levelLayout.z);
     add_rejected(rejected, counts);
 }
 
@@ -118,12 +125,12 @@ __kernel void mip_pyramid_reduce(__global const float* fine, int4 fineLayout, in
     const int x = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);
     if (2 * x >= width || 2 * y >= height) return;
     lw_texel child[4];
-    for (int j = 0; j < 2; ++j) {
+    LW_UNROLL for (int j = 0; j < 2; ++j) {
         const int inside = 2 * y + j < height;
         const int at = fineLayout.x + min(2 * y + j, height - 1) * fineLayout.y + 2 * x;
         lw_pair v[LW_PYRAMID_PLANES];
-        for (int a = 0; a < LW_PYRAMID_PLANES; ++a) v[a] = load_pair(fine, at + a * fineLayout.z, 0, 2 * LW_WIDTH);
-        for (int i = 0; i < 2; ++i) {
+        LW_UNROLL for (int a = 0; a < LW_PYRAMID_PLANES; ++a) v[a] = load_pair(fine, at + a * fineLayout.z, 0, 2 * LW_WIDTH);
+        LW_UNROLL for (int i = 0; i < 2; ++i) {
             lw_texel t = empty_texel();
             t.s.px = i ? v[0].odd : v[0].even;
             t.s.py = i ? v[1].odd : v[1].even;
@@ -144,5 +151,6 @@ __kernel void mip_pyramid_reduce(__global const float* fine, int4 fineLayout, in
             child[j ? 3 - i : i] = t;
         }
     }
-    store_texel(merged(child, first), level, levelLayout.x + y * levelLayout.y + x, levelLayout.z);
+    const lw_texel t = first ? merged(child, 2) : merged(child, 0);
+    store_texel(&t, level, levelLayout.x + y * levelLayout.y + x, levelLayout.z);
 }

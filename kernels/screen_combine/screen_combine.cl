@@ -51,8 +51,10 @@ __kernel void screen_combine_finish(__global const float* position, int4 positio
         const lw_surface s = make_surface(p[0][phase], p[1][phase], p[2][phase], p[3][phase], p[4][phase], p[5][phase]);
         lw_light_sum found;
 #if LW_INTERLEAVE == 1
+        lw_lit_row row;
         lw_lit_texel t;
-        load_lit(&t, texels, texelLayout, light, lightLayout, x, y);
+        lit_row(&row, texels, texelLayout, light, lightLayout, x, y);
+        load_lit(&t, &row, 0);
         LW_UNROLL for (int a = 0; a < LW_LIGHT_PLANES; ++a) found.v[a] = select_((real)0.0f, t.v[a], s.valid);
 #else
         lost += upsample_light(&found, &s, phase, texels, texelLayout, light, lightLayout, hx, y, texelRows, width);

@@ -18,22 +18,34 @@ typedef struct { real v[LW_LIGHT_PLANES], weight; } lw_light_sum;
 // A pyramid's texels and their light, LW_WIDTH side by side.
 typedef struct { real px, py, pz, nx, ny, nz, v[LW_LIGHT_PLANES]; } lw_lit_texel;
 
-// Texels from column x on; rows have borders without a surface.
-LW_FN void load_lit(lw_lit_texel* t, __global const float* texels, int4 texelLayout, __global const float* light,
-                    int4 lightLayout, int x, int y) {
-    const int at = texelLayout.x + y * texelLayout.y + x, from = lightLayout.x + y * lightLayout.y + x;
-    t->px = load(texels, at);
-    t->py = load(texels, at + texelLayout.z);
-    t->pz = load(texels, at + 2 * texelLayout.z);
-    t->nx = load(texels, at + 3 * texelLayout.z);
-    t->ny = load(texels, at + 4 * texelLayout.z);
-    t->nz = load(texels, at + 5 * texelLayout.z);
-    LW_UNROLL for (int a = 0; a < LW_LIGHT_PLANES; ++a) t->v[a] = load(light, from + a * lightLayout.z);
+// A row of texels and their light, from some column on. Kept as one pointer a plane, so that a row's taps differ by a
+// constant: as indices of one pointer each load would take its own sum and sign extension, more work than the tap's.
+typedef struct {
+    __global const float *surface[6], *light[LW_LIGHT_PLANES];
+} lw_lit_row;
+
+LW_FN void lit_row(lw_lit_row* row, __global const float* texels, int4 texelLayout, __global const float* light,
+                   int4 lightLayout, int x, int y) {
+    row->surface[0] = texels + (texelLayout.x + y * texelLayout.y + x);
+    row->light[0] = light + (lightLayout.x + y * lightLayout.y + x);
+    LW_UNROLL for (int a = 1; a < 6; ++a) row->surface[a] = row->surface[a - 1] + texelLayout.z;
+    LW_UNROLL for (int a = 1; a < LW_LIGHT_PLANES; ++a) row->light[a] = row->light[a - 1] + lightLayout.z;
+}
+
+// Texels i columns on; rows have borders without a surface.
+LW_FN void load_lit(lw_lit_texel* t, const lw_lit_row* row, int i) {
+    t->px = load(row->surface[0], i);
+    t->py = load(row->surface[1], i);
+    t->pz = load(row->surface[2], i);
+    t->nx = load(row->surface[3], i);
+    t->ny = load(row->surface[4], i);
+    t->nz = load(row->surface[5], i);
+    LW_UNROLL for (int a = 0; a < LW_LIGHT_PLANES; ++a) t->v[a] = load(row->light[a], i);
 }
 
 // Weight of a texel for a surface: nothing across an edge, nothing of a texel without a surface (its normal is zero).
-LW_FN real lit_weight(const lw_edges* s, const lw_lit_texel* t) {
-    return edge_weight(*s, t->px, t->py, t->pz, t->nx, t->ny, t->nz);
+LW_FN real lit_weight(const lw_edges* e, const lw_lit_texel* t) {
+    return edge_weight(*e, t->px, t->py, t->pz, t->nx, t->ny, t->nz);
 }
 
 LW_FN void clear_sum(lw_light_sum* sum) {
@@ -58,15 +70,17 @@ LW_FN float spline_weight(int tap, int phase) {
 // likeness of normals alone instead of the edge test, for pixels that no texel passes it for.
 LW_FN void gather_texels(lw_light_sum* sum, const lw_surface* s, int phase, __global const float* texels, int4 texelLayout,
                          __global const float* light, int4 lightLayout, int hx, int y, int texelRows, const int byLikeness) {
-    clear_sum(sum);
     const lw_edges edges = edges_of(*s, (real)1.0f);
+    clear_sum(sum);
     for (int j = -1; j <= 1; ++j) {
         const int hy = y / LW_INTERLEAVE + j;
         if (hy < 0 || hy >= texelRows) continue;
         const float rowWeight = spline_weight(j, y % LW_INTERLEAVE);
+        lw_lit_row row;
+        lit_row(&row, texels, texelLayout, light, lightLayout, hx, hy);
         LW_UNROLL for (int i = -1; i <= 1; ++i) {
             lw_lit_texel t;
-            load_lit(&t, texels, texelLayout, light, lightLayout, hx + i, hy);
+            load_lit(&t, &row, i);
             const float tent = rowWeight * spline_weight(i, phase);
             real w;
             if (byLikeness) {

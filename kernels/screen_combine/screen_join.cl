@@ -12,15 +12,15 @@
 typedef struct { real v[LW_LIGHT_PLANES], weight; } lw_joined;
 
 // One of the four texels about a point. `at`: its offset in the level's planes, `lit` in the light's.
-LW_FN void add_neighbour(lw_joined* sum, const lw_surface s, real tent, mask inside, lanei at, lanei lit, int plane,
+LW_FN void add_neighbour(lw_joined* sum, const lw_surface* s, real tent, mask inside, lanei at, lanei lit, int plane,
                          int lightPlane, __global const float* texels, __global const float* light, real footprint2) {
     const real px = gather(texels, at), py = gather(texels, at + plane), pz = gather(texels, at + 2 * plane);
     const real nx = gather(texels, at + 3 * plane), ny = gather(texels, at + 4 * plane), nz = gather(texels, at + 5 * plane);
     const real area = gather(texels, at + LW_SENDER_AREA * plane);
     // A texel of area f l shows a surface f wide and l long: l^2 = area^2 / f^2.
     const real extent2 = fmax(area * area / footprint2, footprint2);
-    const mask near = squared_length(px - s.px, py - s.py, pz - s.pz) <= (LW_JOIN_REACH * LW_JOIN_REACH) * extent2;
-    const real w = select_((real)0.0f, tent * edge_weight(edges_of(s, (real)1.0f), px, py, pz, nx, ny, nz), and_(inside, near));
+    const mask near = squared_length(px - s->px, py - s->py, pz - s->pz) <= (LW_JOIN_REACH * LW_JOIN_REACH) * extent2;
+    const real w = select_((real)0.0f, tent * edge_weight(edges_of(*s, (real)1.0f), px, py, pz, nx, ny, nz), and_(inside, near));
     for (int a = 0; a < LW_LIGHT_PLANES; ++a) sum->v[a] = fma_(w, gather(light, lit + a * lightPlane), sum->v[a]);
     sum->weight += w;
 }
@@ -57,7 +57,7 @@ __kernel void screen_combine_join(__global const float* position, int4 positionL
             const mask inside = and_(seen, and_(and_(column >= (lanei)0, column < (lanei)columns), and_(row >= (lanei)0, row < (lanei)rows)));
             const lanei c = clamp(column, (lanei)0, (lanei)(columns - 1)), r = clamp(row, (lanei)0, (lanei)(rows - 1));
             const real tent = (i ? fu : 1.0f - fu) * (j ? fv : 1.0f - fv);
-            add_neighbour(&sum, s, tent, inside, (lanei)texelLayout.x + r * texelLayout.y + c,
+            add_neighbour(&sum, &s, tent, inside, (lanei)texelLayout.x + r * texelLayout.y + c,
                           (lanei)lightLayout.x + r * lightLayout.y + c, texelLayout.z, lightLayout.z, texels, light, footprint2);
         }
     // A neighbour that just passes the tests would speak for all.

@@ -8,10 +8,13 @@
 //
 // Light changes too, so a history is only believed as far as the last few frames allow. Of each surface's light Y (the sum of
 // the channels) three more numbers are kept: m, the mean over three frames; b, over four, of Y - m, which is what Y changes by in
-// three; and s, the median of |Y - m - b| / light over time: the noise that this surface shows from frame to frame, apart from
-// what its light changes by; a median, since jumps of the light shall not count for more than they are many. History is brought between the bounds (clamping, Karis 2014)
+// three; and s, the noise that this surface shows from frame to frame: as many frames leave Y within s * light of m + b as twice
+// those that leave it farther off and on the other side of m than b. Noise leaps back; light that speeds up does not, and is not
+// taken for noise. Frames are counted, not summed, since jumps of the light shall not weigh more than they are many. History is
+// brought between the bounds (clamping, Karis 2014)
 //   m + 2/3 b -+ gamma / 2 * s * light,
-// and forgets where much of it was cut off, or where a frame is more than some 5 deviations of Y away. Bounds from the 3 x 3
+// and forgets where much of it was cut off, where a frame is more than some 5 deviations of Y away, or where b says that light is
+// in motion. Bounds from the 3 x 3
 // pixels around, the usual choice, do not work here: samples that all pixels share, such as VPLs, move whole
 // patches up and down from frame to frame with next to no difference between neighbours, and at the edge of a moving
 // shadow neighbours differ by all of its light.
@@ -19,6 +22,7 @@
 #include "shared/surface.h"
 #include "shared/edge_weight.h"
 #include "shared/history_types.h"
+#include "recent_light.h"
 #include "surface_word.h"
 
 #ifndef LW_SCALARS
@@ -27,7 +31,6 @@
 #define LW_VALUES (3 + LW_SCALARS)
 #define LW_KINDS (1 + LW_SCALARS)  // the irradiance, and each scalar
 #define LW_MIXED (LW_VALUES + 3 * LW_KINDS)  // values, m of each kind, s, b
-#define LW_UNROLL _Pragma("unroll")
 // Planes of a history: the mixed ones, position xyz, and a word of normal and age.
 #define LW_POSITION_PLANE LW_MIXED
 #define LW_WORD_PLANE (LW_MIXED + 3)
@@ -45,30 +48,10 @@
 // Speed in pixels a frame that halves the mean. Every look-up between pixels blurs a little; a short mean repeats that less
 // often, and the eye resolves less in motion. Larger: blur in motion. Smaller: noise in motion.
 #define LW_HALVING_SPEED 8.0f
-// Frames after which s is known well enough to clip by.
-#define LW_LEARNING 4.0f
-// Frames that m is a mean over, at most. Larger: (1 - 1/3)^8 = 4 % of a change are left in m, and so in the history, after 8
-// frames; 10 % would be with 4. Smaller: m follows noise, and the history with it.
-#define LW_RECENT_FRAMES 3.0f
-// Of a change by as much in every frame, m lacks two frames' and Y - m_before shows three.
-#define LW_TREND_AHEAD (2.0f / 3.0f)
-// Frames that b is a mean over. Larger: b lags where light goes up and then down. Smaller: it follows noise.
-#define LW_TREND_FRAMES 4.0f
-// Deviation of m + 2/3 b from the light's mean over that of Y from m + b, of independent noise, rounded up.
-#define LW_RECENT_REACH 0.5f
-// Slope with which the mean forgets: all at half of the distance cut off (light twice as far from its past as the bounds
-// reach), nothing up to a quarter. Larger: lag, where light changes by hardly more than its noise.
-#define LW_FORGETTING 4.0f
-// Step of s in a frame, up or down, towards the median. Larger: s trembles, and takes a row of jumps for noise. Smaller: it
-// learns late that a technique's noise has changed.
-#define LW_SPREAD_STEP (1.0f / 16.0f)
-// s of a new surface.
-#define LW_FIRST_SPREAD 0.1f
-// Least s: a picture without noise learns nothing of noise to come. Larger: that much of a light that has gone may stay.
-#define LW_LEAST_SPREAD 0.01f
+
 typedef struct {
     real mixed[LW_MIXED];
-    real age, weight;
+    real age, learnt, weight;
 } lw_past;
 
 // One tap for the surface `s` (its place in the frame before). `uniform`, a constant: all lanes' taps lie side by side, from
@@ -79,7 +62,7 @@ LW_FN void add_tap(lw_past* past, const lw_surface s, real tolerance, __global c
     __global const int* words = (__global const int*)before;
     const laneu word = as_laneu_(uniform ? loadi(words, at + LW_WORD_PLANE * plane)
                                          : gatheri(words, index + (lanei)(LW_WORD_PLANE * plane)));
-    const real age = to_real(word >> 24);
+    const real age = age_of(word);
     const real dx = LW_READ(LW_POSITION_PLANE) - s.px, dy = LW_READ(LW_POSITION_PLANE + 1) - s.py,
                dz = LW_READ(LW_POSITION_PLANE + 2) - s.pz;
     const real off = fma_(dx, s.nx, fma_(dy, s.ny, dz * s.nz));
@@ -88,6 +71,7 @@ LW_FN void add_tap(lw_past* past, const lw_surface s, real tolerance, __global c
     LW_UNROLL for (int c = 0; c < LW_MIXED; ++c)
         past->mixed[c] = fma_(w, select_((real)0.0f, LW_READ(c), same), past->mixed[c]);
     past->age = fma_(w, age, past->age);
+    past->learnt = fma_(w, learnt_of(word), past->learnt);
     past->weight += w;
 #undef LW_READ
 }
@@ -114,7 +98,7 @@ LW_FN lw_past look_up(lw_surface s, mask wanted, int x, int y, int mode, const L
                       real* speed) {
     lw_past past;
     LW_UNROLL for (int c = 0; c < LW_MIXED; ++c) past.mixed[c] = (real)0.0f;
-    past.age = past.weight = *speed = (real)0.0f;
+    past.age = past.learnt = past.weight = *speed = (real)0.0f;
     lanei column = lanei_iota() + (lanei)x, row = (lanei)y;
     real fx = (real)0.0f, fy = (real)0.0f;
     const real ox = s.px - r.origin.x, oy = s.py - r.origin.y, oz = s.pz - r.origin.z;
@@ -172,40 +156,6 @@ LW_FN lw_past look_up(lw_surface s, mask wanted, int x, int y, int mode, const L
     return past;
 }
 
-// Share of the past to keep, when it lies `distance` away and may lie `reach` away.
-LW_FN real kept(real distance, real reach) {
-    const real cut = 1.0f - reach / fmax(distance, (real)1e-37f);
-    return clamp(LW_FORGETTING * (0.5f - cut), (real)0.0f, (real)1.0f);
-}
-
-// The `count` values of one kind: `past` is brought between its bounds, m, s and b go on by a frame. Returns the
-// share of the mean's frames to keep.
-LW_FN real follow(real* past, const real* own, const int count, real age, real gamma, mask trusted, real* m, real* s, real* b) {
-    real before = (real)0.0f, now = (real)0.0f;
-    LW_UNROLL for (int c = 0; c < count; ++c) {
-        before += past[c];
-        now += own[c];
-    }
-    const real spread = gamma * *s;
-    real share = select_((real)1.0f, kept(fabs(now - before), spread * (0.5f * (now + before))), trusted);
-    const real away = now - *m, light = 0.5f * (now + *m);
-    const real recent = fma_(away, 1.0f / fmin(age + 1.0f, (real)LW_RECENT_FRAMES), *m);
-    const real trend = fma_(away - *b, (real)(1.0f / LW_TREND_FRAMES), *b);
-    const real centre = fmax(fma_((real)LW_TREND_AHEAD, trend, recent), (real)0.0f);
-    const real reach = LW_RECENT_REACH * spread * (0.5f * (recent + before));
-    share = fmin(share, select_((real)1.0f, kept(fabs(centre - before), reach), trusted));
-    const real aim = select_(before, clamp(before, centre - reach, centre + reach), trusted);
-    // Less light: the same colour. More: of the colour that comes.
-    const real less = fmax(aim, (real)0.0f) / fmax(before, (real)1e-37f), more = (aim - before) / fmax(now, (real)1e-37f);
-    LW_UNROLL for (int c = 0; c < count; ++c)
-        past[c] = select_(fma_(more, own[c], past[c]), past[c] * less, aim < before);
-    const real step = select_((real)(1.0f - LW_SPREAD_STEP), (real)(1.0f + LW_SPREAD_STEP), fabs(away - *b) > *s * light);
-    *m = fma_(recent - now, share, now);
-    *b = trend * share;
-    *s = clamp(*s * step, (real)LW_LEAST_SPREAD, (real)1.0f);
-    return share;
-}
-
 // One work-item = LW_WIDTH adjacent pixels. current: 3 planes of irradiance and LW_SCALARS more. frames: in a mean at
 // most, at least 1. gamma: of the bounds; 0: none. before, after: a history's planes (above), of the frame before at its
 // size and of this one. counts[0]: surfaces without a history.
@@ -225,11 +175,11 @@ __kernel void temporal_history_blend(__global const float* position, int4 positi
     const int c0 = currentLayout.x + y * currentLayout.y + x;
     LW_UNROLL for (int c = 0; c < LW_VALUES; ++c) {
         own[c] = load(current, c0 + c * currentLayout.z);
-        finite = and_(finite, fabs(own[c]) <= FLT_MAX);
+        finite = and_(finite, fabs(own[c]) <= LW_MOST_LIGHT);
     }
     LW_UNROLL for (int c = 0; c < LW_VALUES; ++c) own[c] = select_((real)0.0f, own[c], finite);
 
-    mask known = splat_mask(0);
+    mask known = splat_mask(0), learnt = splat_mask(0);
     real age = (real)0.0f;
     real past[LW_MIXED];
     LW_UNROLL for (int c = 0; c < LW_MIXED; ++c) past[c] = (real)0.0f;
@@ -241,6 +191,7 @@ __kernel void temporal_history_blend(__global const float* position, int4 positi
         const real most = fmax(frames * LW_HALVING_SPEED / (LW_HALVING_SPEED + speed) - 1.0f, (real)0.0f);
         LW_UNROLL for (int c = 0; c < LW_MIXED; ++c) past[c] = found.mixed[c] * scale;
         age = select_((real)0.0f, fmin(floor(fma_(found.age, scale, (real)0.5f)), most), known);
+        learnt = and_(known, or_(found.learnt * scale > 0.5f, age >= LW_LEARNING));
     }
     real share = (real)1.0f, m[LW_KINDS], noise[LW_KINDS], trend[LW_KINDS];
     LW_UNROLL for (int k = 0; k < LW_KINDS; ++k) {
@@ -249,7 +200,7 @@ __kernel void temporal_history_blend(__global const float* position, int4 positi
         trend[k] = past[LW_VALUES + 2 * LW_KINDS + k];
     }
     if (any_(known)) {
-        const mask trusted = and_(splat_mask(gamma > 0.0f), and_(known, and_(finite, age >= LW_LEARNING)));
+        const mask trusted = and_(splat_mask(gamma > 0.0f), and_(learnt, finite));
         real keep = (real)1.0f;
         LW_UNROLL for (int k = 0; k < LW_KINDS; ++k)
             keep = fmin(keep, follow(past + (k ? k + 2 : 0), own + (k ? k + 2 : 0), k ? 1 : 3, age, (real)gamma, trusted, &m[k], &noise[k], &trend[k]));
@@ -281,8 +232,8 @@ __kernel void temporal_history_blend(__global const float* position, int4 positi
     store(s.px, after, o + LW_POSITION_PLANE * plane);
     store(s.py, after, o + (LW_POSITION_PLANE + 1) * plane);
     store(s.pz, after, o + (LW_POSITION_PLANE + 2) * plane);
-    const lanei grown = to_lanei(age + 1.5f);  // a frame more, rounded
-    store(pack_word(s.nx, s.ny, s.nz, selecti_((lanei)0, grown, or_(known, finite))), (__global uint*)after, o + LW_WORD_PLANE * plane);
+    const lanei grown = to_lanei(fmax(age + select_((real)0.0f, (real)1.0f, finite), (real)1.0f) + 0.5f);
+    store(pack_word(s.nx, s.ny, s.nz, selecti_((lanei)0, grown, or_(known, finite)), learnt), (__global uint*)after, o + LW_WORD_PLANE * plane);
     const mask fresh = and_(surface, not_(known));
     if (any_(fresh)) atomic_add(counts, count_(fresh));
 }
@@ -293,5 +244,5 @@ __kernel void temporal_history_age(__global const float* history, int4 layout, i
     const int x = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);
     if (x >= width || y >= height) return;
     const laneu word = as_laneu_(loadi((__global const int*)history, layout.x + LW_WORD_PLANE * layout.z + y * layout.y + x));
-    store(to_real(word >> 24), age, ageLayout.x + y * ageLayout.y + x);
+    store(age_of(word), age, ageLayout.x + y * ageLayout.y + x);
 }

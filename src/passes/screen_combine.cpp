@@ -28,9 +28,9 @@ ScreenCombine::ScreenCombine(Device& device, const Options& options)
     if (options.joins) join_ = &device.programs().kernel("screen_combine/screen_join", "screen_combine_join");
 }
 
-void ScreenCombine::recordFilter(Executor& executor, const Planes& texels, const Planes& light, const Planes& filtered) {
+void ScreenCombine::recordFilter(Executor& executor, const Planes& texels, bool alike, const Planes& light, const Planes& filtered) {
     executor.run("screen_combine.filter", *filter_, itemsOver(light, filter_->width()), groupOf(*filter_), texels,
-                 cl_int(light.width), cl_int(light.height), light, filtered);
+                 cl_int(light.width), cl_int(light.height), cl_int(alike ? 1 : 0), light, filtered);
 }
 
 void ScreenCombine::recordAdd(Executor& executor, const Planes& fine, const Planes& own, const Planes& coarse,

@@ -18,8 +18,9 @@ public:
     };
     ScreenCombine(Device& device, const Options& options);
 
-    // Pass "screen_combine.filter": mean over the window that holds every pattern of the gather. interleave > 1 only.
-    void recordFilter(Executor& executor, const Planes& texels, const Planes& light, const Planes& filtered);
+    // Pass "screen_combine.filter": mean over the window in which every pattern of the gather has the same weight; where the
+    // patterns are `alike`, the light as it is. interleave > 1 only.
+    void recordFilter(Executor& executor, const Planes& texels, bool alike, const Planes& light, const Planes& filtered);
     // Pass "screen_combine.add": sum = own + up-sampled light of the next coarser level.
     void recordAdd(Executor& executor, const Planes& fine, const Planes& own, const Planes& coarse, const Planes& light,
                    const Planes& sum);

@@ -76,6 +76,8 @@ std::vector<LwScreenSample> everyTexel(double inner, double outer, std::uint32_t
 
 }  // namespace
 
+bool takesEveryTexel(double inner, double outer, std::uint32_t samples) { return !everyTexel(inner, outer, samples, 1).empty(); }
+
 std::vector<LwScreenSample> screenPatterns(double inner, double outer, std::uint32_t samples, std::uint32_t interleave,
                                            std::uint32_t seed) {
     const std::uint32_t patterns = interleave * interleave;

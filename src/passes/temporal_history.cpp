@@ -46,7 +46,8 @@ lw_float4 rounded(const glm::dvec3& v) { return float4(v.x, v.y, v.z, 0.0); }
 LwReprojection reprojection(const Camera& camera, std::uint32_t width, std::uint32_t height, const Planes& now) {
     const glm::dmat4 m = glm::transpose(camera.worldToClip());  // its columns are the rows
     const glm::dvec4 x = (m[0] + m[3]) * (0.5 * width), y = (m[3] - m[1]) * (0.5 * height);
-    const glm::dvec3 origin = camera.eye();
+    // As the kernel takes it off: far from the world's origin the eye would be off by parts of a pixel, all of one picture alike.
+    const glm::dvec3 origin(glm::vec3(camera.eye()));
     LwReprojection result{};
     result.x = rounded(relativeTo(origin, x));
     result.y = rounded(relativeTo(origin, y));
@@ -81,13 +82,19 @@ Planes ViewHistory::planes(std::size_t which, std::uint32_t width, std::uint32_t
     return planes;
 }
 
+bool ViewHistory::Drawn::isOf(const LWCamera& from, std::uint32_t w, std::uint32_t h) const {
+    return camera && width == w && height == h && std::memcmp(&matrices, &from, sizeof from) == 0;
+}
+
 void ViewHistory::startFrame(bool forget) {
-    if (forget) camera_.reset();
+    if (forget)
+        for (Drawn& drawn : drawn_) drawn.camera.reset();
+    isDrawn_ = false;
     if (updates_ < std::numeric_limits<std::uint32_t>::max()) ++updates_;
 }
 
 void ViewHistory::report(Device& device, Report& report) const {
-    if (width_) report.read(device, "history_new", counts_, 0);
+    if (drawn_[last_].width) report.read(device, "history_new", counts_, 0);
 }
 
 std::uint64_t ViewHistory::estimateBytes(const TemporalHistoryOptions& options, std::uint32_t maxWidth, std::uint32_t maxHeight) {
@@ -106,19 +113,21 @@ void TemporalHistory::checkCamera(const LWGBuffer& gbuffer, std::uint32_t width,
 void TemporalHistory::record(Executor& executor, const HistoryFrame& frame, const LWCamera& camera, ViewHistory& view) {
     const Planes& now = frame.position;
     Camera own(camera, now.width, now.height, "gbuffer.camera");
+    // The same picture once more in an update, such as after an lwRender that failed late, takes the place of the first: counted
+    // twice, its samples would outweigh those of other frames.
+    const bool again = view.isDrawn_ && view.drawn_[view.last_].isOf(camera, now.width, now.height);
+    const std::size_t next = again ? view.last_ : 1 - view.last_;
+    const std::uint32_t lead = again ? view.lead_ : view.updates_;
+    const ViewHistory::Drawn& drawn = view.drawn_[1 - next];
     cl_int mode = LW_HISTORY_NONE;
     LwReprojection where = reprojection(own, now.width, now.height, now);
-    if (view.camera_) {
-        const bool rests = view.width_ == now.width && view.height_ == now.height &&
-                           std::memcmp(&view.matrices_, &camera, sizeof camera) == 0;
-        // Motion vectors lead one frame back: a view that was not rendered in the last one, or is for the second time in
-        // this one, goes by its cameras.
-        const bool moves = frame.motion && view.updates_ == 1;
-        mode = moves ? LW_HISTORY_MOTION : rests ? LW_HISTORY_STILL : LW_HISTORY_REPROJECT;
-        where = reprojection(*view.camera_, view.width_, view.height_, now);
+    if (drawn.camera) {
+        // Motion vectors lead one frame back: across more, and within one, a view goes by its cameras.
+        const bool moves = frame.motion && lead == 1;
+        mode = moves ? LW_HISTORY_MOTION : drawn.isOf(camera, now.width, now.height) ? LW_HISTORY_STILL : LW_HISTORY_REPROJECT;
+        where = reprojection(*drawn.camera, drawn.width, drawn.height, now);
     }
-    const std::size_t next = 1 - view.last_;
-    const Planes before = view.planes(view.last_, std::uint32_t(where.width), std::uint32_t(where.height));
+    const Planes before = view.planes(1 - next, std::uint32_t(where.width), std::uint32_t(where.height));
     const Planes after = view.planes(next, now.width, now.height);
     // A kernel's argument must be some memory, also where none is read or written.
     const Planes& motion = frame.motion ? frame.motion : now;
@@ -128,19 +137,19 @@ void TemporalHistory::record(Executor& executor, const HistoryFrame& frame, cons
     executor.run("temporal_history.blend", blend_, itemsOver(now, blend_), groupOf(blend_), now, frame.normal, cl_int(now.width),
                  cl_int(now.height), frame.current, motion, mode, where, cl_float(options_.frames), cl_float(options_.clamp),
                  before, after, frame.irradiance, first, second, view.counts_);
+    view.drawn_[next] = {now.width, now.height, camera, std::move(own)};
     view.last_ = next;
-    view.width_ = now.width;
-    view.height_ = now.height;
-    view.matrices_ = camera;
-    view.camera_.emplace(std::move(own));
+    view.isDrawn_ = true;
+    view.lead_ = lead;
     view.updates_ = 0;
 }
 
 Planes TemporalHistory::ageShape(const ViewHistory& view) const {
     Planes planes;
-    if (!view.camera_) return planes;
-    planes.width = view.width_;
-    planes.height = view.height_;
+    const ViewHistory::Drawn& drawn = view.drawn_[view.last_];
+    if (!drawn.camera) return planes;
+    planes.width = drawn.width;
+    planes.height = drawn.height;
     planes.rowStride = paddedWidth(planes.width);
     planes.planeStride = planes.rowStride * planes.height;
     planes.count = 1;

@@ -57,11 +57,18 @@ private:
     std::uint32_t planes_;
     std::array<Buffer, 2> images_;
     Buffer counts_;
-    std::size_t last_ = 0;  // image of the last frame
-    std::uint32_t width_ = 0, height_ = 0;  // its size
-    LWCamera matrices_{};
-    std::optional<Camera> camera_;  // its; none: nothing to look up
-    std::uint32_t updates_ = 0;     // since
+    // Of an image; without a camera there is nothing to look up.
+    struct Drawn {
+        std::uint32_t width = 0, height = 0;
+        LWCamera matrices{};
+        std::optional<Camera> camera;
+        bool isOf(const LWCamera& from, std::uint32_t w, std::uint32_t h) const;
+    };
+    std::array<Drawn, 2> drawn_;
+    std::size_t last_ = 0;         // image of the last record
+    bool isDrawn_ = false;         // since the last update
+    std::uint32_t updates_ = 0;    // since the last record
+    std::uint32_t lead_ = 0;       // from the image that the last record read to it, in updates
 };
 
 class TemporalHistory {

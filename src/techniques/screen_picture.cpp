@@ -39,6 +39,8 @@ void ScreenPicture::makePatterns(Executor& executor, std::uint32_t rows) {
     const std::vector<LwScreenSample> tables[2] = {
         screenPatterns(0.0, 2.0 * r, options_.samples, options_.interleave, options_.seed),
         screenPatterns(r, 2.0 * r, options_.samples, options_.interleave, options_.seed)};
+    alike_[0] = takesEveryTexel(0.0, 2.0 * r, options_.samples);
+    alike_[1] = takesEveryTexel(r, 2.0 * r, options_.samples);
     for (int i = 0; i < 2; ++i)
         executor.writeCopy("screen_gather.patterns", patterns_[i], 0, tables[i].size() * sizeof(LwScreenSample), tables[i].data());
     patternRows_ = rows;
@@ -70,8 +72,9 @@ void ScreenPicture::gatherLevels(Executor& executor, ScreenSpacePasses& passes) 
     for (std::uint32_t k = range.last + 1; k-- > range.first;) {
         passes.gather.recordDeal(executor, pyramid_, levels_, k);
         const Planes raw = filters ? levels_.other(k) : levels_.own(k), own = levels_.own(k), texels = pyramid_.level(k);
-        passes.gather.recordGather(executor, levels_, k, patterns_[k == range.first ? 0 : 1], options_.samples, options_.bounded, raw);
-        if (filters) passes.combine.recordFilter(executor, texels, raw, own);
+        const int table = k == range.first ? 0 : 1;
+        passes.gather.recordGather(executor, levels_, k, patterns_[table], options_.samples, options_.bounded, raw);
+        if (filters) passes.combine.recordFilter(executor, texels, alike_[table], raw, own);
         contributions[k - range.first] = own;
         if (k < range.last) passes.combine.recordAdd(executor, texels, own, pyramid_.level(k + 1), sum, levels_.other(k));
         sum = k < range.last ? levels_.other(k) : own;

@@ -71,6 +71,7 @@ private:
     PyramidLevels pyramid_;
     ScreenLevels levels_;
     Buffer patterns_[2];  // of the first level's disc, and of the others' ring
+    bool alike_[2] = {};  // the patterns of each
     std::uint32_t patternRows_ = 0;
     Buffer counts_;
     std::vector<Planes> contributions_;  // by level, of the last frame

@@ -281,7 +281,8 @@ TEST_CASE("validity is one on surfaces and zero elsewhere", "[interleaved_gather
     const Guarded out = rig.makePlanes(33, 21, 1);
     InterleavedGather pass(rig.device(), 4);
     if (GENERATE(false, true)) {
-        const Guarded light = rig.makePlanes(33, 21, 3), filtered = rig.makePlanes(33, 21, 3);
+        const Guarded light = rig.uploadPlanes(std::vector<float>(33 * 21 * 3), 33, 21, 3, kNaN),
+                      filtered = rig.makePlanes(33, 21, 3);
         pass.recordFilter(rig.executor(), rig.planes(p, 33, 21, 3), rig.planes(nr, 33, 21, 3), rig.planes(light, 33, 21, 3),
                           rig.planes(filtered, 33, 21, 3), rig.planes(out, 33, 21, 1));
     } else {

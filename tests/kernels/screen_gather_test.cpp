@@ -124,7 +124,7 @@ TEST_CASE("filter, sum and finish equal their serial twins", "[screen_combine]")
     for (std::uint32_t k = 0; k <= 2; ++k) {
         gather.recordDeal(rig.executor(), corner.pyramid, corner.levels, k);
         gather.recordGather(rig.executor(), corner.levels, k, table, 16, true, corner.levels.other(k));
-        pass.recordFilter(rig.executor(), corner.pyramid.level(k), corner.levels.other(k), corner.levels.own(k));
+        pass.recordFilter(rig.executor(), corner.pyramid.level(k), false, corner.levels.other(k), corner.levels.own(k));
     }
     rig.device().finish();
     std::vector<Light> filtered;
@@ -171,7 +171,7 @@ TEST_CASE("the same bits at every width", "[screen_gather][large]") {
         for (std::uint32_t k = 1; k <= 2; ++k) {
             gather.recordDeal(rig.executor(), corner.pyramid, corner.levels, k);
             gather.recordGather(rig.executor(), corner.levels, k, table, 16, true, corner.levels.other(k));
-            combine.recordFilter(rig.executor(), corner.pyramid.level(k), corner.levels.other(k), corner.levels.own(k));
+            combine.recordFilter(rig.executor(), corner.pyramid.level(k), false, corner.levels.other(k), corner.levels.own(k));
         }
         combine.recordAdd(rig.executor(), corner.pyramid.level(1), corner.levels.own(1), corner.pyramid.level(2),
                           corner.levels.own(2), corner.levels.other(1));

@@ -77,7 +77,7 @@ inline PyramidLevel pyramidBase(const Image& position, const Image& normal, cons
     return base;
 }
 
-// The next level: nearest child that sends, else nearest; radiance by area over the kept surface.
+// The next level: nearest child that sends, else nearest; radiance, place and depth by area over the kept surface.
 inline PyramidLevel pyramidReduce(const PyramidLevel& fine, bool lastFirst) {
     PyramidLevel level{(fine.width + 1) / 2, (fine.height + 1) / 2, {}};
     const std::uint32_t order[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
@@ -96,15 +96,25 @@ inline PyramidLevel pyramidReduce(const PyramidLevel& fine, bool lastFirst) {
                 const bool sends = child.area > 0, rival = kept.area > 0;
                 if (!kept.s.valid || (sends && !rival) || (sends == rival && child.depth < kept.depth)) kept = child;
             }
-            kept.area = 0;
-            kept.radiance = {};
+            PyramidTexel mean = kept;
+            mean.area = mean.depth = 0;
+            mean.radiance = mean.s.position = {};
             for (const PyramidTexel& child : children)
                 if (edgeWeight(kept.s, child.s) > 0) {
-                    kept.area += child.area;
-                    kept.radiance = kept.radiance + child.radiance * child.area;
+                    mean.area += child.area;
+                    mean.depth += child.depth * child.area;
+                    mean.radiance = mean.radiance + child.radiance * child.area;
+                    mean.s.position = mean.s.position + child.s.position * child.area;
                 }
-            if (kept.area > 0) kept.radiance = kept.radiance * (1.0 / kept.area);
-            level.texels.push_back(kept);
+            if (mean.area > 0) {
+                mean.depth /= mean.area;
+                mean.radiance = mean.radiance * (1.0 / mean.area);
+                mean.s.position = mean.s.position * (1.0 / mean.area);
+            } else {
+                mean.depth = kept.depth;
+                mean.s.position = kept.s.position;
+            }
+            level.texels.push_back(mean);
         }
     return level;
 }

@@ -60,21 +60,22 @@ inline Light screenGather(const ScreenLevel& level, const std::vector<LwScreenSa
     return light;
 }
 
-// Mean over the n x n window around each texel, moved inside at the border, of its own surface.
+// Mean over the texels of its own surface up to n / 2 away from each, half of those at the ends.
 inline Light screenFilter(const ScreenLevel& level, const Light& light, std::uint32_t n) {
     Light out(light.width, light.height, LW_LIGHT_PLANES);
-    const auto first = [n](std::uint32_t at, std::uint32_t size) {
-        return std::uint32_t(std::clamp(int(at) - int(n / 2 - 1), 0, std::max(int(size) - int(n), 0)));
-    };
+    const int reach = int(n / 2);
     for (std::uint32_t y = 0; y < out.height; ++y)
         for (std::uint32_t x = 0; x < out.width; ++x) {
             const Surface s = surfaceAt(level.position, level.normal, x, y);
             if (!s.valid) continue;
             double sum[4] = {}, weight = 0.0;
-            for (std::uint32_t j = first(y, out.height); j < std::min(first(y, out.height) + n, out.height); ++j)
-                for (std::uint32_t i = first(x, out.width); i < std::min(first(x, out.width) + n, out.width); ++i) {
-                    const double w = edgeWeight(s, surfaceAt(level.position, level.normal, i, j));
-                    for (std::uint32_t a = 0; a < 4; ++a) sum[a] += w * planeAt(light, a, i, j);
+            for (int j = -reach; j <= reach; ++j)
+                for (int i = -reach; i <= reach; ++i) {
+                    const int tx = int(x) + i, ty = int(y) + j;
+                    if (tx < 0 || ty < 0 || tx >= int(out.width) || ty >= int(out.height)) continue;
+                    const double share = (std::abs(i) == reach ? 0.5 : 1.0) * (std::abs(j) == reach ? 0.5 : 1.0);
+                    const double w = share * edgeWeight(s, surfaceAt(level.position, level.normal, std::uint32_t(tx), std::uint32_t(ty)));
+                    for (std::uint32_t a = 0; a < 4; ++a) sum[a] += w * planeAt(light, a, std::uint32_t(tx), std::uint32_t(ty));
                     weight += w;
                 }
             for (std::uint32_t a = 0; a < 4; ++a) setPlane(out, a, x, y, sum[a] / weight);

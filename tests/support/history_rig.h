@@ -64,9 +64,13 @@ public:
     HistoryRig(KernelRig& rig, const TemporalHistoryOptions& options, std::uint32_t maxWidth, std::uint32_t maxHeight)
         : rig_(rig), history_(rig.device(), options), view_(rig.device(), options, maxWidth, maxHeight) {}
 
-    // `into`: where the mean goes, else memory of its own.
-    // `again`: once more in the same frame.
+    // An update and its picture. `into`: where the mean goes, else memory of its own. `again`: without an update.
     reference::Image render(const Frame& frame, bool forget = false, const Planes* into = nullptr, bool again = false) {
+        if (!again) view_.startFrame(forget);
+        return renderOnly(frame, into);
+    }
+    // A picture without an update.
+    reference::Image renderOnly(const Frame& frame, const Planes* into = nullptr) {
         constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
         const std::uint32_t w = frame.width(), h = frame.height();
         const Guarded p = rig_.uploadPlanes(frame.position.planes, w, h, 3, kNaN), n = rig_.uploadPlanes(frame.normal.planes, w, h, 3, 1.0f);
@@ -78,7 +82,6 @@ public:
         if (frame.motion) images.motion = rig_.planes(m, w, h, 3);
         images.current = rig_.planes(e, w, h, 3);
         images.irradiance = into ? *into : rig_.planes(out, w, h, 3);
-        if (!again) view_.startFrame(forget);
         history_.record(rig_.executor(), images, frame.camera, view_);
         rig_.device().finish();
         reference::Image result(w, h);
