@@ -53,8 +53,8 @@ bool allows(const LWParameter& parameter, double value) {
 
 using Members = std::vector<std::pair<const TechniqueObject*, const char*>>;  // and the parameter that they came by
 
-// A technique that stands in a tree twice would be updated and rendered twice a frame, and keep a history of its own
-// pictures: each of `part` and its parts must be new.
+// A technique that stands in a tree twice would be updated twice a frame, and its history take the second for another
+// frame: each of `part` and its parts must be new.
 void addMembers(Members& members, const TechniqueObject& part, const char* name) {
     for (const auto& [member, before] : members)
         if (member == &part)

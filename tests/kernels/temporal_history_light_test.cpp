@@ -218,27 +218,6 @@ TEST_CASE("a moving object keeps its history by motion vectors, and starts anew 
     CHECK(fresh == int(h * (byMotion ? 3 : 3 + size)));
 }
 
-TEST_CASE("what moved is not moved once more where a view is rendered twice in a frame", "[temporal_history]") {
-    KernelRig rig(GENERATE(1u, 16u));
-    const std::uint32_t w = 40, h = 5;
-    HistoryRig history(rig, frames(16), w, h);
-    const TestCamera camera = pixelCamera(w, h);
-    std::vector<float> ages;
-    for (std::uint32_t f = 0; f < 3; ++f) {
-        const auto on = [&](std::uint32_t x) { return x >= 8 + 3 * f && x < 18 + 3 * f; };
-        Frame frame(w, h);
-        frame.look(camera, [&](std::uint32_t x, std::uint32_t) { return on(x) ? 500.0 : kDepth; });
-        frame.move([&](std::uint32_t x, std::uint32_t) { return Vec{on(x) ? -3.0 : 0.0, 0, 0}; });
-        frame.shine([](std::uint32_t, std::uint32_t) { return Vec{1, 1, 1}; });
-        history.render(frame);
-        ages = history.ages();
-        history.render(frame, false, nullptr, true);
-        CHECK(history.fresh() == 0);
-        const std::vector<float> twice = history.ages();
-        for (std::size_t i = 0; i < ages.size(); ++i) REQUIRE(twice[i] == ages[i] + 1.0f);
-    }
-}
-
 TEST_CASE("what is no number goes no further", "[temporal_history]") {
     const auto width = GENERATE(1u, 16u);
     KernelRig rig(width);

@@ -64,9 +64,9 @@ public:
     HistoryRig(KernelRig& rig, const TemporalHistoryOptions& options, std::uint32_t maxWidth, std::uint32_t maxHeight)
         : rig_(rig), history_(rig.device(), options), view_(rig.device(), options, maxWidth, maxHeight) {}
 
-    // An update and its picture. `into`: where the mean goes, else memory of its own. `again`: without an update.
-    reference::Image render(const Frame& frame, bool forget = false, const Planes* into = nullptr, bool again = false) {
-        if (!again) view_.startFrame(forget);
+    // An update and its picture. `into`: where the mean goes, else memory of its own.
+    reference::Image render(const Frame& frame, bool forget = false, const Planes* into = nullptr) {
+        view_.startFrame(forget);
         return renderOnly(frame, into);
     }
     // A picture without an update.
