@@ -9,7 +9,7 @@
 // Light changes too, so a history is only believed as far as the last few frames allow. Of each surface's light Y (the sum of
 // the channels) three more numbers are kept: m, the mean over three frames; b, over four, of Y - m, which is what Y changes by in
 // three; and s, the noise that this surface shows from frame to frame: as many frames leave Y within s * light of m + b as twice
-// those that leave it farther off and on the other side of m than b. Noise leaps back; light that speeds up does not, and is not
+// those that leave it farther off against the sign of b. Noise leaps back; light that speeds up does not, and is not
 // taken for noise. Frames are counted, not summed, since jumps of the light shall not weigh more than they are many. History is
 // brought between the bounds (clamping, Karis 2014)
 //   m + 2/3 b -+ gamma / 2 * s * light,
@@ -148,7 +148,7 @@ LW_FN lw_past look_up(lw_surface s, mask wanted, int x, int y, int mode, const L
     const int firstColumn = mini_lane(selecti_(far, shift, wanted)), firstRow = mini_lane(selecti_(far, row, wanted));
     const int taps = any_(and_(wanted, or_(fx > 0.0f, fy > 0.0f))) ? 4 : 1;
     const int even = firstColumn == maxi_lane(selecti_(-far, shift, wanted)) && firstRow == maxi_lane(selecti_(-far, row, wanted));
-    const int rowEnd = (r.width + 15) & ~15;
+    const int rowEnd = (r.width + LW_WIDTH - 1) & ~(LW_WIDTH - 1);  // what blend has written, padding with it
     if (even && firstColumn >= 0 && firstColumn + (taps > 1) + LW_WIDTH <= rowEnd)
         add_taps(&past, s, tolerance, before, layout, r, column, row, fx, fy, wanted, taps, firstColumn, firstRow, 1);
     else

@@ -36,7 +36,7 @@ TemporalHistoryOptions frames(std::uint32_t count, float clamp = 0.0f) {
 
 }  // namespace
 
-TEST_CASE("a picture drawn twice in an update counts once", "[temporal_history]") {
+TEST_CASE("a picture drawn twice in an update counts once", "[temporal_history][large]") {
     KernelRig rig(16);
     const auto byMotion = GENERATE(false, true);
     HistoryRig once(rig, frames(16, 3.0f), kWidth, kHeight), twice(rig, frames(16, 3.0f), kWidth, kHeight);
@@ -101,7 +101,7 @@ TEST_CASE("a cut that nobody tells of keeps nothing of other surfaces", "[tempor
     CHECK(history.fresh() == int(kWidth * kHeight));
 }
 
-TEST_CASE("one view alternating between two places takes no light from one to the other", "[temporal_history]") {
+TEST_CASE("one view alternating between two places takes no light from one to the other", "[temporal_history][large]") {
     KernelRig rig(16);
     HistoryRig history(rig, frames(16), kWidth, kHeight);
     TestCamera cameras[2] = {pixelCamera(kWidth, kHeight), pixelCamera(kWidth, kHeight)};
@@ -112,7 +112,7 @@ TEST_CASE("one view alternating between two places takes no light from one to th
     }
 }
 
-TEST_CASE("cameras of every convention lead to the same places", "[temporal_history]") {
+TEST_CASE("cameras of every convention lead to the same places", "[temporal_history][large]") {
     KernelRig rig(16);
     const auto run = [&](void (*turn)(TestCamera&)) {
         HistoryRig history(rig, frames(16), kWidth, kHeight);
@@ -139,7 +139,7 @@ TEST_CASE("cameras of every convention lead to the same places", "[temporal_hist
     CHECK(disagreement(run([](TestCamera& c) { c = pixelCamera(kWidth, kHeight, true); }), expected, kTolerance) == "");
 }
 
-TEST_CASE("an eye that no float stands for leads to the right places", "[temporal_history]") {
+TEST_CASE("an eye that no float stands for leads to the right places", "[temporal_history][large]") {
     KernelRig rig(16);
     const std::uint32_t w = 64, h = 8;
     HistoryRig history(rig, frames(8), w, h);

@@ -134,6 +134,21 @@ TEST_CASE("each eye has its own history", "[history]") {
     CHECK(both.second == run(false, true).second);
 }
 
+TEST_CASE("a view rendered again in a frame shows what it did", "[history]") {
+    TestDevice device(16);
+    LitFloor floor(32, tiles);
+    Scene scene(kWidth, kHeight);
+    TestTechnique once(device, rsmDesc(16)), twice(device, rsmDesc(16));
+    TestView view(device, kWidth, kHeight);
+    for (int f = 0; f < 4; ++f) {
+        once.update({floor.light});
+        twice.update({floor.light});
+        const std::vector<float> expected = once.render(view, scene.gbuffer);
+        CHECK(twice.render(view, scene.gbuffer) == expected);
+        CHECK(twice.render(view, scene.gbuffer) == expected);
+    }
+}
+
 TEST_CASE("with a history, too, nothing is built or allocated after lwPrewarm and the first frame", "[history]") {
     TestDevice device(16);
     LitFloor floor(32, tiles);
