@@ -1,8 +1,8 @@
 // Edge-aware box filter of weighted sums: what neighbouring pixels of one surface gathered with different patterns is
 // added up over a window and divided by the sum of the weights. Where patterns repeat every n pixels, n even, the window
 // is n + 1 pixels with its two ends at half weight: each pattern counts once, and the mean lies on the pixel. (A window of n
-// lies half a pixel off, which at 120 rows took 8 % of the light in a contact's region away.) LW_LIGHT 1: planes radiance rgb, seen share, open share,
-// weight; 0: open share, weight.
+// lies half a pixel off, which at 120 rows took 8 % of the light in a contact's region away.) LW_LIGHT 1: planes
+// radiance rgb, seen share, open share, weight; 0: open share, weight.
 #ifndef LW_LIGHT
 #define LW_LIGHT 1
 #endif
@@ -61,11 +61,11 @@ __kernel void weighted_filter_filter(__global const float* position, int4 positi
         const int p = positionLayout.x + j * positionLayout.y, n = normalLayout.x + j * normalLayout.y;
         const int g = gatheredLayout.x + j * gatheredLayout.y;
         if (inside)
-            add_row(sum, edges, s.valid, position, p, positionLayout.z, normal, n, normalLayout.z, gathered, g, gatheredLayout.z, x, width,
-                    columns, rowWeight, j == y, 1);
+            add_row(sum, edges, s.valid, position, p, positionLayout.z, normal, n, normalLayout.z, gathered, g, gatheredLayout.z, x,
+                    width, columns, rowWeight, j == y, 1);
         else
-            add_row(sum, edges, s.valid, position, p, positionLayout.z, normal, n, normalLayout.z, gathered, g, gatheredLayout.z, x, width,
-                    columns, rowWeight, j == y, 0);
+            add_row(sum, edges, s.valid, position, p, positionLayout.z, normal, n, normalLayout.z, gathered, g, gatheredLayout.z, x,
+                    width, columns, rowWeight, j == y, 0);
     }
     const mask lit = and_(s.valid, sum[LW_PLANES - 1] > 0.0f);
     const real scale = select_((real)0.0f, 1.0f / sum[LW_PLANES - 1], lit), zero = (real)0.0f;

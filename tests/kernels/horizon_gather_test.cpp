@@ -164,14 +164,16 @@ TEST_CASE("the filter's window is centred: a ramp stays where it is", "[horizon_
     ViewScene wall;
     wall.quad({-9, -9, 0}, {18, 0, 0}, {0, 18, 0}, 1.0);
     DrawnView drawn(wall, lookAt({0, 0, 2}, {0, 0, 0}, 0.5), w, h);
-    const Guarded p = rig.uploadPlanes(drawn.position.packed(), w, h, 3, 0.0f), n = rig.uploadPlanes(drawn.normal.packed(), w, h, 3, 0.0f);
+    const Guarded p = rig.uploadPlanes(drawn.position.packed(), w, h, 3, 0.0f);
+    const Guarded n = rig.uploadPlanes(drawn.normal.packed(), w, h, 3, 0.0f);
     std::vector<float> sums(std::size_t(w) * h * 2, 1.0f);
     for (std::uint32_t y = 0; y < h; ++y)
         for (std::uint32_t x = 0; x < w; ++x) sums[std::size_t(y) * w + x] = 0.01f * float(x) + 0.015f * float(y);
     const Guarded s = rig.uploadPlanes(sums, w, h, 2, 0.0f), o = rig.makePlanes(w, h, 1);
     for (const std::uint32_t rows : {1u, 2u, 4u}) {
         WeightedFilter(rig.device(), false)
-            .record(rig.executor(), rig.planes(p, w, h, 3), rig.planes(n, w, h, 3), 4, rows, rig.planes(s, w, h, 2), {}, {}, rig.planes(o, w, h, 1));
+            .record(rig.executor(), rig.planes(p, w, h, 3), rig.planes(n, w, h, 3), 4, rows, rig.planes(s, w, h, 2), {}, {},
+                    rig.planes(o, w, h, 1));
         rig.device().finish();
         const auto open = rig.downloadPlanes(rig.planes(o, w, h, 1));
         for (std::uint32_t y = 2; y + 2 < h; ++y)

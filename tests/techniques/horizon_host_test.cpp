@@ -232,7 +232,8 @@ TEST_CASE("thin views, wide and narrow cameras, far reaches: shares stay shares,
             CAPTURE(outputs);
             if (outputs & kIrradiance) CHECK(some.irradiance == all.irradiance);
             if (outputs & kValidity) CHECK(some.validity == all.validity);
-            for (std::size_t i = 0; i < some.ambient.size(); ++i) REQUIRE(double(some.ambient[i]) == Approx(double(all.ambient[i])).margin(kRounding));
+            for (std::size_t i = 0; i < some.ambient.size(); ++i)
+                REQUIRE(double(some.ambient[i]) == Approx(double(all.ambient[i])).margin(kRounding));
         }
     }
 }
