@@ -1,5 +1,5 @@
-// The horizon gather and its filter against serial twins in double precision, which work with angles and an integral where
-// the kernels have polynomials and shuffles, at widths 1 and 16.
+// The horizon gather against a serial twin in double precision, which works with angles and an integral where the kernel has
+// polynomials and shuffles, at widths 1 and 16.
 #include "passes/horizon_gather.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 #include "reference/horizon_twin.h"
 #include "support/kernel_rig.h"
 #include "support/packed_light.h"
-#include "support/view_scene.h"
+#include "support/sphere_corner.h"
 
 using namespace lightwell;
 using namespace lightwell::test;
@@ -30,16 +30,6 @@ struct Case {
     HorizonRanges ranges;
     bool light, uniform, orthographic;
 };
-
-// A room's corner with a sphere, and background.
-ViewScene cornerScene() {
-    ViewScene scene;
-    scene.quad({-2, 0, -2}, {4, 0, 0}, {0, 0, 6}, 1.0);
-    scene.quad({-2, 0, -2}, {4, 0, 0}, {0, 2, 0}, 0.5);
-    scene.quad({-2, 0, -2}, {0, 0, 3}, {0, 1.5, 0}, 2.0, true);
-    scene.spheres.push_back({{0.6, 0.5, -0.6}, 0.45, 3.0});
-    return scene;
-}
 
 std::vector<float> gathered(KernelRig& rig, DrawnView& drawn, const Case& c, std::vector<float>* twin) {
     const std::uint32_t w = drawn.position.width(), h = drawn.position.height();
@@ -76,13 +66,6 @@ std::vector<float> gathered(KernelRig& rig, DrawnView& drawn, const Case& c, std
     return rig.downloadPlanes(rig.planes(out, w, h, planes));
 }
 
-TestCamera cameraOf(bool orthographic) {
-    TestCamera camera = lookAt({2.5, 1.8, 2.5}, {-0.4, 0.4, -0.6}, 0.5);
-    camera.orthographic = orthographic;
-    if (orthographic) camera.left *= 3, camera.rightEdge *= 3, camera.bottom *= 3, camera.top *= 3;
-    return camera;
-}
-
 }  // namespace
 
 TEST_CASE("the gather equals its serial twin", "[horizon_gather]") {
@@ -92,7 +75,7 @@ TEST_CASE("the gather equals its serial twin", "[horizon_gather]") {
                             Case{{4, 1, 2}, {0.5, 0.1}, false, true, false}, Case{{8, 2, 1}, {0.1, 0.5}, false, false, false});
     CAPTURE(width, size.first, c.pattern.directions, c.light, c.uniform, c.orthographic);
     KernelRig rig(width);
-    DrawnView drawn(cornerScene(), cameraOf(c.orthographic), size.first, size.second);
+    DrawnView drawn(sphereCorner(), cornerCamera(c.orthographic), size.first, size.second);
     std::vector<float> twin;
     const std::vector<float> out = gathered(rig, drawn, c, &twin);
     CHECK(disagreement(out, twin, kTwinTolerance, kTwinShare) == "");
@@ -100,7 +83,7 @@ TEST_CASE("the gather equals its serial twin", "[horizon_gather]") {
 }
 
 TEST_CASE("the gather has the same bits at every width", "[horizon_gather][large]") {
-    DrawnView drawn(cornerScene(), cameraOf(false), 83, 41);
+    DrawnView drawn(sphereCorner(), cornerCamera(false), 83, 41);
     const Case c{{8, 2, 4}, {0.1, 0.2}, true, false, false};
     KernelRig scalar(1);
     const auto first = gathered(scalar, drawn, c, nullptr);
@@ -112,72 +95,11 @@ TEST_CASE("the gather has the same bits at every width", "[horizon_gather][large
 
 TEST_CASE("every slice's share of the hemisphere sums to one", "[horizon_gather][large]") {
     KernelRig rig(16);
-    DrawnView drawn(cornerScene(), cameraOf(false), 64, 48);
+    DrawnView drawn(sphereCorner(), cornerCamera(false), 64, 48);
     for (const bool uniform : {false, true}) {
         const auto out = gathered(rig, drawn, {{40, 1, 1}, {0.1, 0.2}, false, uniform, false}, nullptr);
         for (std::uint32_t i = 0; i < 64 * 48; ++i)
             if (drawn.normal.get(i % 64, i / 64).y != 0.0 || drawn.normal.get(i % 64, i / 64).z != 0.0 || drawn.normal.get(i % 64, i / 64).x != 0.0)
                 REQUIRE(double(out[64 * 48 + i]) == Approx(1.0).margin(0.02));  // 40 slices of unequal angle
-    }
-}
-
-TEST_CASE("the filter makes means of its own surface", "[horizon_gather]") {
-    const auto width = GENERATE(1u, 16u);
-    KernelRig rig(width);
-    const auto [w, h] = testSize({37, 29});
-    DrawnView drawn(cornerScene(), cameraOf(false), w, h);
-    const float nan = std::numeric_limits<float>::quiet_NaN();
-    const Guarded p = rig.uploadPlanes(drawn.position.packed(), w, h, 3, nan), n = rig.uploadPlanes(drawn.normal.packed(), w, h, 3, nan);
-    // Sums of a constant under any weights are that constant.
-    std::vector<float> sums(std::size_t(w) * h * 6);
-    const std::size_t plane = std::size_t(w) * h;
-    for (std::size_t i = 0; i < plane; ++i) {
-        const float weight = 0.5f + float(i % 7);
-        const float values[6] = {2.0f, 1.0f, 0.5f, 0.25f, 0.75f, 1.0f};
-        for (std::size_t a = 0; a < 6; ++a) sums[a * plane + i] = weight * values[a];
-    }
-    const Guarded s = rig.uploadPlanes(sums, w, h, 6, nan);
-    const Guarded e = rig.makePlanes(w, h, 3), v = rig.makePlanes(w, h, 1), o = rig.makePlanes(w, h, 1);
-    for (const std::uint32_t columns : {1u, 4u}) {
-        WeightedFilter(rig.device(), true)
-            .record(rig.executor(), rig.planes(p, w, h, 3), rig.planes(n, w, h, 3), columns, 4, rig.planes(s, w, h, 6),
-                    rig.planes(e, w, h, 3), rig.planes(v, w, h, 1), rig.planes(o, w, h, 1));
-        rig.device().finish();
-        const auto irradiance = rig.downloadPlanes(rig.planes(e, w, h, 3)), validity = rig.downloadPlanes(rig.planes(v, w, h, 1)),
-                   open = rig.downloadPlanes(rig.planes(o, w, h, 1));
-        for (std::uint32_t y = 0; y < h; ++y)
-            for (std::uint32_t x = 0; x < w; ++x) {
-                const auto normal = drawn.normal.get(x, y);
-                const double on = reference::dot(normal, normal) > 0.5 ? 1.0 : 0.0;
-                const std::size_t i = std::size_t(y) * w + x;
-                REQUIRE(double(irradiance[i]) == Approx(on * 2.0 * 3.14159265).margin(1e-5));
-                REQUIRE(double(validity[i]) == Approx(on * 0.25).margin(1e-6));
-                REQUIRE(double(open[i]) == Approx(on * 0.75).margin(1e-6));
-            }
-    }
-}
-
-TEST_CASE("the filter's window is centred: a ramp stays where it is", "[horizon_gather]") {
-    const auto width = GENERATE(1u, 16u);
-    KernelRig rig(width);
-    const auto [w, h] = testSize({37, 29});
-    ViewScene wall;
-    wall.quad({-9, -9, 0}, {18, 0, 0}, {0, 18, 0}, 1.0);
-    DrawnView drawn(wall, lookAt({0, 0, 2}, {0, 0, 0}, 0.5), w, h);
-    const Guarded p = rig.uploadPlanes(drawn.position.packed(), w, h, 3, 0.0f);
-    const Guarded n = rig.uploadPlanes(drawn.normal.packed(), w, h, 3, 0.0f);
-    std::vector<float> sums(std::size_t(w) * h * 2, 1.0f);
-    for (std::uint32_t y = 0; y < h; ++y)
-        for (std::uint32_t x = 0; x < w; ++x) sums[std::size_t(y) * w + x] = 0.01f * float(x) + 0.015f * float(y);
-    const Guarded s = rig.uploadPlanes(sums, w, h, 2, 0.0f), o = rig.makePlanes(w, h, 1);
-    for (const std::uint32_t rows : {1u, 2u, 4u}) {
-        WeightedFilter(rig.device(), false)
-            .record(rig.executor(), rig.planes(p, w, h, 3), rig.planes(n, w, h, 3), 4, rows, rig.planes(s, w, h, 2), {}, {},
-                    rig.planes(o, w, h, 1));
-        rig.device().finish();
-        const auto open = rig.downloadPlanes(rig.planes(o, w, h, 1));
-        for (std::uint32_t y = 2; y + 2 < h; ++y)
-            for (std::uint32_t x = 2; x + 2 < w; ++x)
-                REQUIRE(double(open[std::size_t(y) * w + x]) == Approx(double(sums[std::size_t(y) * w + x])).margin(1e-5));
     }
 }

@@ -18,16 +18,6 @@ constexpr double kPi = 3.14159265358979323846;
 // Sums of positive numbers in float, in another order.
 constexpr double kRounding = 2e-5;
 
-LWHorizonDesc descOf(std::uint32_t directions, std::uint32_t steps, LWResolution resolution = LW_RESOLUTION_FULL) {
-    LWHorizonDesc desc;
-    lwDefaultHorizon(&desc);
-    desc.directions = directions;
-    desc.steps = steps;
-    desc.interleave = 1;
-    desc.resolution = resolution;
-    return desc;
-}
-
 }  // namespace
 
 TEST_CASE("in a furnace irradiance is pi L of the seen share", "[horizon]") {
@@ -55,7 +45,7 @@ TEST_CASE("pixels that only receive hide but do not send; background neither", "
     ViewScene sends = litScene(1.0), receives = litScene(1.0);
     receives.quads[0].receiveOnly = true;
     DrawnView lit(sends, camera, 77, 53), dark(receives, camera, 77, 53);
-    const LWHorizonDesc desc = descOf(8, 2);
+    const LWHorizonDesc desc = horizonDesc(8, 2);
     const auto with = renderScreen(device, "horizon", &desc, lit), without = renderScreen(device, "horizon", &desc, dark);
     CHECK(with.ambient == without.ambient);
     CHECK(with.validity == without.validity);
@@ -156,7 +146,7 @@ TEST_CASE("after lwPrewarm frames of every kind build nothing", "[horizon]") {
 TEST_CASE("horizon refuses what it cannot use or make", "[horizon]") {
     TestDevice device(16);
     DrawnView drawn(litScene(), lookAt({0.7, 1.4, 2.4}, {0, 0.4, 0.3}, 0.42), 32, 24);
-    LWHorizonDesc desc = descOf(8, 2);
+    LWHorizonDesc desc = horizonDesc(8, 2);
     TestTechnique technique(device, "horizon", &desc);
     TestView view(device, 32, 24);
     PlanarPixels scalar(32, 24, 1), colour(32, 24, 3);
@@ -189,7 +179,7 @@ TEST_CASE("horizon refuses what it cannot use or make", "[horizon]") {
     CHECK(lwRender(technique, view, &lacking, &output) == LW_SUCCESS);
     CHECK(lwFinish(device) == LW_SUCCESS);
     for (const std::uint32_t directions : {3u, 7u, 41u}) {
-        LWHorizonDesc bad = descOf(directions, 2);
+        LWHorizonDesc bad = horizonDesc(directions, 2);
         LWTechnique none = nullptr;
         CHECK(lwCreateHorizon(device, &bad, &none) == LW_ERROR_INVALID_ARGUMENT);
         CHECK(lastError(device).find("directions") != std::string::npos);
@@ -206,7 +196,7 @@ TEST_CASE("thin views, wide and narrow cameras, far reaches: shares stay shares,
     TestDevice device(GENERATE(1u, 16u));
     const auto [w, h] = GENERATE(std::make_pair(1u, 1u), std::make_pair(1u, 37u), std::make_pair(53u, 1u), std::make_pair(19u, 3u));
     const bool isAo = GENERATE(false, true);
-    LWHorizonDesc horizon = descOf(40, 8, GENERATE(LW_RESOLUTION_FULL, LW_RESOLUTION_HALF));
+    LWHorizonDesc horizon = horizonDesc(40, 8, GENERATE(LW_RESOLUTION_FULL, LW_RESOLUTION_HALF));
     horizon.interleave = 4;
     horizon.reach = 4.0f;
     horizon.thickness = 10.0f;

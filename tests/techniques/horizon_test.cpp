@@ -13,18 +13,9 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 constexpr std::uint32_t kWidth = 160, kHeight = 120;
 
-LWHorizonDesc descOf(std::uint32_t directions, std::uint32_t steps, LWResolution resolution = LW_RESOLUTION_FULL) {
-    LWHorizonDesc desc;
-    lwDefaultHorizon(&desc);
-    desc.directions = directions;
-    desc.steps = steps;
-    desc.interleave = 1;
-    desc.resolution = resolution;
-    return desc;
-}
 // The parameters' limit: walls have no back that is seen.
 LWHorizonDesc limit() {
-    LWHorizonDesc desc = descOf(40, 8);
+    LWHorizonDesc desc = horizonDesc(40, 8);
     desc.reach = 4.0f;
     desc.thickness = 10.0f;
     return desc;

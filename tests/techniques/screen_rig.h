@@ -27,6 +27,17 @@ inline ScreenResult renderScreen(TestTechnique& technique, const TestView& view,
     return result;
 }
 
+// Every pixel on its own: nothing interleaved.
+inline LWHorizonDesc horizonDesc(std::uint32_t directions, std::uint32_t steps, LWResolution resolution = LW_RESOLUTION_FULL) {
+    LWHorizonDesc desc;
+    lwDefaultHorizon(&desc);
+    desc.directions = directions;
+    desc.steps = steps;
+    desc.interleave = 1;
+    desc.resolution = resolution;
+    return desc;
+}
+
 // A lit floor patch and the wall over its far edge, all in view.
 inline ViewScene litScene(double radiance = 1.0) {
     ViewScene scene;
