@@ -1,9 +1,11 @@
 #include "inputs/output_target.h"
 
 #include <string>
+#include <utility>
 
 #include "compute/device.h"
 #include "compute/error.h"
+#include "compute/raw_enum.h"
 #include "inputs/image_access.h"
 
 namespace lightwell {
@@ -157,6 +159,19 @@ std::uint64_t OutputTarget::estimateBytes(const LWViewDesc& view, std::uint32_t 
     const std::uint64_t packed = largestPixelBytes(roleOf(planeCount));
     return std::uint64_t(planeCount) * sizeof(float) * paddedWidth(view.maxWidth) * view.maxHeight +
            (uploads ? packed * view.maxWidth * view.maxHeight : 0);
+}
+
+void checkLightOutputs(Device& device, const View& view, const LWOutput& output, const char* technique) {
+    const std::pair<const LWImage*, const char*> unsupported[] = {{&output.ambientOcclusion, "ambientOcclusion"},
+                                                                  {&output.specularRadiance, "specularRadiance"},
+                                                                  {&output.shadow, "shadow"}};
+    for (const auto& [image, name] : unsupported)
+        if (rawEnum(image->format) != LW_FORMAT_NONE)
+            fail(LW_ERROR_UNSUPPORTED, "output.", name, ": technique ", technique, " makes irradiance and validity only");
+    if (rawEnum(output.irradiance.format) == LW_FORMAT_NONE && rawEnum(output.validity.format) == LW_FORMAT_NONE)
+        fail(LW_ERROR_INVALID_ARGUMENT, "output: expected irradiance or validity, got neither");
+    OutputTarget::check(device, view, output.irradiance, 3, "output.irradiance");
+    OutputTarget::check(device, view, output.validity, 1, "output.validity");
 }
 
 }  // namespace lightwell

@@ -7,7 +7,6 @@
 
 #include "compute/device.h"
 #include "compute/error.h"
-#include "compute/raw_enum.h"
 #include "inputs/image_access.h"
 #include "inputs/output_target.h"
 
@@ -38,19 +37,6 @@ LWImage imageOver(const Planes& planes, LWFormat format) {
     return image;
 }
 
-void checkOutputs(Device& device, const View& view, const LWOutput& output) {
-    const std::pair<const LWImage*, const char*> unsupported[] = {{&output.ambientOcclusion, "ambientOcclusion"},
-                                                                  {&output.specularRadiance, "specularRadiance"},
-                                                                  {&output.shadow, "shadow"}};
-    for (const auto& [image, name] : unsupported)
-        if (rawEnum(image->format) != LW_FORMAT_NONE)
-            fail(LW_ERROR_UNSUPPORTED, "output.", name, ": technique fallback makes irradiance and validity only");
-    if (rawEnum(output.irradiance.format) == LW_FORMAT_NONE && rawEnum(output.validity.format) == LW_FORMAT_NONE)
-        fail(LW_ERROR_INVALID_ARGUMENT, "output: expected irradiance or validity, got neither");
-    OutputTarget::check(device, view, output.irradiance, 3, "output.irradiance");
-    OutputTarget::check(device, view, output.validity, 1, "output.validity");
-}
-
 class Fallback final : public Technique {
 public:
     Fallback(Device& device, std::shared_ptr<Technique> first, std::shared_ptr<Technique> second)
@@ -73,7 +59,7 @@ public:
                 const LWOutput& output) override {
         if (!isWhole_)
             fail(LW_ERROR_NOT_UPDATED, "technique: expected an lwUpdate that both techniques accept before, got none");
-        checkOutputs(device_, *view, output);
+        checkLightOutputs(device_, *view, output, "fallback");
         ViewState& state = states_.get(view, [&] { return std::make_unique<ViewState>(device_, *view); });
         state.isRendered = false;
         const LWOutput firstOutput = partOutput(*view, state.first), secondOutput = partOutput(*view, state.second);

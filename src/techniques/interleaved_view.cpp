@@ -4,7 +4,6 @@
 
 #include "compute/device.h"
 #include "compute/error.h"
-#include "compute/raw_enum.h"
 
 namespace lightwell {
 namespace {
@@ -21,19 +20,6 @@ std::uint32_t needsOf(const InterleavedOptions& options) {
 }
 
 }  // namespace
-
-void checkInterleavedOutputs(Device& device, const View& view, const LWOutput& output, const char* technique) {
-    const std::pair<const LWImage*, const char*> unsupported[] = {{&output.ambientOcclusion, "ambientOcclusion"},
-                                                                  {&output.specularRadiance, "specularRadiance"},
-                                                                  {&output.shadow, "shadow"}};
-    for (const auto& [image, name] : unsupported)
-        if (rawEnum(image->format) != LW_FORMAT_NONE)
-            fail(LW_ERROR_UNSUPPORTED, "output.", name, ": technique ", technique, " makes irradiance and validity only");
-    if (rawEnum(output.irradiance.format) == LW_FORMAT_NONE && rawEnum(output.validity.format) == LW_FORMAT_NONE)
-        fail(LW_ERROR_INVALID_ARGUMENT, "output: expected irradiance or validity, got neither");
-    OutputTarget::check(device, view, output.irradiance, 3, "output.irradiance");
-    OutputTarget::check(device, view, output.validity, 1, "output.validity");
-}
 
 InterleavedView::InterleavedView(Device& device, const InterleavedOptions& options, const View& view)
     : device_(device),

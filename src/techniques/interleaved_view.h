@@ -30,9 +30,6 @@ struct InterleavedOptions {
     std::uint32_t gathered(std::uint32_t along) const { return half ? JointBilateral::halved(along) : along; }
 };
 
-// Outputs that such a technique makes: irradiance, validity. Throws what lwRender says of others.
-void checkInterleavedOutputs(Device& device, const View& view, const LWOutput& output, const char* technique);
-
 class InterleavedView {
 public:
     InterleavedView(Device& device, const InterleavedOptions& options, const View& view);

@@ -6,7 +6,6 @@
 
 #include "compute/device.h"
 #include "compute/error.h"
-#include "compute/raw_enum.h"
 #include "inputs/image_access.h"
 #include "inputs/output_target.h"
 #include "techniques/prewarm.h"
@@ -41,19 +40,6 @@ View sourceView(const LWGBuffer& gbuffer, const std::string& name) {
         fail(LW_ERROR_INVALID_ARGUMENT, name, ".normal: expected an image of 1 .. ", kMaxSide, " pixels a side, got ",
              image.width, " x ", image.height);
     return View(image.width, image.height);
-}
-
-void checkOutputs(Device& device, const View& view, const LWOutput& output) {
-    const std::pair<const LWImage*, const char*> unsupported[] = {{&output.ambientOcclusion, "ambientOcclusion"},
-                                                                  {&output.specularRadiance, "specularRadiance"},
-                                                                  {&output.shadow, "shadow"}};
-    for (const auto& [image, name] : unsupported)
-        if (rawEnum(image->format) != LW_FORMAT_NONE)
-            fail(LW_ERROR_UNSUPPORTED, "output.", name, ": technique screen_space makes irradiance and validity only");
-    if (imageAbsent(output.irradiance) && imageAbsent(output.validity))
-        fail(LW_ERROR_INVALID_ARGUMENT, "output: expected irradiance or validity, got neither");
-    OutputTarget::check(device, view, output.irradiance, 3, "output.irradiance");
-    OutputTarget::check(device, view, output.validity, 1, "output.validity");
 }
 
 // What the host gave and this technique does not read.
@@ -98,7 +84,7 @@ public:
     }
 
     void render(Executor& executor, const std::shared_ptr<View>& view, const LWGBuffer& gbuffer, const LWOutput& output) override {
-        checkOutputs(device_, *view, output);
+        checkLightOutputs(device_, *view, output, "screen_space");
         ScreenPicture::check(device_, *view, gbuffer, "gbuffer");
         ViewState& state = states_.get(view, [&] { return std::make_unique<ViewState>(device_, options_, *view); });
         state.screen.light(executor, passes_, *view, gbuffer, "gbuffer");

@@ -100,7 +100,7 @@ public:
 
     void render(Executor& executor, const std::shared_ptr<View>& view, const LWGBuffer& gbuffer,
                 const LWOutput& output) override {
-        checkInterleavedOutputs(device_, *view, output, "ssvp");
+        checkLightOutputs(device_, *view, output, "ssvp");
         InterleavedView& state = states_.get(
             view, [&] { return std::make_unique<InterleavedView>(device_, interleavedOptions(desc_), *view); });
         const ClusterMaps maps = mapsRead();
