@@ -53,7 +53,7 @@ std::vector<LWParameter> makeTable() {
         swept(uint("bounces", "indirect bounces; those after the first with VPLs drawn from the maps of the bounce before", offsetof(LWSsvpDesc, bounces), 1, 4, 2),
               kBouncesSweep),
         uint("shadowed_bounces", "1: light of the first bounce only is shadowed; 2: of the second too, by maps of its own clusters: less light through walls, time",
-             offsetof(LWSsvpDesc, shadowedBounces), 1, 2, 1),
+             offsetof(LWSsvpDesc, shadowedBounces), 1, 2, 2),
         uint("second_vpls", "VPLs of each bounce after the first for each cluster of the one before", offsetof(LWSsvpDesc, secondVpls), 1, 1024, 32),
         oneOf("directions", "in which second-bounce VPLs are drawn: by cosine, evenly on the map's disc, or on its square",
               offsetof(LWSsvpDesc, directions), kDirectionsNames, 2, LW_DIRECTIONS_COSINE),
@@ -89,8 +89,8 @@ const std::vector<LWParameter>& ssvpParameters() {
 
 // Aranha et al. 2020: 256 VPLs of each bounce, 8 clusters, second-bounce samples evenly on the map's disc.
 const std::vector<LWSetting>& ssvpSettings() {
-    static const std::vector<LWSetting> settings = {{"Aranha 2020", "sampling=uniform directions=disc"},
-                                                    {"both bounces shadowed", "clusters=32 shadowed_bounces=2"}};
+    static const std::vector<LWSetting> settings = {{"Aranha 2020", "sampling=uniform directions=disc shadowed_bounces=1"},
+                                                    {"second bounce unshadowed", "shadowed_bounces=1"}};
     return settings;
 }
 
@@ -106,7 +106,7 @@ extern "C" void lwDefaultSsvp(LWSsvpDesc* desc) {
     desc->mapSize = 128;
     desc->visibility = LW_VISIBILITY_HARD;
     desc->bounces = 2;
-    desc->shadowedBounces = 1;
+    desc->shadowedBounces = 2;
     desc->secondVpls = 32;
     desc->directions = LW_DIRECTIONS_COSINE;
     desc->warmStart = 1;

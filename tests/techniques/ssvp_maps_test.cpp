@@ -153,11 +153,11 @@ TEST_CASE("a still frame redraws no map of surfels, and every map of the screen,
             continue;
         }
         CHECK(e == settled);
-        CHECK(technique.count("maps_redrawn") == (occluders == LW_OCCLUDERS_SCREEN ? 8 : 0));
+        CHECK(technique.count("maps_redrawn") == (occluders == LW_OCCLUDERS_SCREEN ? 16 : 0));
     }
     technique.update(Frame(floor, describe(room, asSurfels, 2), &source).frame);
     CHECK(technique.render(view, scene.gbuffer) == settled);
-    CHECK(technique.count("maps_redrawn") == 8);
+    CHECK(technique.count("maps_redrawn") == 16);
 }
 
 TEST_CASE("auto takes triangles before surfels before the screen, from frame to frame", "[ssvp][surfels]") {
@@ -175,7 +175,7 @@ TEST_CASE("auto takes triangles before surfels before the screen, from frame to 
         desc.occluders = expected;
         TestTechnique fresh(device, desc);
         fresh.update(Frame(floor, geometry).frame);
-        CHECK(technique.count("maps_redrawn") == 8);
+        CHECK(technique.count("maps_redrawn") == 16);
         return std::pair{technique.render(view, scene.gbuffer), fresh.render(view, scene.gbuffer)};
     };
     LWGeometry both = *surfels.describeSurfels(0.05);

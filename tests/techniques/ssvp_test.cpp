@@ -98,7 +98,7 @@ TEST_CASE("an open room blocks nothing, a lid blocks all", "[ssvp]") {
     TestDevice device(GENERATE(1u, 16u));
     LitFloor floor(64, tiledProfile);
     WallAndCeiling scene(kWidth, kHeight);
-    LWSsvpDesc desc = descOf(GENERATE(1u, 8u, 0u), 1);
+    LWSsvpDesc desc = descOf(GENERATE(1u, 8u, 0u), GENERATE(1u, 2u));
     desc.vpls = 64;
     desc.mapSize = 256;
     desc.visibility = GENERATE(LW_VISIBILITY_HARD, LW_VISIBILITY_SOFT);
@@ -108,9 +108,11 @@ TEST_CASE("an open room blocks nothing, a lid blocks all", "[ssvp]") {
     const auto open = render(device, desc, {floor.light}, room.describe(), scene);
     // Every pixel lies on a wall of the convex room and sees all of the floor: the maps must not cast
     // shadows of the walls upon themselves. (But for the view's first rows, which lie above the
-    // ceiling.)
-    CHECK(difference(inRoom(open), inRoom(render(device, unshadowed, {floor.light}, room.describe(),
-                                                 scene))) < kCorners);
+    // ceiling.) Second-bounce VPLs lie in the corners themselves, where texels reach round: 0.026.
+    if (desc.bounces == 1) {
+        const auto through = render(device, unshadowed, {floor.light}, room.describe(), scene);
+        CHECK(difference(inRoom(open), inRoom(through)) < kCorners);
+    }
     Walls closed = Walls::room();
     closed.add({-0.6, 0.05, -0.1}, {1.2, 0, 0}, {0, 0, 1.2});
     const auto dark = render(device, desc, {floor.light}, closed.describe(), scene);
@@ -165,7 +167,7 @@ TEST_CASE("a still frame redraws no map, and ten have the same bits", "[ssvp]") 
     still.geometry = room.describe(2);
     technique.update(still);
     CHECK(technique.render(view, scene.gbuffer) == settled);
-    CHECK(technique.count("maps_redrawn") == 8);
+    CHECK(technique.count("maps_redrawn") == 16);
 }
 
 TEST_CASE("nothing is compiled after prewarming", "[ssvp]") {
