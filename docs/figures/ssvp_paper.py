@@ -28,7 +28,8 @@ def main():
     call = caller(options.lightwell)
 
     def render(scene, settings, size=options.size, frames=1, warmup=0, name="paper"):
-        sets = [part for setting in settings for part in ("--set", setting)]
+        # The paper shadows the first bounce alone.
+        sets = [part for setting in ["shadowed_bounces=1", *settings] for part in ("--set", setting)]
         return json.loads(call("render", scene, "--technique", "ssvp", *sets, "--size", size, "--frames", frames, "--warmup", warmup,
                                "--out", options.work / f"{name}.exr", "--json"))
 
