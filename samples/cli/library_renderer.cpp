@@ -50,6 +50,9 @@ LibraryRenderer::LibraryRenderer(const lightwell::Device& device, const Paramete
       estimatedBytes_(device.estimateMemory(
           parameters.technique().c_str(), descriptor_.get(), std::uint32_t(inputs.gbuffer().width),
           std::uint32_t(inputs.gbuffer().height), inputs.rsmTexelCount())) {
+    for (std::size_t i = 0; i < inputs.lwSources().size(); ++i)
+        sources_.emplace_back(device_, std::uint32_t(inputs.gbuffer().width),
+                              std::uint32_t(inputs.gbuffer().height));
     technique_.prewarm(view_);
     info_ = device_.info();
 }
@@ -58,6 +61,8 @@ LibraryRenderer::LibraryRenderer(const lightwell::Device& device, const Paramete
 void LibraryRenderer::fitSize(int width, int height) {
     if (width == irradiance_.width() && height == irradiance_.height()) return;
     view_.setSize(std::uint32_t(width), std::uint32_t(height));
+    for (lightwell::View& source : sources_)
+        source.setSize(std::uint32_t(width), std::uint32_t(height));
     irradiance_ = studio::PlanarBuffer(width, height, 3);
     validity_ = studio::PlanarBuffer(width, height, 1);
 }
@@ -65,14 +70,16 @@ void LibraryRenderer::fitSize(int width, int height) {
 FrameSample LibraryRenderer::renderFrame(const RenderInputs& inputs, bool reset) {
     fitSize(inputs.gbuffer().width, inputs.gbuffer().height);
     const auto start = std::chrono::steady_clock::now();
-    LWSourceView source{view_.get(), &inputs.lwGBuffer()};
+    std::vector<LWSourceView> sources{{view_.get(), &inputs.lwGBuffer()}};
+    for (std::size_t i = 0; i < sources_.size(); ++i)
+        sources.push_back({sources_[i].get(), &inputs.lwSources().at(i)});
     LWFrame frame = lightwell::make<LWFrame>();
     frame.reset = reset || frameIndex_ == 0 ? 1 : 0;
     frame.frameIndex = frameIndex_++;
     frame.lights = inputs.lights().data();
     frame.lightCount = std::uint32_t(inputs.lights().size());
-    frame.sourceViews = &source;
-    frame.sourceViewCount = 1;
+    frame.sourceViews = sources.data();
+    frame.sourceViewCount = std::uint32_t(sources.size());
     frame.geometry = &inputs.geometry();
     std::copy_n(inputs.environment(), 3, frame.environment);
     LWOutput output = lightwell::make<LWOutput>();

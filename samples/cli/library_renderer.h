@@ -24,6 +24,7 @@ private:
     lightwell::Device device_;
     LWDeviceInfo info_{};
     lightwell::View view_;
+    std::vector<lightwell::View> sources_;  // of the further source views
     Descriptor descriptor_;
     lightwell::Technique technique_;
     studio::PlanarBuffer irradiance_, validity_;

@@ -25,7 +25,7 @@ constexpr const char* kNoTechnique = "none";
 struct RenderOptions {
     ViewOptions view;
     std::string technique, seed, vplsOut, device, debugView, exposure, scale = "1", step = "0";
-    std::vector<std::string> assignments, outs;
+    std::vector<std::string> assignments, outs, sourceViews;
     int frames = 9, warmup = 3, width = 0, rsmSize = 512, cascades = 1;
     bool asJson = false, printsHash = false;
 };
@@ -43,7 +43,8 @@ void checkDistinctOutputs(const RenderOptions& options) {
 constexpr double kPixelBytes = 300.0, kTexelBytes = 72.0;
 
 void checkMemory(const RenderOptions& options, const Size& size, const studio::Scene& scene) {
-    requireMemory("--size", options.view.size, kPixelBytes * size.width * size.height);
+    requireMemory("--size", options.view.size,
+                  kPixelBytes * size.width * size.height * double(1 + options.sourceViews.size()));
     double maps = 0.0;
     for (const studio::Light& light : scene.lights)
         maps += light.kind == studio::LightKind::Sun     ? options.cascades
@@ -80,8 +81,9 @@ void checkOptions(const RenderOptions& options) {
         !options.outs.empty() || !options.vplsOut.empty() || options.asJson || options.printsHash;
     if (!hasResult) throw UsageError("--out is required: a file name ending in .exr or .png");
     if (options.technique == kNoTechnique) {
-        if (!options.vplsOut.empty() || !options.debugView.empty() || !options.assignments.empty())
-            throw UsageError("--technique none has no VPLs, debug views or parameters");
+        if (!options.vplsOut.empty() || !options.debugView.empty() ||
+            !options.assignments.empty() || !options.sourceViews.empty())
+            throw UsageError("--technique none has no VPLs, debug views, parameters or source views");
     }
 }
 
@@ -221,6 +223,7 @@ void render(RenderOptions& options) {
 
     SequenceOptions sequenceOptions;
     sequenceOptions.camera = options.view.camera;
+    sequenceOptions.sources = options.sourceViews;
     sequenceOptions.time = options.view.time;
     sequenceOptions.step = parseNumber("--step", options.step);
     sequenceOptions.frames = options.technique == kNoTechnique ? 1 : options.warmup + options.frames;
@@ -249,6 +252,10 @@ void declareExtras(CLI::App& command, RenderOptions& options) {
         "gpu, cpu, PLATFORM:DEVICE indices or part of a name; default: LIGHTWELL_DEVICE, else the best");
     command.add_option("--width", options.width,
                        "Lanes per work-item: 1, 4, 8 or 16; default: by probe");
+    command
+        .add_option("--source-view", options.sourceViews,
+                    "Cameras whose pictures are further source views of the frame, one or several")
+        ->take_all();
     command.add_option("--rsm-size", options.rsmSize, "Texels along each side of an RSM")
         ->check(CLI::Range(1, kMaxSize))
         ->capture_default_str();
