@@ -172,7 +172,9 @@ const COLUMNS = [
     [key, p => p.errors.own && p.errors.own[key], "own", data.metrics[key].onAll ? "drawn" : "pictureDrawn"]),
   ["noise", p => p.errors.own && p.errors.own.noise],
   ["relMSE, all bounces", p => p.errors.all && p.errors.all.relMSE, "all", "drawn"],
-  ["bias, all bounces", p => p.errors.all && p.errors.all.bias, "all", "drawn"]];
+  ["bias, all bounces", p => p.errors.all && p.errors.all.bias, "all", "drawn"],
+  ["relMSE, on screen", p => p.errors.screen && p.errors.screen.relMSE, "screen", "drawn"],
+  ["bias, on screen", p => p.errors.screen && p.errors.screen.bias, "screen", "drawn"]];
 let sorted = {column: -1, up: true};
 
 function fillTable() {

@@ -40,13 +40,15 @@ FrameSample describeFrame(const LWStats& stats, double wallMilliseconds) {
 }  // namespace
 
 LibraryRenderer::LibraryRenderer(const lightwell::Device& device, const Parameters& parameters,
-                                 const RenderInputs& inputs)
+                                 const RenderInputs& inputs, Quantity quantity)
     : device_(device),
       view_(device, std::uint32_t(inputs.gbuffer().width), std::uint32_t(inputs.gbuffer().height)),
       descriptor_(device, parameters),
       technique_(device, parameters.technique().c_str(), descriptor_.get()),
+      quantity_(quantity),
       irradiance_(inputs.gbuffer().width, inputs.gbuffer().height, 3),
       validity_(inputs.gbuffer().width, inputs.gbuffer().height, 1),
+      ambient_(inputs.gbuffer().width, inputs.gbuffer().height, 1),
       estimatedBytes_(device.estimateMemory(
           parameters.technique().c_str(), descriptor_.get(), std::uint32_t(inputs.gbuffer().width),
           std::uint32_t(inputs.gbuffer().height), inputs.rsmTexelCount())) {
@@ -65,6 +67,24 @@ void LibraryRenderer::fitSize(int width, int height) {
         source.setSize(std::uint32_t(width), std::uint32_t(height));
     irradiance_ = studio::PlanarBuffer(width, height, 3);
     validity_ = studio::PlanarBuffer(width, height, 1);
+    ambient_ = studio::PlanarBuffer(width, height, 1);
+}
+
+LWOutput LibraryRenderer::describeOutput() {
+    LWOutput output = lightwell::make<LWOutput>();
+    if (quantity_ == Quantity::AmbientOcclusion) {
+        output.ambientOcclusion = describePlanes(ambient_);
+    } else {
+        output.irradiance = describePlanes(irradiance_);
+        output.validity = describePlanes(validity_);
+    }
+    return output;
+}
+
+void LibraryRenderer::spreadAmbient() {
+    for (int plane = 0; plane < 3; ++plane)
+        for (int y = 0; y < ambient_.height(); ++y)
+            std::copy_n(ambient_.row(0, y), ambient_.width(), irradiance_.row(plane, y));
 }
 
 FrameSample LibraryRenderer::renderFrame(const RenderInputs& inputs, bool reset) {
@@ -82,13 +102,12 @@ FrameSample LibraryRenderer::renderFrame(const RenderInputs& inputs, bool reset)
     frame.sourceViewCount = std::uint32_t(sources.size());
     frame.geometry = &inputs.geometry();
     std::copy_n(inputs.environment(), 3, frame.environment);
-    LWOutput output = lightwell::make<LWOutput>();
-    output.irradiance = describePlanes(irradiance_);
-    output.validity = describePlanes(validity_);
+    LWOutput output = describeOutput();
     technique_.update(frame);
     technique_.render(view_, inputs.lwGBuffer(), output);
     device_.finish();
     const std::chrono::duration<double, std::milli> wall = std::chrono::steady_clock::now() - start;
+    if (quantity_ == Quantity::AmbientOcclusion) spreadAmbient();
     return describeFrame(technique_.stats(), wall.count());
 }
 

@@ -1,0 +1,243 @@
+"""The page and the pictures of screen_space.py. Needs numpy and matplotlib."""
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy  # noqa: E402
+
+from exr_planes import read_planes  # noqa: E402
+
+COLOURS = {"quarter": "#0072B2", "half": "#D55E00", "full": "#009E73"}
+MARKERS = {"quarter": "o", "half": "s", "full": "^"}
+STEPS = {"pyramid": ("mip_pyramid",), "deal": ("screen_gather.deal",), "gather": ("screen_gather.level",),
+         "filter, add": ("screen_combine.filter", "screen_combine.add"), "finish": ("screen_combine.finish",)}
+KINDS = {"screen, no shadows": "on screen, no shadows", "screen": "on screen", "all": "all light"}
+
+
+def mean(path):
+    return float(read_planes(path).mean())
+
+
+def largest(path):
+    return float(read_planes(path).max())
+
+
+def display(light, white):
+    """Reinhard and sRGB, `white` being where the half of the scale lies."""
+    scaled = numpy.clip(light, 0.0, None) / white
+    scaled = scaled / (1.0 + scaled)
+    return numpy.where(scaled <= 0.0031308, 12.92 * scaled, 1.055 * scaled ** (1 / 2.4) - 0.055)
+
+
+def save_panels(panels, columns, path):
+    """`panels` of (title, picture in [0,1])."""
+    rows = -(-len(panels) // columns)
+    height, width, _ = panels[0][1].shape
+    figure, axes = plt.subplots(rows, columns, figsize=(3.6 * columns, 3.6 * height / width * rows + 0.3 * rows), squeeze=False)
+    for axis in axes.flat:
+        axis.axis("off")
+    for axis, (title, picture) in zip(axes.flat, panels):
+        axis.imshow(picture, interpolation="antialiased")
+        axis.set_title(title, fontsize=9)
+    figure.tight_layout(pad=0.3)
+    figure.savefig(path, dpi=110)
+    plt.close(figure)
+
+
+def draw_levels(pictures, path):
+    """Direct light, what each level adds, all together; returns each level's share of the mean irradiance."""
+    sums = [read_planes(p) for p in pictures]
+    levels = [sums[0]] + [after - before for before, after in zip(sums, sums[1:])]
+    direct = read_planes(pictures[0], ("direct.R", "direct.G", "direct.B"))
+    white = 2.0 * sums[-1].mean()
+    panels = [("direct light", display(direct, 2.0 * direct.mean()))]
+    panels += [(f"level {n}", display(level, white)) for n, level in enumerate(levels, 1)]
+    panels.append(("all levels", display(sums[-1], white)))
+    save_panels(panels, 3, path)
+    return [float(level.mean() / sums[-1].mean()) for level in levels]
+
+
+def draw_slices(pictures, truths, share, path):
+    figure, axis = plt.subplots(figsize=(7.5, 3.4))
+    lines = [("unbounded (eq. 3)", pictures["unbounded"], "#D55E00", 0.7), ("bounded (eq. 4)", pictures["bounded"], "#009E73", 1.3),
+             ("truth, on screen, no shadows", truths["screen, no shadows"], "#000000", 1.0),
+             ("truth, on screen", truths["screen"], "#0072B2", 1.0)]
+    top = 0.0
+    for name, exr, colour, width in lines:
+        planes = read_planes(exr)
+        values = planes[int(share * planes.shape[0])].mean(axis=1)
+        axis.plot(values, color=colour, linewidth=width, label=name, zorder=1 if "eq. 3" in name else 2)
+        top = max(top, numpy.percentile(values, 99.5)) if "eq. 3" not in name else top
+    axis.set(xlabel="column", ylabel="irradiance, mean of RGB (W/m$^2$)", ylim=(0.0, 1.6 * top))
+    axis.grid(alpha=0.25)
+    axis.legend(fontsize=7)
+    figure.tight_layout()
+    figure.savefig(path, metadata={"Date": None})
+    plt.close(figure)
+
+
+def draw_cameras(pictures, path):
+    planes = [read_planes(p) for p in pictures]
+    white = 2.0 * planes[-1].mean()
+    titles = ("one camera", "with the other camera", "truth: what both show", "truth: all light")
+    save_panels([(title, display(p, white)) for title, p in zip(titles, planes)], 2, path)
+
+
+def draw_starts(found, kind, starts, path):
+    """Error against time, start by start."""
+    scenes = list(found["errors"]["starts"])
+    figure, axes = plt.subplots(1, len(scenes), figsize=(4.6 * len(scenes), 3.6), squeeze=False)
+    for axis, scene in zip(axes.flat, scenes):
+        for start in starts:
+            points = curve(found, scene, start, kind)
+            axis.plot([t for t, _, _ in points], [e for _, e, _ in points], color=COLOURS[start], marker=MARKERS[start], label=f"start={start}")
+            for t, e, n in points:
+                axis.annotate(str(n), (t, e), xytext=(4, 3), textcoords="offset points", fontsize=6, color=COLOURS[start])
+        axis.set(title=scene, xlabel="ms", ylabel=f"relMSE, {KINDS[kind]}", xscale="log", yscale="log")
+        axis.grid(alpha=0.25, which="both")
+        axis.legend(fontsize=7)
+    figure.tight_layout()
+    figure.savefig(path, metadata={"Date": None})
+    plt.close(figure)
+
+
+def curve(found, scene, start, kind):
+    """(ms, relMSE, samples) of a start's settings that were timed."""
+    timed = {tuple(m["setting"]): m["total"] for m in found["times"]["measured"]}
+    points = []
+    for n, errors in found["errors"]["starts"][scene][start].items():
+        ms = next((t for s, t in timed.items() if s[0] == start and s[2] == int(n) and s[1] == found["levels"][start]), None)
+        if ms is not None:
+            points.append((ms, errors[kind]["relMSE"], int(n)))
+    return sorted(points)
+
+
+def milliseconds(measured, names):
+    return sum(ms for name, ms in measured["passes"].items() if name.startswith(names))
+
+
+def of_setting(found, setting):
+    return next(m for m in found["times"]["measured"] if m["setting"] == list(setting[:3]))
+
+
+def write(found, root, settings, starts):
+    found["levels"] = starts
+    draw_starts(found, "screen, no shadows", starts, root / "docs/images/screen_space_starts.svg")
+    lines = head(found) + levels_text(found) + slices_text(found) + settings_text(found, settings) + gather_text(found, settings)
+    lines += starts_text(found, starts) + cameras_text(found)
+    page = root / "docs/techniques/screen_space_figures.md"
+    page.write_text("\n".join(lines).rstrip() + "\n", encoding="utf-8")
+    print(page)
+
+
+def head(found):
+    times, errors = found["times"], found["errors"]
+    paths = ", ".join(f"{spp} per pixel in {scene}" for scene, spp in errors["spp"].items())
+    return ["<!-- Made by docs/figures/screen_space.py; do not edit. -->", "", "# screen_space: the figures of its paper", "",
+            "What C. Soler et al. show in figures 4 to 9 of *Hierarchical Screen-Space Indirect Illumination for Video Games* (2009), measured "
+            f"here. Times: {times['device']}; {times['scene']}, {times['size']}; medians of 15 frames without history; load average "
+            f"{times['load'][0]:.1f} before, {times['load'][1]:.1f} after. Errors at {errors['size']}, one bounce, against three truths (paths: {paths}): light from "
+            "*all* surfaces; from those that the picture shows (*on screen*: the most that a technique of the picture can know); and the same "
+            "with *no shadows* between what sends and what receives, which is what this technique estimates. "
+            "`lightwell reference --on-screen [--unshadowed]` makes them.", ""]
+
+
+def levels_text(found):
+    lines = ["## Figure 4: what each level brings", ""]
+    for one in found["errors"]["levels"]:
+        shares = ", ".join(f"{100 * s:.0f} %" for s in one["shares"])
+        lines += [f"![{one['scene']}: direct light, levels 1 to 4, all of them](../images/screen_space_levels_{one['scene']}.png)",
+                  f"{one['scene']}, defaults. Irradiance that each level adds after filter and up-sampling, at one exposure. Shares of "
+                  f"the mean: {shares}.", ""]
+    return lines
+
+
+def error_cells(errors, kinds=KINDS):
+    return " | ".join(f"{errors[k]['relMSE']:.3g} | {100 * errors[k]['bias']:+.0f} %" for k in kinds)
+
+
+def error_heads(kinds=KINDS):
+    return " | ".join(f"relMSE, {KINDS[k]} | bias" for k in kinds)
+
+
+def slices_text(found):
+    part = found["errors"]["slices"]
+    lines = ["## Figure 5: the bounded form factor", "", f"{part['scene']}, {part['size']}, `{' '.join(part['settings'])}`, traced direct light, no history; "
+             "one row of the picture.", "", f"![{part['scene']}: irradiance along a row](../images/screen_space_slices.svg)", "",
+             "| form | " + error_heads() + " | largest pixel over the truth's (no shadows) |", "| --- |" + " ---: |" * 7]
+    return lines + [f"| {r['form']} | {error_cells(r['errors'])} | {r['largest']:.1f} |" for r in part["rows"]] + [""]
+
+
+def settings_text(found, settings):
+    scenes = list(found["errors"]["settings"][0]["errors"])
+    lines = ["## Figure 6: the paper's settings", "", "Milliseconds. The paper's totals: GTX 260 / 8800 GTS.", "",
+             "| start, levels, samples | " + " | ".join(STEPS) + " | total | paper's total |", "| --- |" + " ---: |" * (len(STEPS) + 2)]
+    for s in settings:
+        measured = of_setting(found, s)
+        cells = " | ".join(f"{milliseconds(measured, names):.2f}" for names in STEPS.values())
+        lines.append(f"| {s[0]}, {s[1]}, {s[2]} | {cells} | {measured['total']:.2f} | {s[3]} / {s[4]} |")
+    lines += ["", "| scene | start, levels, samples | " + error_heads() + " |", "| --- | --- |" + " ---: |" * 6]
+    for scene in scenes:
+        for one in found["errors"]["settings"]:
+            s = one["setting"]
+            lines.append(f"| {scene} | {s[0]}, {s[1]}, {s[2]} | {error_cells(one['errors'][scene])} |")
+    noises = [one["reference_noise"] for o in found["errors"]["settings"] for e in o["errors"].values() for one in e.values()
+              if one["reference_noise"] is not None]
+    return lines + (["", f"The truths' own noise (relMSE) is {min(noises):.2g} to {max(noises):.2g}."] if noises else []) + [""]
+
+
+def gather_text(found, settings):
+    lines = ["## Figure 7: the gather by level", "", "The paper, half, 64 samples: more than 70 % in the first level, a fifth costs about 1 % of the whole.", "",
+             "| start, levels, samples | " + " | ".join(f"level {n}" for n in range(1, 6)) + " | first | fifth |", "| --- |" + " ---: |" * 7]
+    for s in settings:
+        measured = of_setting(found, s)
+        ms = [milliseconds(measured, (f"screen_gather.level{n}",)) for n in range(1, s[1] + 1)]
+        fifth = f"{100 * ms[4] / sum(ms):.1f} %" if len(ms) > 4 else ""
+        lines.append(f"| {s[0]}, {s[1]}, {s[2]} | " + " | ".join([f"{m:.2f}" for m in ms] + [""] * (5 - len(ms))) +
+                     f" | {100 * ms[0] / sum(ms):.0f} % | {fifth} |")
+    return lines + [""]
+
+
+def at_equal_time(points, ms):
+    """relMSE on the logarithmic line through the points; None outside of them."""
+    for (t0, e0, _), (t1, e1, _) in zip(points, points[1:]):
+        if t0 <= ms <= t1:
+            share = 0.0 if t1 == t0 else numpy.log(ms / t0) / numpy.log(t1 / t0)
+            return float(e0 * (e1 / e0) ** share)
+    return None
+
+
+def starts_text(found, starts):
+    kind = "screen, no shadows"
+    reach = ", ".join(f"{start}: {levels}" for start, levels in starts.items())
+    lines = ["## Figure 8: a lower start and more samples at equal cost", "",
+             f"The paper: at the same cost a lower start with more samples looks better. Levels such that all reach equally far ({reach}); numbers in the "
+             "plot are samples.", "", "![Error against time by start](../images/screen_space_starts.svg)", "",
+             "| scene | start, samples | ms | relMSE | at this time the next lower start has | so the lower start |", "| --- | --- | ---: | ---: | ---: | --- |"]
+    wins = total = 0
+    for scene in found["errors"]["starts"]:
+        for lower, higher in zip(starts, list(starts)[1:]):
+            below = curve(found, scene, lower, kind)
+            for ms, error, n in curve(found, scene, higher, kind):
+                other = at_equal_time(below, ms)
+                total += other is not None
+                wins += other is not None and other < error
+                verdict = "is not known: it takes no such time" if other is None else "wins" if other < error else "loses"
+                lines.append(f"| {scene} | {higher}, {n} | {ms:.1f} | {error:.3g} | {'' if other is None else f'{other:.3g}'} | {verdict} |")
+    return lines + ["", f"The lower start wins {wins} of {total} pairs. relMSE against the truth on screen without shadows.", ""]
+
+
+def cameras_text(found):
+    part = found["errors"]["cameras"]
+    lines = ["## Figure 9: a second camera", "", "`--source-view OTHER --set cameras=on`.", ""]
+    for r in part["rows"]:
+        lines += [f"![{r['scene']}, {r['camera']} and {r['other']}](../images/{r['picture']})",
+                  f"{r['scene']}, {r['camera']}, with {r['other']}. Of the true mean irradiance the picture's own surfaces send "
+                  f"{100 * r['mean']['screen'] / r['mean']['all']:.0f} %, those that either camera shows {100 * r['mean']['both screens'] / r['mean']['all']:.0f} %.", ""]
+    lines += ["| scene, camera, other | cameras | relMSE, all light | bias | relMSE, both screens | bias | relMSE, own screen | bias |",
+              "| --- | --- |" + " ---: |" * 6]
+    for r in part["rows"]:
+        for name, errors in r["errors"].items():
+            cells = " | ".join(f"{errors[k]['relMSE']:.3g} | {100 * errors[k]['bias']:+.0f} %" for k in ("all", "both screens", "screen"))
+            lines.append(f"| {r['scene']}, {r['camera']}, {r['other']} | {name} | {cells} |")
+    return lines + [""]
