@@ -2,7 +2,7 @@
 """Makes docs/techniques/screen_space_figures.md and its pictures: figures 4 to 9 of Soler et al. 2009, measured here.
 
     docs/figures/screen_space.py [--lightwell build/release/bin/lightwell] [--work build/figures] [--size 640x360]
-                                 [--scenes cornell sponza_crytek] [--spp 64] [--part errors times page]
+                                 [--scenes cornell sponza_crytek] [--spp 32] [--part errors times page]
 
 --size is that of the pictures that are judged; times are those of 1280x720. Three parts, all of them unless --part names some:
 `errors` renders and judges, on however busy a machine; `times` takes under 90 seconds and wants nothing else running; `page` writes what they found. Truths stay in --work and are traced again only when missing;
@@ -22,7 +22,7 @@ STARTS = {"quarter": 4, "half": 5, "full": 6}
 SAMPLES = [8, 16, 32, 64, 128, 256]
 TIMED_SCENE, TIMED_SIZE = "cornell", "1280x720"
 SLICE_SIZE, SLICE_SCENE = "720x720", "cornell"
-EASY = {"cornell": 8}  # scenes whose paths cost little: so many times the paths, for errors that are smaller there
+EASY = {"cornell": 4}  # scenes whose paths cost little: so many times the paths, for errors that are smaller there
 # Fig. 5: its radius of 40 texels; where the first level starts is not said there.
 SLICE = ["start=half", "levels=4", "samples=64", "radius=40"]
 SLICE_ROW = 0.62  # of the height, from above: across both side walls and, in the Cornell box, the tall block
@@ -66,7 +66,7 @@ class Bench:
 
 
 def main():
-    options = read_options(__doc__, ["cornell", "sponza_crytek"], 64, "640x360", parts=("errors", "times", "page"))
+    options = read_options(__doc__, ["cornell", "sponza_crytek"], 32, "640x360", parts=("errors", "times", "page"))
     kept = options.work / "screen_space_figures.json"
     found = json.loads(kept.read_text()) if kept.exists() else {}
     bench = Bench(options) if set(options.part) - {"page"} else None

@@ -7,15 +7,14 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter  # noqa: E402
 
+from looks import looks  # noqa: E402
 from results import TRUTHS, counted, front, is_drawn, means_over_views, value  # noqa: E402
 
-# Okabe and Ito's colours: told apart by most colour-blind readers, too.
-COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#F0E442"]
 MARKERS = {0: "D", 1: "o", 2: "s"}  # by bounces
 
 
 def colour_of(results, technique):
-    return COLOURS[results.techniques.index(technique) % len(COLOURS)]
+    return looks(results.techniques)[technique][0]
 
 
 def write_plots(results):

@@ -5,7 +5,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 from matplotlib.ticker import MaxNLocator  # noqa: E402
 
-from plots import COLOURS  # noqa: E402
+from looks import looks  # noqa: E402
 from stability_results import COLUMNS, INDICES  # noqa: E402
 
 PANELS = ["nrmse", "bias", *INDICES]
@@ -49,8 +49,8 @@ def save(results, sequence):
 def draw(axis, results, sequence, shown, key):
     x = axis_values(axis, sequence, key)
     for technique, result in shown:
-        colour = COLOURS[results.techniques.index(technique) % len(COLOURS)]
-        axis.plot(x, series(result, key), color=colour, linewidth=1.2, marker=".", markersize=3, label=technique)
+        colour, line, marker = looks(results.techniques)[technique]
+        axis.plot(x, series(result, key), color=colour, linestyle=line, linewidth=1.2, marker=marker, markersize=2.5, label=technique)
         floors = series(result, key, floor=True)
         if has_any(floors):
             axis.plot(x, floors, color=colour, linewidth=0.9, linestyle=":")

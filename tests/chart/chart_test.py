@@ -177,8 +177,8 @@ class Chart(unittest.TestCase):
 
     def test_one_bounce_against_what_the_view_shows(self):
         """--on-screen: techniques of one bounce have a second truth, kept apart from the first, with less light."""
-        common = ("--quick", "--scenes", "cornell", "--size", "64x36", "--noise", "0.02", "--techniques", "screen_space", "ssvp",
-                  "--only", "samples=64", "levels=4", "start=quarter", "clusters=8", "--no-report")
+        common = ("--quick", "--scenes", "cornell", "--size", "64x36", "--noise", "0.02", "--techniques", "screen_space", "rival",
+                  "--only", "samples=64", "levels=4", "start=quarter", "spp=1", "resolution=quarter", "--no-report")
         self.chart(*common)
         without = {p["id"]: p for p in self.results()["points"]}
         self.assertEqual([p["errors"]["screen"] for p in without.values()], [None] * len(without))
@@ -188,7 +188,7 @@ class Chart(unittest.TestCase):
         self.assertIn("-seen-", view["on_screen"]["name"])
         self.assertNotIn(view["on_screen"]["name"], [t["name"] for t in view["truths"]])
         points = self.results()["points"]
-        self.assertEqual({p["technique"] for p in points}, {"screen_space", "ssvp"})
+        self.assertEqual({p["technique"] for p in points}, {"screen_space", "rival"})
         for point in points:
             known = without[point["id"]]
             self.assertEqual(point["errors"]["screen"] is None, point["bounces"] != 1)
