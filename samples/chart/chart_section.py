@@ -12,8 +12,8 @@ host's output, against its error. Left and low is good; the grey line is the Par
 Points with a ring are named settings. Wheel and drag zoom a chart, a double click shows all again; a click on
 a point shows its picture, where there is one, below.</p>
 <p>A technique is judged against the truth of as many bounces as it models; the choice below compares all of them with the
-light of all bounces, or those of one bounce with the light of what the view shows, where that was traced: what a technique of the
-picture alone can know. No point is drawn where the truth's own noise exceeds a tenth of its error. {judged}</p>
+light of all bounces, or those that take their light from the picture alone with the light of what the view shows, where that was
+traced: the most that they can know. No point is drawn where the truth's own noise exceeds a tenth of its error. {judged}</p>
 <form id="choices">
   <label>error <select id="metric"></select></label>
   <label>against <select id="truth"></select></label>

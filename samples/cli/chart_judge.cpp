@@ -109,7 +109,7 @@ Json judge(const JudgedPicture& picture, const ChartView& view, const std::strin
     if (const auto all = view.truths().find(0); all != view.truths().end() && !all->second.isBlack)
         json["all"] = irradianceErrors(picture, view, all->second);
     const JudgedTruth* onScreen = view.onScreen();
-    if (onScreen != nullptr && !onScreen->isBlack && picture.bounces == 1)
+    if (onScreen != nullptr && !onScreen->isBlack && picture.knowsPictureOnly)
         json["screen"] = irradianceErrors(picture, view, *onScreen);
     return json;
 }

@@ -242,7 +242,7 @@ std::string Charter::truthKey(const ChartView& view, const ChartedPoint& point) 
         if (const auto truth = view.truths().find(bounces); truth != view.truths().end())
             text += fmt::format(" {} {} {}", truth->second.truth.name, truth->second.truth.samples,
                                 truth->second.picture().samples);
-    if (view.onScreen() != nullptr && modelledBounces(point.sweep.parameters) == 1)
+    if (view.onScreen() != nullptr && knowsPictureOnly(point.technique))
         text += fmt::format(" {} {}", view.onScreen()->truth.name, view.onScreen()->truth.samples);
     return shortHash(text);
 }
@@ -282,6 +282,7 @@ void Charter::chartPoint(const ChartView& view, const ChartedPoint& point,
     }
     made.point["truth"] = truth;
     made.picture.bounces = made.point["bounces"];
+    made.picture.knowsPictureOnly = knowsPictureOnly(point.technique);
     made.picture.imageName = made.point["id"];
     made.picture.irradiance = studio::Image(options_.width, options_.height);
     addLayer(made.picture.irradiance, "", renderer->irradiance());

@@ -179,7 +179,7 @@ glm::vec3 Integrator::lightThrough(const Surface& pixel, const glm::vec3& direct
     const float facing = -glm::dot(hit.normal, direction);
     const glm::vec3 lobeSide = facing > 0.0f ? hit.geometricNormal : -hit.geometricNormal;
     glm::vec3 light(0.0f);
-    if (sends(hit.position, lobeSide))
+    if (hasExtendedLight_ && sends(hit.position, lobeSide))
         light = extendedIrradiance(scene_, areaLights_, {hit.position, lobeSide, lobeSide}, sampler) *
                 (std::abs(facing) / projected);
     for (std::size_t l = 0; l < scene_.lights().size(); ++l) {
