@@ -83,6 +83,9 @@ studio::PathTracerOptions tracerOptions(const ReferenceOptions& options) {
     tracer.seed = parseUnsigned("--seed", options.seed);
     tracer.unshadowed = options.unshadowed;
     tracer.judgedLayers = chosenLayers(options);
+    // Nobody keeps what later bounces bring: the same bits of the first ones for less time.
+    if (options.compact && options.bounces != "all" && !options.isAmbient())
+        tracer.maxBounces = options.bounces == "1" ? 1 : 2;
     if (!options.until.empty()) {
         if (!options.vpls.empty())
             throw UsageError("--until: --vpls sums without noise; leave --until out");
