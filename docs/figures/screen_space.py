@@ -2,11 +2,13 @@
 """Makes docs/techniques/screen_space_figures.md and its pictures: figures 4 to 9 of Soler et al. 2009, measured here.
 
     docs/figures/screen_space.py [--lightwell build/release/bin/lightwell] [--work build/figures] [--size 640x360]
-                                 [--scenes cornell sponza_crytek] [--spp 32] [--part errors times page]
+                                 [--scenes cornell sponza_crytek] [--spp 32]
+                                 [--part levels slices settings starts cameras times page]
 
---size is that of the pictures that are judged; times are those of 1280x720. Three parts, all of them unless --part names some:
-`errors` renders and judges, on however busy a machine; `times` takes under 90 seconds and wants nothing else running; `page` writes what they found. Truths stay in --work and are traced again only when missing;
-everything else is made anew. Scenes other than the shipped ones are looked for in LIGHTWELL_SCENES. Needs numpy and matplotlib.
+--size is that of the pictures that are judged; times are those of 1280x720. All parts unless --part names some: `times` takes under
+90 seconds and wants nothing else running; the others render and judge, on however busy a machine, scene by scene; `page` writes what
+all of them found, in this call or before, which --work keeps. Truths stay there and are traced again only when missing. Scenes other
+than the shipped ones are looked for in LIGHTWELL_SCENES. Needs numpy and matplotlib.
 """
 import json
 import os
@@ -21,13 +23,14 @@ SETTINGS = [("quarter", 4, 64, 4.6, 13.9), ("quarter", 4, 256, 11.2, 33.6), ("ha
 STARTS = {"quarter": 4, "half": 5, "full": 6}
 SAMPLES = [8, 16, 32, 64, 128, 256]
 TIMED_SCENE, TIMED_SIZE = "cornell", "1280x720"
-SLICE_SIZE, SLICE_SCENE = "720x720", "cornell"
+SLICE_SIZE = "720x720"
+PARTS = ["levels", "slices", "settings", "starts", "cameras"]
 EASY = {"cornell": 2}  # scenes whose paths cost little: so many times the paths, for errors that are smaller there
 # Fig. 5: its radius of 40 texels; where the first level starts is not said there.
 SLICE = ["start=half", "levels=4", "samples=64", "radius=40"]
 SLICE_ROW = 0.62  # of the height, from above: across both side walls and, in the Cornell box, the tall block
-# Fig. 9: a picture that misses the light which another camera sees. Scene, camera, the other camera.
-CAMERAS = [("cornell", "front", "inside"), ("sponza_crytek", "suggested_camera", "suggested_camera_2")]
+# Fig. 9: a picture that misses the light which another camera sees. Scene: camera, the other camera.
+CAMERAS = {"cornell": [("front", "inside")], "sponza_crytek": [("suggested_camera", "suggested_camera_2")]}
 ON_SCREEN = ["screen, no shadows", "screen"]
 TRUTHS = {"screen, no shadows": ["--on-screen", "--unshadowed"], "screen": ["--on-screen"], "all": []}
 
@@ -50,8 +53,11 @@ class Bench:
                          warmup, "--rsm-size", 16, "--out", exr, "--json", *extra)
         return exr, json.loads(text)
 
+    def paths(self, scene):
+        return self.options.spp * EASY.get(scene, 1)
+
     def truth(self, scene, kind, size, extra=()):
-        spp = self.options.spp * EASY.get(scene, 1)
+        spp = self.paths(scene)
         name = "_".join(["truth", scene, kind.replace(", ", "_").replace(" ", "_"), size, f"{spp}spp",
                          *(word.strip("-") for word in extra)])
         exr = self.options.work / f"{name}.exr"
@@ -66,19 +72,22 @@ class Bench:
 
 
 def main():
-    options = read_options(__doc__, ["cornell", "sponza_crytek"], 32, "640x360", parts=("errors", "times", "page"))
+    options = read_options(__doc__, ["cornell", "sponza_crytek"], 32, "640x360", parts=(*PARTS, "times", "page"))
     kept = options.work / "screen_space_figures.json"
     found = json.loads(kept.read_text()) if kept.exists() else {}
     bench = Bench(options) if set(options.part) - {"page"} else None
-    if "errors" in options.part:
-        found["errors"] = {"levels": [level_pictures(bench, scene) for scene in options.scenes], "slices": slices(bench),
-                           "settings": setting_errors(bench), "starts": start_errors(bench), "cameras": camera_errors(bench),
-                           "spp": {scene: options.spp * EASY.get(scene, 1) for scene in options.scenes}, "size": options.size}
+    makers = {"levels": level_pictures, "slices": slices, "settings": setting_errors, "starts": start_errors, "cameras": camera_errors}
+    for part in [p for p in PARTS if p in options.part]:
+        for scene in options.scenes:
+            found.setdefault(part, {})[scene] = makers[part](bench, scene)
+            found.setdefault("spp", {})[scene] = bench.paths(scene)
+            found["size"] = options.size
+            kept.write_text(json.dumps(found))
     if "times" in options.part:
         found["times"] = times(bench)
-    kept.write_text(json.dumps(found))
+        kept.write_text(json.dumps(found))
     if "page" in options.part:
-        screen_space_page.write(found, ROOT, SETTINGS, STARTS)
+        screen_space_page.write(found, ROOT, SETTINGS, STARTS, SLICE, SLICE_SIZE)
 
 
 def sets_of(setting):
@@ -90,20 +99,18 @@ def level_pictures(bench, scene):
     """Fig. 4: a level's light is what it adds to the picture of the levels before it: up-sampling and adding are linear."""
     count = 4
     pictures = [bench.render(scene, [f"levels={n}"], bench.options.size, f"{scene}_levels{n}")[0] for n in range(1, count + 1)]
-    shares = screen_space_page.draw_levels(pictures, ROOT / f"docs/images/screen_space_levels_{scene}.png")
-    return {"scene": scene, "shares": shares}
+    return screen_space_page.draw_levels(pictures, ROOT / f"docs/images/screen_space_levels_{scene}.png")
 
 
-def slices(bench):
+def slices(bench, scene):
     """Fig. 5: bounded, unbounded and the truths, along a row, and their errors."""
-    pictures = {name: bench.render(SLICE_SCENE, [*SLICE, f"bounded={bounded}"], SLICE_SIZE, name)[0]
+    pictures = {name: bench.render(scene, [*SLICE, f"bounded={bounded}"], SLICE_SIZE, name)[0]
                 for name, bounded in (("bounded", "on"), ("unbounded", "off"))}
-    truths = {kind: bench.truth(SLICE_SCENE, kind, SLICE_SIZE) for kind in ON_SCREEN}
-    screen_space_page.draw_slices(pictures, truths, SLICE_ROW, ROOT / "docs/images/screen_space_slices.svg")
-    rows = [{"form": name, "errors": {kind: bench.errors(exr, truth) for kind, truth in truths.items()},
+    truths = {kind: bench.truth(scene, kind, SLICE_SIZE) for kind in ON_SCREEN}
+    screen_space_page.draw_slices(pictures, truths, SLICE_ROW, ROOT / f"docs/images/screen_space_slices_{scene}.svg")
+    return [{"form": name, "errors": {kind: bench.errors(exr, truth) for kind, truth in truths.items()},
              "largest": screen_space_page.largest(exr) / screen_space_page.largest(truths["screen, no shadows"])}
             for name, exr in pictures.items()]
-    return {"rows": rows, "settings": SLICE, "size": SLICE_SIZE, "scene": SLICE_SCENE}
 
 
 def judged(bench, scene, settings, kinds=tuple(TRUTHS)):
@@ -111,25 +118,22 @@ def judged(bench, scene, settings, kinds=tuple(TRUTHS)):
     return {kind: bench.errors(exr, bench.truth(scene, kind, bench.options.size)) for kind in kinds}
 
 
-def setting_errors(bench):
+def setting_errors(bench, scene):
     """Fig. 6, errors."""
-    return [{"setting": list(s), "errors": {scene: judged(bench, scene, sets_of(s)) for scene in bench.options.scenes}}
-            for s in SETTINGS]
+    return [judged(bench, scene, sets_of(s)) for s in SETTINGS]
 
 
-def start_errors(bench):
+def start_errors(bench, scene):
     """Fig. 8, errors."""
-    return {scene: {start: {n: judged(bench, scene, sets_of((start, levels, n)), ON_SCREEN[:1]) for n in SAMPLES}
-                    for start, levels in STARTS.items()} for scene in bench.options.scenes}
+    return {start: {str(n): judged(bench, scene, sets_of((start, levels, n)), ON_SCREEN[:1]) for n in SAMPLES}
+            for start, levels in STARTS.items()}
 
 
-def camera_errors(bench):
+def camera_errors(bench, scene):
     """Fig. 9: with the other camera and without, against all light, what the picture shows, and what both show. The camera is
     the scene's first, whose truths are those of the other figures."""
     rows, size = [], bench.options.size
-    for scene, camera, other in CAMERAS:
-        if scene not in bench.options.scenes:
-            continue
+    for camera, other in CAMERAS.get(scene, []):
         view, both = ["--camera", camera], ["--camera", camera, "--source-view", other]
         truths = {"all": bench.truth(scene, "all", size), "screen": bench.truth(scene, "screen", size),
                   "both screens": bench.truth(scene, "screen", size, ["--source-view", other])}
@@ -137,9 +141,9 @@ def camera_errors(bench):
                     "two": bench.render(scene, ["cameras=on"], size, f"{scene}_two", extra=both)[0]}
         name = f"screen_space_cameras_{scene}_{other}.png"
         screen_space_page.draw_cameras([*pictures.values(), truths["both screens"], truths["all"]], ROOT / "docs/images" / name)
-        rows.append({"scene": scene, "camera": camera, "other": other, "picture": name, "mean": {k: screen_space_page.mean(t) for k, t in truths.items()},
+        rows.append({"camera": camera, "other": other, "picture": name, "mean": {k: screen_space_page.mean(t) for k, t in truths.items()},
                      "errors": {p: {t: bench.errors(exr, truth) for t, truth in truths.items()} for p, exr in pictures.items()}})
-    return {"rows": rows}
+    return rows
 
 
 def times(bench):

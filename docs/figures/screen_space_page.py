@@ -85,11 +85,11 @@ def draw_cameras(pictures, path):
 
 def draw_starts(found, kind, starts, path):
     """Error against time, start by start."""
-    scenes = list(found["errors"]["starts"])
+    scenes = list(found["starts"])
     figure, axes = plt.subplots(1, len(scenes), figsize=(4.6 * len(scenes), 3.6), squeeze=False)
     for axis, scene in zip(axes.flat, scenes):
         for start in starts:
-            points = curve(found, scene, start, kind)
+            points = curve(found, scene, (start, starts[start]), kind)
             axis.plot([t for t, _, _ in points], [e for _, e, _ in points], color=COLOURS[start], marker=MARKERS[start], label=f"start={start}")
             for t, e, n in points:
                 axis.annotate(str(n), (t, e), xytext=(4, 3), textcoords="offset points", fontsize=6, color=COLOURS[start])
@@ -102,14 +102,10 @@ def draw_starts(found, kind, starts, path):
 
 
 def curve(found, scene, start, kind):
-    """(ms, relMSE, samples) of a start's settings that were timed."""
+    """(ms, relMSE, samples) of the settings with this start and levels that were timed."""
     timed = {tuple(m["setting"]): m["total"] for m in found["times"]["measured"]}
-    points = []
-    for n, errors in found["errors"]["starts"][scene][start].items():
-        ms = next((t for s, t in timed.items() if s[0] == start and s[2] == int(n) and s[1] == found["levels"][start]), None)
-        if ms is not None:
-            points.append((ms, errors[kind]["relMSE"], int(n)))
-    return sorted(points)
+    return sorted((timed[(*start, int(n))], errors[kind]["relMSE"], int(n)) for n, errors in found["starts"][scene][start[0]].items()
+                  if (*start, int(n)) in timed)
 
 
 def milliseconds(measured, names):
@@ -120,10 +116,9 @@ def of_setting(found, setting):
     return next(m for m in found["times"]["measured"] if m["setting"] == list(setting[:3]))
 
 
-def write(found, root, settings, starts):
-    found["levels"] = starts
+def write(found, root, settings, starts, slice_settings, slice_size):
     draw_starts(found, "screen, no shadows", starts, root / "docs/images/screen_space_starts.svg")
-    lines = head(found) + levels_text(found) + slices_text(found) + settings_text(found, settings) + gather_text(found, settings)
+    lines = head(found) + levels_text(found) + slices_text(found, slice_settings, slice_size) + settings_text(found, settings) + gather_text(found, settings)
     lines += starts_text(found, starts) + cameras_text(found)
     page = root / "docs/techniques/screen_space_figures.md"
     page.write_text("\n".join(lines).rstrip() + "\n", encoding="utf-8")
@@ -131,12 +126,12 @@ def write(found, root, settings, starts):
 
 
 def head(found):
-    times, errors = found["times"], found["errors"]
-    paths = ", ".join(f"{spp} per pixel in {scene}" for scene, spp in errors["spp"].items())
+    times = found["times"]
+    paths = ", ".join(f"{spp} per pixel in {scene}" for scene, spp in found["spp"].items())
     return ["<!-- Made by docs/figures/screen_space.py; do not edit. -->", "", "# screen_space: the figures of its paper", "",
             "What C. Soler et al. show in figures 4 to 9 of *Hierarchical Screen-Space Indirect Illumination for Video Games* (2009), measured "
             f"here. Times: {times['device']}; {times['scene']}, {times['size']}; medians of 15 frames without history; load average "
-            f"{times['load'][0]:.1f} before, {times['load'][1]:.1f} after. Errors at {errors['size']}, one bounce, against three truths (paths: {paths}): light from "
+            f"{times['load'][0]:.1f} before, {times['load'][1]:.1f} after. Errors at {found['size']}, one bounce, against three truths (paths: {paths}): light from "
             "*all* surfaces; from those that the picture shows (*on screen*: the most that a technique of the picture can know); and the same "
             "with *no shadows* between what sends and what receives, which is what this technique estimates. "
             "`lightwell reference --on-screen [--unshadowed]` makes them.", ""]
@@ -144,10 +139,10 @@ def head(found):
 
 def levels_text(found):
     lines = ["## Figure 4: what each level brings", ""]
-    for one in found["errors"]["levels"]:
-        shares = ", ".join(f"{100 * s:.0f} %" for s in one["shares"])
-        lines += [f"![{one['scene']}: direct light, levels 1 to 4, all of them](../images/screen_space_levels_{one['scene']}.png)",
-                  f"{one['scene']}, defaults. Irradiance that each level adds after filter and up-sampling, at one exposure. Shares of "
+    for scene, of_levels in found["levels"].items():
+        shares = ", ".join(f"{100 * s:.0f} %" for s in of_levels)
+        lines += [f"![{scene}: direct light, levels 1 to 4, all of them](../images/screen_space_levels_{scene}.png)",
+                  f"{scene}, defaults. Irradiance that each level adds after filter and up-sampling, at one exposure. Shares of "
                   f"the mean: {shares}.", ""]
     return lines
 
@@ -160,17 +155,18 @@ def error_heads(kinds=KINDS):
     return " | ".join(f"relMSE, {KINDS[k]} | bias" for k in kinds)
 
 
-def slices_text(found):
-    part = found["errors"]["slices"]
-    kinds = [kind for kind in KINDS if kind in part["rows"][0]["errors"]]
-    lines = ["## Figure 5: the bounded form factor", "", f"{part['scene']}, {part['size']}, `{' '.join(part['settings'])}`, traced direct light, no history; "
-             "one row of the picture.", "", f"![{part['scene']}: irradiance along a row](../images/screen_space_slices.svg)", "",
-             "| form | " + error_heads(kinds) + " | largest pixel over the truth's (no shadows) |", "| --- |" + " ---: |" * (2 * len(kinds) + 1)]
-    return lines + [f"| {r['form']} | {error_cells(r['errors'], kinds)} | {r['largest']:.1f} |" for r in part["rows"]] + [""]
+def slices_text(found, settings, size):
+    lines = ["## Figure 5: the bounded form factor", "", f"{size}, `{' '.join(settings)}`, traced direct light, no history; one row of the picture.", ""]
+    kinds = [kind for kind in KINDS if kind != "all"]
+    rows = ["| scene | form | " + error_heads(kinds) + " | largest pixel over the truth's (no shadows) |",
+            "| --- | --- |" + " ---: |" * (2 * len(kinds) + 1)]
+    for scene, forms in found["slices"].items():
+        lines += [f"![{scene}: irradiance along a row](../images/screen_space_slices_{scene}.svg)", ""]
+        rows += [f"| {scene} | {r['form']} | {error_cells(r['errors'], kinds)} | {r['largest']:.1f} |" for r in forms]
+    return lines + rows + [""]
 
 
 def settings_text(found, settings):
-    scenes = list(found["errors"]["settings"][0]["errors"])
     lines = ["## Figure 6: the paper's settings", "", "Milliseconds. The paper's totals: GTX 260 / 8800 GTS.", "",
              "| start, levels, samples | " + " | ".join(STEPS) + " | total | paper's total |", "| --- |" + " ---: |" * (len(STEPS) + 2)]
     for s in settings:
@@ -178,12 +174,11 @@ def settings_text(found, settings):
         cells = " | ".join(f"{milliseconds(measured, names):.2f}" for names in STEPS.values())
         lines.append(f"| {s[0]}, {s[1]}, {s[2]} | {cells} | {measured['total']:.2f} | {s[3]} / {s[4]} |")
     lines += ["", "| scene | start, levels, samples | " + error_heads() + " |", "| --- | --- |" + " ---: |" * 6]
-    for scene in scenes:
-        for one in found["errors"]["settings"]:
-            s = one["setting"]
-            lines.append(f"| {scene} | {s[0]}, {s[1]}, {s[2]} | {error_cells(one['errors'][scene])} |")
-    noises = [one["reference_noise"] for o in found["errors"]["settings"] for e in o["errors"].values() for one in e.values()
-              if one["reference_noise"] is not None]
+    for scene, of_settings in found["settings"].items():
+        for s, errors in zip(settings, of_settings):
+            lines.append(f"| {scene} | {s[0]}, {s[1]}, {s[2]} | {error_cells(errors)} |")
+    noises = [e["reference_noise"] for of_settings in found["settings"].values() for errors in of_settings for e in errors.values()
+              if e["reference_noise"] is not None]
     return lines + (["", f"The truths' own noise (relMSE) is {min(noises):.2g} to {max(noises):.2g}."] if noises else []) + [""]
 
 
@@ -216,29 +211,29 @@ def starts_text(found, starts):
              "plot are samples.", "", "![Error against time by start](../images/screen_space_starts.svg)", "",
              "| scene | start, samples | ms | relMSE | at this time the next lower start has | so the lower start |", "| --- | --- | ---: | ---: | ---: | --- |"]
     wins = total = 0
-    for scene in found["errors"]["starts"]:
-        for lower, higher in zip(starts, list(starts)[1:]):
+    for scene in found["starts"]:
+        for lower, higher in zip(starts.items(), list(starts.items())[1:]):
             below = curve(found, scene, lower, kind)
             for ms, error, n in curve(found, scene, higher, kind):
                 other = at_equal_time(below, ms)
                 total += other is not None
                 wins += other is not None and other < error
                 verdict = "is not known: it takes no such time" if other is None else "wins" if other < error else "loses"
-                lines.append(f"| {scene} | {higher}, {n} | {ms:.1f} | {error:.3g} | {'' if other is None else f'{other:.3g}'} | {verdict} |")
+                lines.append(f"| {scene} | {higher[0]}, {n} | {ms:.1f} | {error:.3g} | {'' if other is None else f'{other:.3g}'} | {verdict} |")
     return lines + ["", f"The lower start wins {wins} of {total} pairs. relMSE against the truth on screen without shadows.", ""]
 
 
 def cameras_text(found):
-    part = found["errors"]["cameras"]
     lines = ["## Figure 9: a second camera", "", "`--source-view OTHER --set cameras=on`.", ""]
-    for r in part["rows"]:
-        lines += [f"![{r['scene']}, {r['camera']} and {r['other']}](../images/{r['picture']})",
-                  f"{r['scene']}, {r['camera']}, with {r['other']}. Of the true mean irradiance the picture's own surfaces send "
-                  f"{100 * r['mean']['screen'] / r['mean']['all']:.0f} %, those that either camera shows {100 * r['mean']['both screens'] / r['mean']['all']:.0f} %.", ""]
-    lines += ["| scene, camera, other | cameras | relMSE, all light | bias | relMSE, both screens | bias | relMSE, own screen | bias |",
-              "| --- | --- |" + " ---: |" * 6]
-    for r in part["rows"]:
-        for name, errors in r["errors"].items():
-            cells = " | ".join(f"{errors[k]['relMSE']:.3g} | {100 * errors[k]['bias']:+.0f} %" for k in ("all", "both screens", "screen"))
-            lines.append(f"| {r['scene']}, {r['camera']}, {r['other']} | {name} | {cells} |")
-    return lines + [""]
+    rows = ["| scene, camera, other | cameras | relMSE, all light | bias | relMSE, both screens | bias | relMSE, own screen | bias |",
+            "| --- | --- |" + " ---: |" * 6]
+    for scene, pairs in found["cameras"].items():
+        for r in pairs:
+            means = r["mean"]
+            lines += [f"![{scene}, {r['camera']} and {r['other']}](../images/{r['picture']})",
+                      f"{scene}, {r['camera']}, with {r['other']}. Of the true mean irradiance the picture's own surfaces send "
+                      f"{100 * means['screen'] / means['all']:.0f} %, those that either camera shows {100 * means['both screens'] / means['all']:.0f} %.", ""]
+            for name, errors in r["errors"].items():
+                cells = " | ".join(f"{errors[k]['relMSE']:.3g} | {100 * errors[k]['bias']:+.0f} %" for k in ("all", "both screens", "screen"))
+                rows.append(f"| {scene}, {r['camera']}, {r['other']} | {name} | {cells} |")
+    return lines + rows + [""]

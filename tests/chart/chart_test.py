@@ -178,7 +178,7 @@ class Chart(unittest.TestCase):
     def test_one_bounce_against_what_the_view_shows(self):
         """--on-screen: techniques of the picture alone have a second truth, kept apart from the first, with less light."""
         common = ("--quick", "--scenes", "cornell", "--size", "64x36", "--noise", "0.02", "--techniques", "screen_space", "rival",
-                  "--only", "samples=64", "levels=4", "start=quarter", "spp=1", "resolution=quarter", "--no-report")
+                  "--only", "samples=64", "levels=0,4", "start=quarter", "spp=1", "resolution=quarter", "--no-report")
         self.chart(*common)
         without = {p["id"]: p for p in self.results()["points"]}
         self.assertEqual([p["errors"]["screen"] for p in without.values()], [None] * len(without))
