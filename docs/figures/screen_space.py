@@ -147,15 +147,17 @@ def camera_errors(bench, scene):
 
 
 def times(bench):
-    """Figs. 6, 7 and 8: medians of 15 frames."""
+    """Figs. 6, 7 and 8: medians of 9 frames, of two rounds over all settings the quicker: what else the machine does comes and goes."""
     settings = {tuple(s[:3]) for s in SETTINGS} | {(start, levels, n) for start, levels in STARTS.items() for n in SAMPLES if
                                                    start != "full" or n <= 64}
     before = os.getloadavg()[0]
-    measured = []
-    for setting in sorted(settings):
-        _, report = bench.render(TIMED_SCENE, sets_of(setting), TIMED_SIZE, frames=15, warmup=3)
-        measured.append({"setting": list(setting), "total": report["total_ms"],
-                         "passes": {p["name"]: p["ms"] for p in report["passes"]}})
+    best = {}
+    for setting in 2 * sorted(settings):
+        _, report = bench.render(TIMED_SCENE, sets_of(setting), TIMED_SIZE, frames=9, warmup=2)
+        if setting not in best or report["total_ms"] < best[setting]["total"]:
+            best[setting] = {"setting": list(setting), "total": report["total_ms"],
+                             "passes": {p["name"]: p["ms"] for p in report["passes"]}}
+    measured = list(best.values())
     device = f"{report['device']}, {report['platform']} {report['driver']}, {report['width']} lanes"
     return {"measured": measured, "device": device, "scene": TIMED_SCENE, "size": TIMED_SIZE,
             "load": [before, os.getloadavg()[0]]}

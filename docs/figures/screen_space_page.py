@@ -60,8 +60,8 @@ def draw_levels(pictures, path):
 def draw_slices(pictures, truths, share, path):
     figure, axis = plt.subplots(figsize=(7.5, 3.4))
     lines = [("unbounded (eq. 3)", pictures["unbounded"], "#D55E00", 0.7), ("bounded (eq. 4)", pictures["bounded"], "#009E73", 1.3),
-             ("truth, on screen, no shadows", truths["screen, no shadows"], "#000000", 1.0),
-             ("truth, on screen", truths["screen"], "#0072B2", 1.0)]
+             ("truth, on screen, no shadows", truths["screen, no shadows"], "#000000", 0.6),
+             ("truth, on screen", truths["screen"], "#0072B2", 0.6)]
     top = 0.0
     for name, exr, colour, width in lines:
         planes = read_planes(exr)
@@ -130,7 +130,7 @@ def head(found):
     paths = ", ".join(f"{spp} per pixel in {scene}" for scene, spp in found["spp"].items())
     return ["<!-- Made by docs/figures/screen_space.py; do not edit. -->", "", "# screen_space: the figures of its paper", "",
             "What C. Soler et al. show in figures 4 to 9 of *Hierarchical Screen-Space Indirect Illumination for Video Games* (2009), measured "
-            f"here. Times: {times['device']}; {times['scene']}, {times['size']}; medians of 15 frames without history; load average "
+            f"here. Times: {times['device']}; {times['scene']}, {times['size']}; medians of 9 frames without history, of two rounds the quicker; load average "
             f"{times['load'][0]:.1f} before, {times['load'][1]:.1f} after. Errors at {found['size']}, one bounce, against three truths (paths: {paths}): light from "
             "*all* surfaces; from those that the picture shows (*on screen*: the most that a technique of the picture can know); and the same "
             "with *no shadows* between what sends and what receives, which is what this technique estimates. "
