@@ -4,6 +4,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy  # noqa: E402
+from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter  # noqa: E402
 
 from exr_planes import read_planes  # noqa: E402
 
@@ -94,7 +95,12 @@ def draw_starts(found, kind, starts, path):
             for t, e, n in points:
                 axis.annotate(str(n), (t, e), xytext=(4, 3), textcoords="offset points", fontsize=6, color=COLOURS[start])
         axis.set(title=scene, xlabel="ms", ylabel=f"relMSE, {KINDS[kind]}", xscale="log", yscale="log")
-        axis.grid(alpha=0.25, which="both")
+        for one in (axis.xaxis, axis.yaxis):  # plain numbers
+            one.set_major_locator(LogLocator(subs=(1.0, 1.5, 2.0, 3.0, 5.0, 7.0)))
+            one.set_major_formatter(StrMethodFormatter("{x:g}"))
+            one.set_minor_formatter(NullFormatter())
+        axis.margins(0.08)
+        axis.grid(alpha=0.25)
         axis.legend(fontsize=7)
     figure.tight_layout()
     figure.savefig(path, metadata={"Date": None})
@@ -130,7 +136,7 @@ def head(found):
     paths = ", ".join(f"{spp} per pixel in {scene}" for scene, spp in found["spp"].items())
     return ["<!-- Made by docs/figures/screen_space.py; do not edit. -->", "", "# screen_space: the figures of its paper", "",
             "What C. Soler et al. show in figures 4 to 9 of *Hierarchical Screen-Space Indirect Illumination for Video Games* (2009), measured "
-            f"here. Times: {times['device']}; {times['scene']}, {times['size']}; medians of 9 frames without history, of two rounds the quicker; load average "
+            f"here. Times: {times['device']}; {times['scene']}, {times['size']}; medians of 5 frames without history, of three rounds the quickest; load average "
             f"{times['load'][0]:.1f} before, {times['load'][1]:.1f} after. Errors at {found['size']}, one bounce, against three truths (paths: {paths}): light from "
             "*all* surfaces; from those that the picture shows (*on screen*: the most that a technique of the picture can know); and the same "
             "with *no shadows* between what sends and what receives, which is what this technique estimates. "
@@ -163,7 +169,12 @@ def slices_text(found, settings, size):
     for scene, forms in found["slices"].items():
         lines += [f"![{scene}: irradiance along a row](../images/screen_space_slices_{scene}.svg)", ""]
         rows += [f"| {scene} | {r['form']} | {error_cells(r['errors'], kinds)} | {r['largest']:.1f} |" for r in forms]
-    return lines + rows + [""]
+    texts = []
+    for scene, (bounded, unbounded) in found["slices"].items():
+        before, after = (100 * form["errors"][kinds[0]]["bias"] for form in (unbounded, bounded))
+        texts.append(f"{scene}: the bound takes the largest pixel from {unbounded['largest']:.1f} to {bounded['largest']:.1f} times the truth's, and the mean "
+                     f"from {before:+.0f} to {after:+.0f} %.")
+    return lines + rows + ["", *texts, ""]
 
 
 def settings_text(found, settings):
@@ -179,7 +190,7 @@ def settings_text(found, settings):
             lines.append(f"| {scene} | {s[0]}, {s[1]}, {s[2]} | {error_cells(errors)} |")
     noises = [e["reference_noise"] for of_settings in found["settings"].values() for errors in of_settings for e in errors.values()
               if e["reference_noise"] is not None]
-    return lines + (["", f"The truths' own noise (relMSE) is {min(noises):.2g} to {max(noises):.2g}."] if noises else []) + [""]
+    return lines + (["", f"The truths' own noise (relMSE), which is in every relMSE, is {min(noises):.2g} to {max(noises):.2g}."] if noises else []) + [""]
 
 
 def gather_text(found, settings):
@@ -191,11 +202,14 @@ def gather_text(found, settings):
         fifth = f"{100 * ms[4] / sum(ms):.1f} %" if len(ms) > 4 else ""
         lines.append(f"| {s[0]}, {s[1]}, {s[2]} | " + " | ".join([f"{m:.2f}" for m in ms] + [""] * (5 - len(ms))) +
                      f" | {100 * ms[0] / sum(ms):.0f} % | {fifth} |")
-    return lines + [""]
+    shares = [milliseconds(m, ("screen_gather.level1",)) / milliseconds(m, ("screen_gather.level",)) for m in map(lambda s: of_setting(found, s), settings)]
+    return lines + ["", f"First level: {100 * min(shares):.0f} to {100 * max(shares):.0f} % of the gather.", ""]
 
 
-def at_equal_time(points, ms):
-    """relMSE on the logarithmic line through the points; None outside of them."""
+def at_no_more_time(points, ms):
+    """relMSE on the logarithmic line through the points; past the last of them, what that one has; None before the first."""
+    if ms >= points[-1][0]:
+        return points[-1][1]
     for (t0, e0, _), (t1, e1, _) in zip(points, points[1:]):
         if t0 <= ms <= t1:
             share = 0.0 if t1 == t0 else numpy.log(ms / t0) / numpy.log(t1 / t0)
@@ -209,18 +223,26 @@ def starts_text(found, starts):
     lines = ["## Figure 8: a lower start and more samples at equal cost", "",
              f"The paper: at the same cost a lower start with more samples looks better. Levels such that all reach equally far ({reach}); numbers in the "
              "plot are samples.", "", "![Error against time by start](../images/screen_space_starts.svg)", "",
-             "| scene | start, samples | ms | relMSE | at this time the next lower start has | so the lower start |", "| --- | --- | ---: | ---: | ---: | --- |"]
+             "| scene | start, samples | ms | relMSE | the next lower start in no more time | so the lower start |", "| --- | --- | ---: | ---: | ---: | --- |"]
     wins = total = 0
     for scene in found["starts"]:
         for lower, higher in zip(starts.items(), list(starts.items())[1:]):
             below = curve(found, scene, lower, kind)
             for ms, error, n in curve(found, scene, higher, kind):
-                other = at_equal_time(below, ms)
+                other = at_no_more_time(below, ms)
                 total += other is not None
                 wins += other is not None and other < error
-                verdict = "is not known: it takes no such time" if other is None else "wins" if other < error else "loses"
+                verdict = "is not that quick" if other is None else "wins" if other < error else "loses"
                 lines.append(f"| {scene} | {higher[0]}, {n} | {ms:.1f} | {error:.3g} | {'' if other is None else f'{other:.3g}'} | {verdict} |")
-    return lines + ["", f"The lower start wins {wins} of {total} pairs. relMSE against the truth on screen without shadows.", ""]
+    return lines + ["", f"The lower start wins {wins} of {total} pairs. relMSE against the truth on screen without shadows, whose own noise is in every one of them.", ""]
+
+
+def recovered(r):
+    """What part of the light that the other camera adds to the truth arrives: it is joined where that one shows the receiver itself."""
+    gained = (r["errors"]["two"]["all"]["bias"] - r["errors"]["one"]["all"]["bias"]) * r["mean"]["all"]
+    there = r["mean"]["both screens"] - r["mean"]["screen"]
+    return (f"Of the difference {100 * gained / there:.0f} % arrive: the other camera's light reaches only pixels whose own surface it shows, which is how "
+            "the paper joins cameras.")
 
 
 def cameras_text(found):
@@ -232,7 +254,7 @@ def cameras_text(found):
             means = r["mean"]
             lines += [f"![{scene}, {r['camera']} and {r['other']}](../images/{r['picture']})",
                       f"{scene}, {r['camera']}, with {r['other']}. Of the true mean irradiance the picture's own surfaces send "
-                      f"{100 * means['screen'] / means['all']:.0f} %, those that either camera shows {100 * means['both screens'] / means['all']:.0f} %.", ""]
+                      f"{100 * means['screen'] / means['all']:.0f} %, those that either camera shows {100 * means['both screens'] / means['all']:.0f} %. {recovered(r)}", ""]
             for name, errors in r["errors"].items():
                 cells = " | ".join(f"{errors[k]['relMSE']:.3g} | {100 * errors[k]['bias']:+.0f} %" for k in ("all", "both screens", "screen"))
                 rows.append(f"| {scene}, {r['camera']}, {r['other']} | {name} | {cells} |")
