@@ -185,9 +185,9 @@ bool ChartView::isBlack() const {
 void ChartView::traceOnScreen(const TruthOptions& options) {
     const studio::GBuffer& gbuffer = inputs_.gbuffer();
     JudgedTruth judged;
-    judged.truth = std::move(picks_->areAll() ? trace(gbuffer, {1}, options, options.noise, true).front()
-                                              : trace(picks_->pick(gbuffer), {1}, options,
-                                                      options.noise, true).front());
+    judged.truth = std::move(
+        picks_->areAll() ? trace(gbuffer, {1}, options, options.noise, true).front()
+                         : trace(picks_->pick(gbuffer), {1}, options, options.noise, true).front());
     complete(judged);
     onScreen_ = std::move(judged);
 }

@@ -63,8 +63,7 @@ LibraryRenderer::LibraryRenderer(const lightwell::Device& device, const Paramete
 void LibraryRenderer::fitSize(int width, int height) {
     if (width == irradiance_.width() && height == irradiance_.height()) return;
     view_.setSize(std::uint32_t(width), std::uint32_t(height));
-    for (lightwell::View& source : sources_)
-        source.setSize(std::uint32_t(width), std::uint32_t(height));
+    for (lightwell::View& source : sources_) source.setSize(std::uint32_t(width), std::uint32_t(height));
     irradiance_ = studio::PlanarBuffer(width, height, 3);
     validity_ = studio::PlanarBuffer(width, height, 1);
     ambient_ = studio::PlanarBuffer(width, height, 1);

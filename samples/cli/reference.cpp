@@ -38,8 +38,8 @@ void checkQuantity(const ReferenceOptions& options) {
         throw UsageError("--source-view: expected --on-screen with it, whose light it adds to");
     if (options.onScreen && !options.vpls.empty())
         throw UsageError("--on-screen: --vpls has senders of its own; leave one of them out");
-    const bool hasLight = !options.bounces.empty() || options.unshadowed || options.onScreen ||
-                          !options.vpls.empty();
+    const bool hasLight =
+        !options.bounces.empty() || options.unshadowed || options.onScreen || !options.vpls.empty();
     if (options.isAmbient() && hasLight)
         throw UsageError(
             "--quantity ambient-occlusion: knows no light; leave out --bounces, --unshadowed, "
@@ -51,8 +51,7 @@ std::vector<std::string> chosenLayers(const ReferenceOptions& options) {
     if (options.isAmbient()) return {"ambient"};
     if (options.bounces.empty()) throw UsageError("--bounces is required; valid: 1, 2, all");
     requireOneOf("--bounces", options.bounces, {"1", "2", "all"});
-    if (options.bounces != "1" &&
-        (options.unshadowed || options.onScreen || !options.vpls.empty()))
+    if (options.bounces != "1" && (options.unshadowed || options.onScreen || !options.vpls.empty()))
         throw UsageError(fmt::format("--bounces {}: {} knows one bounce only; expected --bounces 1",
                                      options.bounces,
                                      options.unshadowed ? "--unshadowed"
@@ -138,8 +137,7 @@ void describe(studio::Image& image, const ReferenceOptions& options, const studi
     image.metadata["size"] = options.view.size;
     if (options.unshadowed) image.metadata["unshadowed"] = "1";
     if (options.onScreen)
-        image.metadata["senders"] =
-            fmt::format("{}", fmt::join(seenBy(options, camera.name), ", "));
+        image.metadata["senders"] = fmt::format("{}", fmt::join(seenBy(options, camera.name), ", "));
     if (options.isAmbient()) {
         image.metadata["radius"] = options.radius;
         image.metadata["weighting"] = options.weighting;
@@ -151,8 +149,8 @@ void describe(studio::Image& image, const ReferenceOptions& options, const studi
 
 // The pictures whose surfaces send light; none: all surfaces do.
 std::vector<studio::PictureView> sendersSeenBy(const ReferenceOptions& options,
-                                               const studio::Scene& scene,
-                                               const studio::Camera& camera, const Size& size) {
+                                               const studio::Scene& scene, const studio::Camera& camera,
+                                               const Size& size) {
     std::vector<studio::PictureView> views;
     if (!options.onScreen) return views;
     views.push_back({camera, size.width, size.height});
@@ -246,21 +244,26 @@ void addReference(CLI::App& app) {
     command->add_option(
         "--bounces", options->bounces,
         "Required; what stands in R,G,B: 1 = one indirect bounce; 2 = first and second together; all");
-    command->add_option("--quantity", options->quantity,
-                        "irradiance, or ambient-occlusion: the open share of the hemisphere, 1 = open")
+    command
+        ->add_option("--quantity", options->quantity,
+                     "irradiance, or ambient-occlusion: the open share of the hemisphere, 1 = open")
         ->capture_default_str();
-    command->add_option("--radius", options->radius,
-                        "Of ambient-occlusion: what counts lies nearer, in heights of the picture at the "
-                        "pixel's depth")
+    command
+        ->add_option("--radius", options->radius,
+                     "Of ambient-occlusion: what counts lies nearer, in heights of the picture at the "
+                     "pixel's depth")
         ->capture_default_str();
-    command->add_option("--weighting", options->weighting,
-                        "Of ambient-occlusion: directions by their cosine, or uniform")
+    command
+        ->add_option("--weighting", options->weighting,
+                     "Of ambient-occlusion: directions by their cosine, or uniform")
         ->capture_default_str();
-    command->add_flag("--on-screen", options->onScreen,
-                      "Only surfaces that the picture shows send light (one bounce): what a technique of "
-                      "the picture alone can know");
-    command->add_option("--source-view", options->sourceViews,
-                        "Cameras whose pictures' surfaces send light too, with --on-screen")
+    command->add_flag(
+        "--on-screen", options->onScreen,
+        "Only surfaces that the picture shows send light (one bounce): what a technique of "
+        "the picture alone can know");
+    command
+        ->add_option("--source-view", options->sourceViews,
+                     "Cameras whose pictures' surfaces send light too, with --on-screen")
         ->take_all();
     command->add_flag("--unshadowed", options->unshadowed,
                       "Every lit surface along a pixel's ray sends light, none blocks it (one bounce)");

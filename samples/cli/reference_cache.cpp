@@ -233,9 +233,9 @@ std::vector<Truth> obtainTruths(const studio::RayScene& scene, const studio::GBu
                                                 fmt::join(request.bounces, ", ")));
     const bool isPart = !request.sendersSeenBy.empty();
     if (isPart && request.bounces != std::vector<int>{1})
-        throw std::invalid_argument(fmt::format(
-            "truths of {} bounces by senders that pictures show: expected 1",
-            fmt::join(request.bounces, ", ")));
+        throw std::invalid_argument(
+            fmt::format("truths of {} bounces by senders that pictures show: expected 1",
+                        fmt::join(request.bounces, ", ")));
     fs::create_directories(RunFile::directoryOf(request));
     std::string stem = fmt::format("{}-{:016x}-{:016x}", scene.scene().name, studio::hashScene(scene),
                                    studio::hashView(view));

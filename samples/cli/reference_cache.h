@@ -19,7 +19,8 @@ namespace cli {
 
 struct TruthRequest {
     std::vector<int> bounces{1};  // counts of bounces; 0: all
-    // Only surfaces that these pictures show send light (path_tracer.h); one bounce alone. Empty: all do.
+    // Only surfaces that these pictures show send light (path_tracer.h); one bounce alone. Empty: all
+    // do.
     std::vector<studio::PictureView> sendersSeenBy;
     double noise = 1e-3;          // relMSE to be reached by each
     double seconds = 0.0;         // > 0: stop after this time, whatever the noise

@@ -22,7 +22,8 @@ constexpr const char* kNoTechnique = "none";
 
 struct RenderOptions {
     ViewOptions view;
-    std::string quantity = "irradiance", technique, seed, vplsOut, device, debugView, exposure, scale = "1", step = "0";
+    std::string quantity = "irradiance", technique, seed, vplsOut, device, debugView, exposure,
+                scale = "1", step = "0";
     std::vector<std::string> assignments, outs, sourceViews;
     int frames = 9, warmup = 3, width = 0, rsmSize = 512, cascades = 1;
     bool asJson = false, printsHash = false;
@@ -81,10 +82,11 @@ void checkOptions(const RenderOptions& options) {
         !options.outs.empty() || !options.vplsOut.empty() || options.asJson || options.printsHash;
     if (!hasResult) throw UsageError("--out is required: a file name ending in .exr or .png");
     if (options.technique == kNoTechnique) {
-        if (!options.vplsOut.empty() || !options.debugView.empty() ||
-            !options.assignments.empty() || !options.sourceViews.empty() || options.isAmbient())
+        if (!options.vplsOut.empty() || !options.debugView.empty() || !options.assignments.empty() ||
+            !options.sourceViews.empty() || options.isAmbient())
             throw UsageError(
-                "--technique none has no VPLs, debug views, parameters, source views or ambient occlusion");
+                "--technique none has no VPLs, debug views, parameters, source views or ambient "
+                "occlusion");
     }
 }
 
@@ -122,10 +124,10 @@ void writeOutputs(const RenderOptions& options, const studio::Image& image, Rend
 studio::Image renderWithTechnique(const RenderOptions& options, Sequence& sequence,
                                   RenderReport& report) {
     const Parameters parameters = parseParameters(options);
-    const auto renderer = makeRenderer(parameters, sequence.at(0),
-                                       DeviceOptions{options.device, std::uint32_t(options.width),
-                                                     options.isAmbient() ? Quantity::AmbientOcclusion
-                                                                         : Quantity::Irradiance});
+    const auto renderer = makeRenderer(
+        parameters, sequence.at(0),
+        DeviceOptions{options.device, std::uint32_t(options.width),
+                      options.isAmbient() ? Quantity::AmbientOcclusion : Quantity::Irradiance});
     report.parameters = parameters.resolved();
     report.figures = measure(
         *renderer, [&](int frame) -> const RenderInputs& { return sequence.at(frame); }, options.warmup,
@@ -252,8 +254,9 @@ void addRender(CLI::App& app) {
     options->view.declare(*command)->required(false);
     command->add_option("--technique", options->technique,
                         "Required: a technique (below), or none: direct light only");
-    command->add_option("--quantity", options->quantity,
-                        "irradiance, or ambient-occlusion (1 = open) of techniques that make it")
+    command
+        ->add_option("--quantity", options->quantity,
+                     "irradiance, or ambient-occlusion (1 = open) of techniques that make it")
         ->capture_default_str();
     command->add_option("--set", options->assignments,
                         "key=value, one or several: parameters of the technique (below)");

@@ -1,8 +1,9 @@
-// Ambient occlusion by rays through the whole geometry, which a technique of the picture alone does not know.
+// Ambient occlusion by rays through the whole geometry, which a technique of the picture alone does not
+// know.
 //
-// Source: S. Zhukov, A. Iones and G. Kronin, "An Ambient Light Illumination Model" (1998), with visibility cut
-// off at a radius instead of a falloff: only so does an infinite wall have the closed form that
-// tests/unit/on_screen_test.cpp holds this to.
+// Source: S. Zhukov, A. Iones and G. Kronin, "An Ambient Light Illumination Model" (1998), with
+// visibility cut off at a radius instead of a falloff: only so does an infinite wall have the closed
+// form that tests/unit/on_screen_test.cpp holds this to.
 #include "ambient_reference.h"
 
 #include <cmath>

@@ -17,8 +17,8 @@ public:
         float density = 0.0f;  // see density()
     };
 
-    // Points that matter to `receivers` are found more often; with `occlusion`, those that they see; with
-    // `senders`, those among them.
+    // Points that matter to `receivers` are found more often; with `occlusion`, those that they see;
+    // with `senders`, those among them.
     LitPoints(const RayScene& scene, const std::vector<Surface>& receivers, bool occlusion,
               const SeenSurfaces* senders = nullptr);
     // The same choice of rays in another scene, or in this one at another time, so that a frame's points are

@@ -57,12 +57,11 @@ Film integratePaths(const RayScene& scene, const GBuffer& view, const PixelSurfa
             std::uint32_t(most / 2));
     const SeenSurfaces seen(scene, options.sendersSeenBy);
     const SeenSurfaces* senders = options.sendersSeenBy.empty() ? nullptr : &seen;
-    const Integrator integrator(
-        scene,
-        options.guide != nullptr && !onlyFirst
-            ? LitPoints(scene, *options.guide)
-            : LitPoints(scene, pixels.shown(), !options.unshadowed, senders),
-        onlyFirst ? 1 : options.maxBounces, senders);
+    const Integrator integrator(scene,
+                                options.guide != nullptr && !onlyFirst
+                                    ? LitPoints(scene, *options.guide)
+                                    : LitPoints(scene, pixels.shown(), !options.unshadowed, senders),
+                                onlyFirst ? 1 : options.maxBounces, senders);
 
     run.fill([&](const Tile& tile, std::uint32_t first, std::uint32_t last) {
         forEachPixel(tile, film, pixels, [&](std::size_t pixel) {

@@ -56,8 +56,8 @@ struct PathTracerOptions {
     // Every surface along the ray sends light, none blocks: the limit of a gather without visibility.
     // Light falls on those surfaces with its shadows. Only "bounce1" is made.
     bool unshadowed = false;
-    // Only surfaces that these pictures show send light (see SeenSurfaces): what a technique of the picture
-    // can know at best. Empty: all surfaces do. Only "bounce1" is made; goes with `unshadowed`.
+    // Only surfaces that these pictures show send light (see SeenSurfaces): what a technique of the
+    // picture can know at best. Empty: all surfaces do. Only "bounce1" is made; goes with `unshadowed`.
     std::vector<PictureView> sendersSeenBy;
     // Not irradiance: "ambient" is the share of the hemisphere that is open, in each channel.
     const AmbientOptions* ambient = nullptr;

@@ -1,5 +1,5 @@
-// Truths of what a picture can know: light from surfaces that cameras see, and ambient occlusion, against
-// Lambert's polygon formula and closed forms.
+// Truths of what a picture can know: light from surfaces that cameras see, and ambient occlusion,
+// against Lambert's polygon formula and closed forms.
 #include <catch2/catch.hpp>
 
 #include <cmath>
@@ -18,8 +18,8 @@ using test::Receivers;
 
 namespace {
 
-// Relative error of rays and lit points together: three times that of path_tracer_test.cpp, because the border of
-// what is seen cuts through the cells that lit points are drawn by.
+// Relative error of rays and lit points together: three times that of path_tracer_test.cpp, because the
+// border of what is seen cuts through the cells that lit points are drawn by.
 constexpr double kJoined = 0.006;
 constexpr int kSamples = 1 << 15;
 
@@ -153,12 +153,13 @@ TEST_CASE("senders: a checkpoint of other pictures is refused; impossible questi
     CHECK_THROWS_WITH(tracePaths(scene, point.view, options), Catch::Contains("ambient: expected"));
     options.sendersSeenBy.clear();
     ambient.radius = 0.0;
-    CHECK_THROWS_WITH(tracePaths(scene, point.view, options), Catch::Contains("ambient.radius: expected"));
+    CHECK_THROWS_WITH(tracePaths(scene, point.view, options),
+                      Catch::Contains("ambient.radius: expected"));
 }
 
 TEST_CASE("ambient occlusion: an infinite wall within the radius, a plane, a corner, both weightings") {
-    // The camera looks down from 10: R = 0.1 heights of 2 tan(fov / 2) 10 m each. A wall at x = 0 reaches
-    // past R, and another at z = 0 past it from the corner.
+    // The camera looks down from 10: R = 0.1 heights of 2 tan(fov / 2) 10 m each. A wall at x = 0
+    // reaches past R, and another at z = 0 past it from the corner.
     constexpr float kFov = 0.9f;
     const double range = 0.1 * 2.0 * std::tan(0.5 * double(kFov)) * 10.0;
     QuadScene s;
@@ -171,8 +172,7 @@ TEST_CASE("ambient occlusion: an infinite wall within the radius, a plane, a cor
     points.view.camera.target = vec3(0, 0, 0);
     points.view.camera.up = vec3(0, 0, -1);
     points.view.camera.verticalFov = kFov;
-    for (int i = 0; i < 4; ++i)
-        points.set(i, 0, vec3(float(shares[i] * range), 0, 0), vec3(0, 1, 0));
+    for (int i = 0; i < 4; ++i) points.set(i, 0, vec3(float(shares[i] * range), 0, 0), vec3(0, 1, 0));
     points.set(4, 0, vec3(1e-4f, 0, -9 + 1e-4f), vec3(0, 1, 0));  // the corner: 1/4
     studio::AmbientOptions ambient;
     ambient.radius = 0.1;
@@ -184,8 +184,8 @@ TEST_CASE("ambient occlusion: an infinite wall within the radius, a plane, a cor
         const Image image = tracePaths(s.build(), points.view, options);
         for (int i = 0; i < 5; ++i) {
             const double x = std::min(1.0, i < 4 ? shares[i] : 0.0);
-            double expected = isUniform ? 0.5 * (1.0 + x)
-                                        : 1.0 - (std::acos(x) - x * std::sqrt(1.0 - x * x)) / kPi;
+            double expected =
+                isUniform ? 0.5 * (1.0 + x) : 1.0 - (std::acos(x) - x * std::sqrt(1.0 - x * x)) / kPi;
             if (i == 4) expected = 0.25;
             CAPTURE(isUniform, i);
             // Two stratified sequences of 8192: far below a deviation of independent samples, 0.004.
