@@ -38,8 +38,11 @@ def save(results, sequence):
         axis.set_visible(False)
     for axis, key in zip(axes.flat, panels):
         draw(axis, results, sequence, shown, key)
-    axes.flat[0].legend(fontsize=7, loc="best")
-    figure.tight_layout()
+    # Above all panels: with a technique for each colour it would lie over the lines of the first.
+    across = max(1, 3 * columns)
+    lines = -(-len(shown) // across)
+    figure.legend(*axes.flat[0].get_legend_handles_labels(), fontsize=7, loc="upper center", ncol=across, frameon=False)
+    figure.tight_layout(rect=(0.0, 0.0, 1.0, 1.0 - (0.06 + 0.17 * lines) / figure.get_figheight()))
     path = results.folder / f"stability_{sequence['id']}.svg"
     figure.savefig(path, metadata={"Date": None})
     plt.close(figure)
