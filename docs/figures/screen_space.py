@@ -1,87 +1,166 @@
 #!/usr/bin/env python3
-"""Makes the figures of docs/techniques/screen_space.md: the times and errors of the settings of its paper, and the share of
-time that each level takes.
+"""Makes docs/techniques/screen_space_figures.md and its pictures: figures 4 to 9 of Soler et al. 2009, measured here.
 
-    docs/figures/screen_space.py [--lightwell build/release/bin/lightwell] [--work build/figures]
-                                 [--size 1280x720] [--scenes cornell sibenik sponza_crytek] [--spp 16]
+    docs/figures/screen_space.py [--lightwell build/release/bin/lightwell] [--work build/figures] [--size 640x360]
+                                 [--scenes cornell sponza_crytek] [--spp 32]
+                                 [--part levels slices settings starts cameras times page]
 
-Writes docs/techniques/screen_space_figures.md. Images stay in --work and are made again only when missing.
-Scenes other than the shipped ones are looked for in LIGHTWELL_SCENES.
+--size is that of the pictures that are judged; times are those of 1280x720. All parts unless --part names some: `times` takes under
+90 seconds and wants nothing else running; the others render and judge, on however busy a machine, scene by scene; `page` writes what
+all of them found, in this call or before, which --work keeps. Truths stay there and are traced again only when missing. Scenes other
+than the shipped ones are looked for in LIGHTWELL_SCENES. Needs numpy and matplotlib.
 """
 import json
 import os
 
+import screen_space_page
 from program import ROOT, caller, read_options
 
 # Soler et al. 2009, fig. 6: setting, and the totals that they give for a GTX 260 and an 8800 GTS.
 SETTINGS = [("quarter", 4, 64, 4.6, 13.9), ("quarter", 4, 256, 11.2, 33.6), ("half", 4, 64, 10.5, 34.8),
             ("half", 4, 256, 32.6, 110.6), ("half", 5, 64, 10.55, 35.1)]
+# Fig. 8: levels such that all reach equally far, 1280 pixels of a picture of 720 rows.
+STARTS = {"quarter": 4, "half": 5, "full": 6}
+SAMPLES = [16, 32, 64, 256]
+TIMED_SCENE, TIMED_SIZE = "cornell", "1280x720"
+SLICE_SIZE = "720x720"
+PARTS = ["levels", "slices", "settings", "starts", "cameras"]
+EASY = {"cornell": 2}  # scenes whose paths cost little: so many times the paths, for errors that are smaller there
+# Fig. 5: its radius of 40 texels; where the first level starts is not said there.
+SLICE = ["start=half", "levels=4", "samples=64", "radius=40"]
+SLICE_ROW = 0.62  # of the height, from above: across both side walls and, in the Cornell box, the tall block
+# Fig. 9: a picture that misses the light which another camera sees. Scene: camera, the other camera.
+CAMERAS = {"cornell": [("front", "inside")], "sponza_crytek": [("suggested_camera", "suggested_camera_2")]}
+ON_SCREEN = ["screen, no shadows", "screen"]
+TRUTHS = {"screen, no shadows": ["--on-screen", "--unshadowed"], "screen": ["--on-screen"], "all": []}
+
+
+class Bench:
+    """What the figures share: renders of the technique, truths, comparisons."""
+
+    def __init__(self, options):
+        self.options, self.call = options, caller(options.lightwell)
+        # Each frame alone, where the technique has a history: the paper's figures are taken without.
+        self.plain = []
+        known = self.render("cornell", [], "64x64", "known")[1]["parameters"]
+        if "history" in known:
+            self.plain = ["history=0"]
+
+    def render(self, scene, settings, size, name="picture", frames=1, warmup=0, extra=()):
+        exr = self.options.work / f"screen_{name}.exr"
+        sets = [part for setting in [*self.plain, *settings] for part in ("--set", setting)]
+        text = self.call("render", scene, "--technique", "screen_space", *sets, "--size", size, "--frames", frames, "--warmup",
+                         warmup, "--rsm-size", 16, "--out", exr, "--json", *extra)
+        return exr, json.loads(text)
+
+    def paths(self, scene):
+        return self.options.spp * EASY.get(scene, 1)
+
+    def truth(self, scene, kind, size, extra=()):
+        spp = self.paths(scene)
+        name = "_".join(["truth", scene, kind.replace(", ", "_").replace(" ", "_"), size, f"{spp}spp",
+                         *(word.strip("-") for word in extra)])
+        exr = self.options.work / f"{name}.exr"
+        if not exr.exists():
+            self.call("reference", scene, "--bounces", 1, *TRUTHS[kind], "--spp", spp, "--size", size, "--compact",
+                      "--out", exr, *extra)
+        return exr
+
+    def errors(self, exr, truth):
+        found = json.loads(self.call("compare", exr, truth, "--json"))
+        return {key: found[key] for key in ("relMSE", "nrmse", "bias", "p99", "reference_noise")}
 
 
 def main():
-    options = read_options(__doc__, ["cornell", "sibenik", "sponza_crytek"], 16)
-    work, call = options.work, caller(options.lightwell)
-
-    def render(scene, *settings, extra=()):
-        """Renders once per set of settings; returns (EXR, the report)."""
-        name = "screen_" + scene + "_" + "_".join(settings).replace("=", "")
-        exr, report = work / f"{name}.exr", work / f"{name}.json"
-        if not (exr.exists() and report.exists()):
-            sets = [part for setting in settings for part in ("--set", setting)]
-            text = call("render", scene, "--technique", "screen_space", *sets, "--size", options.size, "--frames", 15,
-                        "--warmup", 3, "--out", exr, "--json", *extra)
-            report.write_text(json.dumps({**json.loads(text), "load_average": os.getloadavg()[0]}))
-        return exr, json.loads(report.read_text())
-
-    def reference(scene):
-        exr = work / f"{scene}_bounce1.exr"
-        if not exr.exists():
-            call("reference", scene, "--bounces", 1, "--spp", options.spp, "--size", options.size, "--out", exr)
-        return exr
-
-    lines = ["<!-- Made by docs/figures/screen_space.py; do not edit. -->", ""]
-    lines += settings_table(options, call, render, reference)
-    lines += level_table(options, render)
-    out = ROOT / "docs/techniques/screen_space_figures.md"
-    out.write_text("\n".join(lines) + "\n")
-    print(out)
+    options = read_options(__doc__, ["cornell", "sponza_crytek"], 32, "640x360", parts=(*PARTS, "times", "page"))
+    kept = options.work / "screen_space_figures.json"
+    found = json.loads(kept.read_text()) if kept.exists() else {}
+    bench = Bench(options) if set(options.part) - {"page"} else None
+    makers = {"levels": level_pictures, "slices": slices, "settings": setting_errors, "starts": start_errors, "cameras": camera_errors}
+    for part in [p for p in PARTS if p in options.part]:
+        for scene in options.scenes:
+            found.setdefault(part, {})[scene] = makers[part](bench, scene)
+            found.setdefault("spp", {})[scene] = bench.paths(scene)
+            found["size"] = options.size
+            kept.write_text(json.dumps(found))
+    if "times" in options.part:
+        found["times"] = times(bench)
+        kept.write_text(json.dumps(found))
+    if "page" in options.part:
+        screen_space_page.write(found, ROOT, SETTINGS, STARTS, SLICE, SLICE_SIZE)
 
 
 def sets_of(setting):
     start, levels, samples, *_ = setting
-    return f"start={start}", f"levels={levels}", f"samples={samples}"
+    return [f"start={start}", f"levels={levels}", f"samples={samples}"]
 
 
-def milliseconds(report, *prefixes):
-    return sum(p["ms"] for p in report["passes"] if p["name"].startswith(prefixes))
+def level_pictures(bench, scene):
+    """Fig. 4: a level's light is what it adds to the picture of the levels before it: up-sampling and adding are linear."""
+    count = 4
+    pictures = [bench.render(scene, [f"levels={n}"], bench.options.size, f"{scene}_levels{n}")[0] for n in range(1, count + 1)]
+    return screen_space_page.draw_levels(pictures, ROOT / f"docs/images/screen_space_levels_{scene}.png")
 
 
-def settings_table(options, call, render, reference):
-    """Times of the paper's five settings by step, and their errors against one-bounce truth."""
-    scene = options.scenes[-1]
-    reports = [render(scene, *sets_of(s))[1] for s in SETTINGS]
-    lines = [f"### The paper's settings ({scene}, {options.size}; median of 15 frames, ms)", "",
-             f"{reports[0]['device']}, {reports[0]['platform']} {reports[0]['driver']}, {reports[0]['width']} lanes; load average "
-             f"{max(r['load_average'] for r in reports):.1f} at most. The paper's totals: GTX 260 / 8800 GTS.", "",
-             "| start, levels, samples | pyramid | gather | combine | total | paper's total | " +
-             " | ".join(f"relMSE, {s}" for s in options.scenes) + " |",
-             "| --- |" + " ---: |" * (5 + len(options.scenes))]
-    for setting, report in zip(SETTINGS, reports):
-        errors = [json.loads(call("compare", render(s, *sets_of(setting))[0], reference(s), "--json"))["relMSE"]
-                  for s in options.scenes]
-        lines.append(f"| {setting[0]}, {setting[1]}, {setting[2]} | {milliseconds(report, 'mip_pyramid'):.2f} | "
-                     f"{milliseconds(report, 'screen_gather'):.2f} | {milliseconds(report, 'screen_combine'):.2f} | "
-                     f"{report['total_ms']:.2f} | {setting[3]} / {setting[4]} | " + " | ".join(f"{e:.3g}" for e in errors) + " |")
-    return lines + [""]
+def slices(bench, scene):
+    """Fig. 5: bounded, unbounded and the truths, along a row, and their errors."""
+    pictures = {name: bench.render(scene, [*SLICE, f"bounded={bounded}"], SLICE_SIZE, name)[0]
+                for name, bounded in (("bounded", "on"), ("unbounded", "off"))}
+    truths = {kind: bench.truth(scene, kind, SLICE_SIZE) for kind in ON_SCREEN}
+    screen_space_page.draw_slices(pictures, truths, SLICE_ROW, ROOT / f"docs/images/screen_space_slices_{scene}.svg")
+    return [{"form": name, "errors": {kind: bench.errors(exr, truth) for kind, truth in truths.items()},
+             "largest": screen_space_page.largest(exr) / screen_space_page.largest(truths["screen, no shadows"])}
+            for name, exr in pictures.items()]
 
 
-def level_table(options, render):
-    """Gather time by level, of half resolution with five levels (the paper's fig. 7 has half, 64 samples)."""
-    report = render(options.scenes[-1], *sets_of(SETTINGS[4]))[1]
-    levels = [(n, milliseconds(report, f"screen_gather.level{n}")) for n in range(1, 6)]
-    total = sum(ms for _, ms in levels)
-    return [f"### Gather by level ({options.scenes[-1]}, half, 5 levels, 64 samples)", "", "| level | ms | share |",
-            "| ---: | ---: | ---: |"] + [f"| {n} | {ms:.2f} | {100 * ms / total:.0f} % |" for n, ms in levels] + [""]
+def judged(bench, scene, settings, kinds=tuple(TRUTHS)):
+    exr, _ = bench.render(scene, settings, bench.options.size)
+    return {kind: bench.errors(exr, bench.truth(scene, kind, bench.options.size)) for kind in kinds}
+
+
+def setting_errors(bench, scene):
+    """Fig. 6, errors."""
+    return [judged(bench, scene, sets_of(s)) for s in SETTINGS]
+
+
+def start_errors(bench, scene):
+    """Fig. 8, errors."""
+    return {start: {str(n): judged(bench, scene, sets_of((start, levels, n)), ON_SCREEN[:1]) for n in SAMPLES}
+            for start, levels in STARTS.items()}
+
+
+def camera_errors(bench, scene):
+    """Fig. 9: with the other camera and without, against all light, what the picture shows, and what both show. The camera is
+    the scene's first, whose truths are those of the other figures."""
+    rows, size = [], bench.options.size
+    for camera, other in CAMERAS.get(scene, []):
+        view, both = ["--camera", camera], ["--camera", camera, "--source-view", other]
+        truths = {"all": bench.truth(scene, "all", size), "screen": bench.truth(scene, "screen", size),
+                  "both screens": bench.truth(scene, "screen", size, ["--source-view", other])}
+        pictures = {"one": bench.render(scene, [], size, f"{scene}_one", extra=view)[0],
+                    "two": bench.render(scene, ["cameras=on"], size, f"{scene}_two", extra=both)[0]}
+        name = f"screen_space_cameras_{scene}_{other}.png"
+        screen_space_page.draw_cameras([*pictures.values(), truths["both screens"], truths["all"]], ROOT / "docs/images" / name)
+        rows.append({"camera": camera, "other": other, "picture": name, "mean": {k: screen_space_page.mean(t) for k, t in truths.items()},
+                     "errors": {p: {t: bench.errors(exr, truth) for t, truth in truths.items()} for p, exr in pictures.items()}})
+    return rows
+
+
+def times(bench):
+    """Figs. 6, 7 and 8: medians of 5 frames, of three rounds over all settings the quickest: what else the machine does comes and goes."""
+    settings = {tuple(s[:3]) for s in SETTINGS} | {(start, levels, n) for start, levels in STARTS.items() for n in SAMPLES if
+                                                   start != "full" or n <= 64}
+    before = os.getloadavg()[0]
+    best = {}
+    for setting in 3 * sorted(settings):
+        _, report = bench.render(TIMED_SCENE, sets_of(setting), TIMED_SIZE, frames=5, warmup=2)
+        if setting not in best or report["total_ms"] < best[setting]["total"]:
+            best[setting] = {"setting": list(setting), "total": report["total_ms"],
+                             "passes": {p["name"]: p["ms"] for p in report["passes"]}}
+    measured = list(best.values())
+    device = f"{report['device']}, {report['platform']} {report['driver']}, {report['width']} lanes"
+    return {"measured": measured, "device": device, "scene": TIMED_SCENE, "size": TIMED_SIZE,
+            "load": [before, os.getloadavg()[0]]}
 
 
 if __name__ == "__main__":

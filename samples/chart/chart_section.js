@@ -44,6 +44,18 @@ const ticksOf = scale => {
 };
 const plainTick = value => d3.format("~g")(value);
 
+// Of names over each other the first stays; zooming in shows the others.
+function hideOverlapping(names) {
+  const taken = [];
+  names.style("display", null).each(function () {
+    const box = this.getBBox();
+    const isFree = taken.every(other => box.x > other.x + other.width || other.x > box.x + box.width ||
+      box.y > other.y + other.height || other.y > box.y + box.height);
+    if (isFree) taken.push(box);
+    else d3.select(this).style("display", "none");
+  });
+}
+
 function drawChart(section, group) {
   const points = group.points.filter(point => errorOf(point) !== null);
   const hidden = group.points.length - points.length;
@@ -79,6 +91,7 @@ function drawChart(section, group) {
     yAxis.call(d3.axisLeft(y).tickValues(ticksOf(y)).tickFormat(plainTick));
     marks.attr("transform", point => `translate(${x(timeOf(point))},${y(errorOf(point))})`);
     names.attr("x", point => x(timeOf(point)) + 8).attr("y", point => y(errorOf(point)) - 6);
+    hideOverlapping(names);
     const steps = onFront.map(point => [x(timeOf(point)), y(errorOf(point))]);
     if (steps.length) {  // from the upper edge down, and to the right edge
       steps.unshift([steps[0][0], SIZE.top]);
@@ -172,7 +185,9 @@ const COLUMNS = [
     [key, p => p.errors.own && p.errors.own[key], "own", data.metrics[key].onAll ? "drawn" : "pictureDrawn"]),
   ["noise", p => p.errors.own && p.errors.own.noise],
   ["relMSE, all bounces", p => p.errors.all && p.errors.all.relMSE, "all", "drawn"],
-  ["bias, all bounces", p => p.errors.all && p.errors.all.bias, "all", "drawn"]];
+  ["bias, all bounces", p => p.errors.all && p.errors.all.bias, "all", "drawn"],
+  ["relMSE, on screen", p => p.errors.screen && p.errors.screen.relMSE, "screen", "drawn"],
+  ["bias, on screen", p => p.errors.screen && p.errors.screen.bias, "screen", "drawn"]];
 let sorted = {column: -1, up: true};
 
 function fillTable() {

@@ -12,7 +12,8 @@ host's output, against its error. Left and low is good; the grey line is the Par
 Points with a ring are named settings. Wheel and drag zoom a chart, a double click shows all again; a click on
 a point shows its picture, where there is one, below.</p>
 <p>A technique is judged against the truth of as many bounces as it models; the choice below compares all of them with the
-light of all bounces. No point is drawn where the truth's own noise exceeds a tenth of its error. {judged}</p>
+light of all bounces, or those that take their light from the picture alone with the light of what the view shows, where that was
+traced: the most that they can know. No point is drawn where the truth's own noise exceeds a tenth of its error. {judged}</p>
 <form id="choices">
   <label>error <select id="metric"></select></label>
   <label>against <select id="truth"></select></label>
@@ -33,7 +34,7 @@ A click on a head sorts. Figures in grey are not drawn: the truth is too noisy f
 
 
 def make(folder):
-    from plots import colour_of, write_plots  # once the results are known to be right: matplotlib takes a second
+    from plots import colour_of, present_truths, write_plots  # once the results are known to be right: matplotlib takes a second
     results = Results(folder)
     means, left = means_over_views(results)
     data = {"views": [describe_view(results, view) for view in results.views],
@@ -41,7 +42,7 @@ def make(folder):
                      "points": [describe_point(p) for p in means], "fronts": fronts(results, means)},
             "colours": {t: colour_of(results, t) for t in results.techniques},
             "metrics": {key: {"title": title, "onAll": on_all} for key, (title, on_all, _) in METRICS.items()},
-            "truths": TRUTHS, "sharedViews": len(results.shared), "times": results.times, "time": results.time()}
+            "truths": {t: TRUTHS[t] for t in present_truths(results.points)}, "sharedViews": len(results.shared), "times": results.times, "time": results.time()}
     body = BODY.format(judged=judged_text(results), left=left_out(left), truths=truth_table(results), head=head(results))
     script = (HERE / "chart_section.js").read_text(encoding="utf-8")
     return Section("Speed against accuracy", body, data, script, written=write_plots(results))
@@ -131,6 +132,11 @@ def truth_table(results):
             rows.append((view["scene"], view["camera"], truth["bounces"] or "all", truth["samples"], f"{truth['noise']:.2e}",
                          f"{sum(not is_drawn(p, kind) for p in points)} of {len(points)}",
                          truth.get("picture_samples", truth["samples"]), f"{truth.get('picture_noise', truth['noise']):.2e}"))
+        if view.get("on_screen"):
+            points = [p for p in results.of_view(view) if errors(p, "screen")]
+            truth = view["on_screen"]
+            rows.append((view["scene"], view["camera"], "1, of what the view shows", truth["samples"], f"{truth['noise']:.2e}",
+                         f"{sum(not is_drawn(p, 'screen') for p in points)} of {len(points)}", "", ""))
     return table(["scene", "camera", "bounces", "samples per judged pixel", "noise (relMSE)", "points too accurate for it",
                   "samples per pixel of whole pictures", "their noise"], rows)
 

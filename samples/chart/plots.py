@@ -5,17 +5,17 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
+from matplotlib.text import Text  # noqa: E402
 from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter  # noqa: E402
 
-from results import TRUTHS, counted, front, is_drawn, means_over_views, value  # noqa: E402
+from looks import looks  # noqa: E402
+from results import TRUTHS, counted, errors, front, is_drawn, means_over_views, value  # noqa: E402
 
-# Okabe and Ito's colours: told apart by most colour-blind readers, too.
-COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#F0E442"]
 MARKERS = {0: "D", 1: "o", 2: "s"}  # by bounces
 
 
 def colour_of(results, technique):
-    return COLOURS[results.techniques.index(technique) % len(COLOURS)]
+    return looks(results.techniques)[technique][0]
 
 
 def write_plots(results):
@@ -44,6 +44,8 @@ def save(results, name, rows):
         draw(results, axis, *chart)
     figure.text(0.01, 0.02 / len(rows), caption(results), fontsize=6.5, color="0.4")
     figure.tight_layout(rect=(0, 0.05 / len(rows), 1, 1))
+    for axis, (_, points, truth) in zip(axes.flat, [chart for row in rows for chart in row]):
+        name_points(results, axis, points, truth)  # at last: what overlaps is known once everything has its place
     written = []
     for extension in ("svg", "png"):
         path = results.folder / f"{name}.{extension}"
@@ -86,6 +88,35 @@ def draw_front(axis, places):
     axis.plot(xs, ys, color="0.35", linewidth=1.0, zorder=0, drawstyle="steps-post", label="Pareto front")
 
 
+# Where a name may stand beside its point, the nearest places first: points right and up, and which of its ends is there.
+NAME_PLACES = [(x * side, y, "left" if side > 0 else "right") for y, x in ((5, 5), (-10, 5), (15, 8), (-20, 8), (25, 12), (-30, 12), (35, 16), (-40, 16),
+                                                                          (48, 20), (-52, 20), (62, 24), (-64, 24)) for side in (1, -1)]
+
+
+def name_points(results, axis, points, truth):
+    """The names of settings, none over another: the first free place near its point, with a line to it from afar; else none,
+    which the report's table and its interactive charts still have."""
+    renderer = axis.figure.canvas.get_renderer()
+    frame, taken = axis.get_window_extent(renderer), []
+    legend = axis.get_legend()
+    if legend is not None:
+        taken.append(legend.get_window_extent(renderer))
+    named = [p for p in points if p["label"] and value(p, truth=truth) is not None]
+    for point in sorted(named, key=lambda p: p["ms"][results.time()]):
+        at = (point["ms"][results.time()], value(point, truth=truth))
+        colour = colour_of(results, point["technique"])
+        for x, y, end in NAME_PLACES:
+            text = axis.annotate(point["label"], at, xytext=(x, y), textcoords="offset points", fontsize=7, color=colour, ha=end,
+                                 arrowprops=None if abs(y) <= 10 else {"arrowstyle": "-", "color": colour, "linewidth": 0.5, "shrinkB": 4})
+            text.update_positions(renderer)
+            box = Text.get_window_extent(text, renderer)  # of the letters alone: lines may cross
+            inside = frame.x0 <= box.x0 and box.x1 <= frame.x1 and frame.y0 <= box.y0 and box.y1 <= frame.y1
+            if inside and not any(box.overlaps(other) for other in taken):
+                taken.append(box)
+                break
+            text.remove()
+
+
 def draw(results, axis, title, points, truth):
     time = results.time()
     place = lambda p: (p["ms"][time], value(p, truth=truth))  # noqa: E731
@@ -105,13 +136,12 @@ def draw(results, axis, title, points, truth):
         draw_front(axis, [place(p) for p in best])
     for point in drawn:
         if point["label"]:
-            axis.annotate(point["label"], place(point), xytext=(5, 5), textcoords="offset points", fontsize=7,
-                          color=colour_of(results, point["technique"]))
             axis.scatter(*[[c] for c in place(point)], s=60, facecolors="none",
                          edgecolors=colour_of(results, point["technique"]), linewidths=1.0)
-    hidden = sum(1 for p in points if not is_drawn(p, truth))
+    judged = [p for p in points if errors(p, truth)]
+    hidden = sum(1 for p in judged if not is_drawn(p, truth))
     if hidden:
-        axis.set_title(f"{hidden} of {len(points)} not drawn: the truth is too noisy for them", loc="right", fontsize=7,
+        axis.set_title(f"{hidden} of {len(judged)} not drawn: the truth is too noisy for them", loc="right", fontsize=7,
                        color="0.4")
     label_axis(axis.xaxis, axis.get_xlim())
     label_axis(axis.yaxis, axis.get_ylim())

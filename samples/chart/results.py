@@ -14,7 +14,8 @@ METRICS = {
     "score": ("10 less the score of the composite", False, lambda e: 10.0 - e["score"]),
     "flip": ("FLIP of the composite", False, lambda e: e["flip"]),
 }
-TRUTHS = {"own": "truth of the bounces that a technique models", "all": "truth of all bounces"}
+TRUTHS = {"own": "truth of the bounces that a technique models", "all": "truth of all bounces",
+          "screen": "truth of one bounce from what the view shows"}
 TIMES = {"median": "median ms, host clock", "p99": "99th percentile ms, host clock",
          "processor": "processor ms per thread"}
 BUSY = 1.25  # load average for each thread above which the host's clock tells more of other work than of ours

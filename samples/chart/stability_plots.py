@@ -5,7 +5,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 from matplotlib.ticker import MaxNLocator  # noqa: E402
 
-from plots import COLOURS  # noqa: E402
+from looks import looks  # noqa: E402
 from stability_results import COLUMNS, INDICES  # noqa: E402
 
 PANELS = ["nrmse", "bias", *INDICES]
@@ -38,8 +38,11 @@ def save(results, sequence):
         axis.set_visible(False)
     for axis, key in zip(axes.flat, panels):
         draw(axis, results, sequence, shown, key)
-    axes.flat[0].legend(fontsize=7, loc="best")
-    figure.tight_layout()
+    # Above all panels: with a technique for each colour it would lie over the lines of the first.
+    across = max(1, 3 * columns)
+    lines = -(-len(shown) // across)
+    figure.legend(*axes.flat[0].get_legend_handles_labels(), fontsize=7, loc="upper center", ncol=across, frameon=False)
+    figure.tight_layout(rect=(0.0, 0.0, 1.0, 1.0 - (0.06 + 0.17 * lines) / figure.get_figheight()))
     path = results.folder / f"stability_{sequence['id']}.svg"
     figure.savefig(path, metadata={"Date": None})
     plt.close(figure)
@@ -49,8 +52,8 @@ def save(results, sequence):
 def draw(axis, results, sequence, shown, key):
     x = axis_values(axis, sequence, key)
     for technique, result in shown:
-        colour = COLOURS[results.techniques.index(technique) % len(COLOURS)]
-        axis.plot(x, series(result, key), color=colour, linewidth=1.2, marker=".", markersize=3, label=technique)
+        colour, line, marker = looks(results.techniques)[technique]
+        axis.plot(x, series(result, key), color=colour, linestyle=line, linewidth=1.2, marker=marker, markersize=2.5, label=technique)
         floors = series(result, key, floor=True)
         if has_any(floors):
             axis.plot(x, floors, color=colour, linewidth=0.9, linestyle=":")

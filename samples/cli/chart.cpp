@@ -118,6 +118,9 @@ void addChart(CLI::App& app) {
                       "Trace the truths into the cache, measure nothing");
     command->add_flag("--no-all-bounces", options.skipsAllBounces,
                       "Judge only against as many bounces as a technique models");
+    command->add_flag(
+        "--on-screen", options.truth.onScreen,
+        "Judge techniques of the picture alone against the light of what the view shows as well");
     command->add_option(
         "--truth-cache", options.truth.directory,
         "Folder of the truths; default: references/ in LIGHTWELL_CACHE_DIR or the user's cache");

@@ -85,7 +85,7 @@ Json irradianceErrors(const JudgedPicture& picture, const ChartView& view, const
 
 Json judge(const JudgedPicture& picture, const ChartView& view, const std::string& folder) {
     const JudgedTruth& own = view.truths().at(picture.bounces);
-    Json json{{"own", nullptr}, {"all", nullptr}, {"images", Json::object()}};
+    Json json{{"own", nullptr}, {"all", nullptr}, {"screen", nullptr}, {"images", Json::object()}};
     const studio::Image display =
         studio::toneMap(lit(picture.irradiance, own.picture().image), own.exposure);
     json["images"]["picture"] = writePreview(folder, picture.imageName, display);
@@ -108,6 +108,9 @@ Json judge(const JudgedPicture& picture, const ChartView& view, const std::strin
     }
     if (const auto all = view.truths().find(0); all != view.truths().end() && !all->second.isBlack)
         json["all"] = irradianceErrors(picture, view, all->second);
+    const JudgedTruth* onScreen = view.onScreen();
+    if (onScreen != nullptr && !onScreen->isBlack && picture.knowsPictureOnly)
+        json["screen"] = irradianceErrors(picture, view, *onScreen);
     return json;
 }
 

@@ -16,12 +16,14 @@ constexpr double kNoiseShare = 0.1;
 struct JudgedPicture {
     studio::Image irradiance;  // R, G, B
     int bounces = 1;           // that the technique models
+    bool knowsPictureOnly = false;
     std::string imageName;     // of the previews, without folder and extension
 };
 
 // "own": against the truth of as many bounces as the technique models; "all" against all bounces, of the
-// irradiance alone; null where the view has no such truth, or a black one; "images": previews written
-// below `folder`. Touches nothing shared: pictures of one view may be judged in parallel.
+// irradiance alone; "screen": of a technique of the picture alone, against the light of what the view
+// shows; null where the view has no such truth, or a black one; "images": previews written below
+// `folder`. Touches nothing shared: pictures of one view may be judged in parallel.
 nlohmann::ordered_json judge(const JudgedPicture& picture, const ChartView& view,
                              const std::string& folder);
 

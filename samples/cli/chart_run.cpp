@@ -194,6 +194,9 @@ void Charter::traceTruths(ChartView& view) {
     for (const auto& [count, judged] : view.truths())
         note += fmt::format("{}{}: {} samples per pixel, noise {:.2e}", note.empty() ? "" : "; ",
                             bouncesText(count), judged.truth.samples, judged.truth.noise);
+    if (view.onScreen() != nullptr)
+        note += fmt::format("; one bounce of what the view shows: {} samples per pixel, noise {:.2e}",
+                            view.onScreen()->truth.samples, view.onScreen()->truth.noise);
     line.finish(note);
 }
 
@@ -207,12 +210,18 @@ Json Charter::describeView(const ChartView& view) {
                           {"picture_noise", judged.picture().noise},
                           {"picture_samples", judged.picture().samples},
                           {"shipped", judged.isShipped}});
+    Json onScreen;
+    if (view.onScreen() != nullptr)
+        onScreen = {{"noise", view.onScreen()->truth.noise},
+                    {"samples", view.onScreen()->truth.samples},
+                    {"name", view.onScreen()->truth.name}};
     return {{"id", view.id()},
             {"scene", view.sceneName()},
             {"camera", view.cameraName()},
             {"size", {options_.width, options_.height}},
             {"rsm_texels", view.inputs().rsmTexelCount()},
             {"truths", truths},
+            {"on_screen", onScreen},
             {"images", writeViewPictures(view, options_.folder)}};
 }
 
@@ -233,6 +242,8 @@ std::string Charter::truthKey(const ChartView& view, const ChartedPoint& point) 
         if (const auto truth = view.truths().find(bounces); truth != view.truths().end())
             text += fmt::format(" {} {} {}", truth->second.truth.name, truth->second.truth.samples,
                                 truth->second.picture().samples);
+    if (view.onScreen() != nullptr && knowsPictureOnly(point.technique))
+        text += fmt::format(" {} {}", view.onScreen()->truth.name, view.onScreen()->truth.samples);
     return shortHash(text);
 }
 
@@ -271,6 +282,7 @@ void Charter::chartPoint(const ChartView& view, const ChartedPoint& point,
     }
     made.point["truth"] = truth;
     made.picture.bounces = made.point["bounces"];
+    made.picture.knowsPictureOnly = knowsPictureOnly(point.technique);
     made.picture.imageName = made.point["id"];
     made.picture.irradiance = studio::Image(options_.width, options_.height);
     addLayer(made.picture.irradiance, "", renderer->irradiance());
@@ -281,7 +293,8 @@ void Charter::judgeAll(const ChartView& view, std::vector<Pending>& pending) {
     const Stopwatch watch(seconds_.judging);
     studio::parallelFor(pending.size(), 0, [&](std::size_t i) {
         const Json judged = judge(pending[i].picture, view, options_.folder);
-        pending[i].point["errors"] = {{"own", judged["own"]}, {"all", judged["all"]}};
+        pending[i].point["errors"] = {
+            {"own", judged["own"]}, {"all", judged["all"]}, {"screen", judged["screen"]}};
         pending[i].point["images"] = judged["images"];
     });
     for (Pending& each : pending) results_.putPoint(std::move(each.point));

@@ -137,6 +137,7 @@ bool ChartView::loadShipped(JudgedTruth& judged) const {
 void ChartView::obtainTruths(const std::set<int>& bounces, const TruthOptions& options) {
     const studio::GBuffer& gbuffer = inputs_.gbuffer();
     picks_.emplace(gbuffer.width, gbuffer.height, options.block);
+    if (options.onScreen) traceOnScreen(options);
     std::vector<int> wanted;
     for (const int count : bounces) {
         JudgedTruth shipped;
@@ -162,8 +163,10 @@ void ChartView::obtainTruths(const std::set<int>& bounces, const TruthOptions& o
 }
 
 std::vector<Truth> ChartView::trace(const studio::GBuffer& gbuffer, const std::vector<int>& bounces,
-                                    const TruthOptions& options, double noise) const {
+                                    const TruthOptions& options, double noise, bool onScreen) const {
     TruthRequest request;
+    const studio::GBuffer& whole = inputs_.gbuffer();  // picks have other sides, hence another aspect
+    if (onScreen) request.sendersSeenBy = {{whole.camera, whole.width, whole.height}};
     request.bounces = bounces;
     request.noise = noise;
     request.seconds = options.seconds;
@@ -178,20 +181,35 @@ bool ChartView::isBlack() const {
                        [](const auto& truth) { return truth.second.isBlack; });
 }
 
+// Its composite is not judged, so that the judged pixels are enough.
+void ChartView::traceOnScreen(const TruthOptions& options) {
+    const studio::GBuffer& gbuffer = inputs_.gbuffer();
+    JudgedTruth judged;
+    judged.truth = std::move(
+        picks_->areAll() ? trace(gbuffer, {1}, options, options.noise, true).front()
+                         : trace(picks_->pick(gbuffer), {1}, options, options.noise, true).front());
+    complete(judged);
+    onScreen_ = std::move(judged);
+}
+
 void ChartView::addTruth(JudgedTruth judged) {
+    complete(judged);
+    truths_[judged.truth.bounces] = std::move(judged);
+}
+
+void ChartView::complete(JudgedTruth& judged) const {
     judged.isBlack = true;
     for (const char* channel : {"R", "G", "B"})
         for (const float value : judged.picture().image.plane(channel))
             judged.isBlack = judged.isBlack && value == 0.0f;
     studio::Image layers(inputs_.gbuffer().width, inputs_.gbuffer().height);
     addLayers(layers);
-    const auto complete = [](studio::Image& image, studio::Image from) {
+    const auto addTo = [](studio::Image& image, studio::Image from) {
         for (auto& [name, plane] : from.channels) image.channels[name] = std::move(plane);
     };
-    complete(judged.truth.image, picks_->pick(layers));
-    if (judged.whole) complete(judged.whole->image, std::move(layers));
+    addTo(judged.truth.image, picks_->pick(layers));
+    if (judged.whole) addTo(judged.whole->image, std::move(layers));
     judged.exposure = studio::autoExposure(studio::composite(judged.picture().image));
-    truths_[judged.truth.bounces] = std::move(judged);
 }
 
 }  // namespace cli

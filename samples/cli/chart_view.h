@@ -21,6 +21,7 @@ struct TruthOptions {
     double noise = 1e-3;        // relMSE at the judged pixels
     double pictureNoise = 0.0;  // of whole pictures, where the judged pixels are fewer; 0: none are made
     double seconds = 0.0;       // for each view, 0: no limit
+    bool onScreen = false;      // one bounce from what the view shows, too
     bool takesShipped = false;  // shipped one-bounce references where they fit
     bool takesKept = false;     // those in the cache, whatever their noise
     std::string directory;      // of the cache
@@ -49,6 +50,8 @@ public:
 
     // Traces or loads the truths of these counts of bounces, with the layers that a comparison needs.
     void obtainTruths(const std::set<int>& bounces, const TruthOptions& options);
+    // One bounce from surfaces that the view shows, at the judged pixels; null: not asked for.
+    const JudgedTruth* onScreen() const { return onScreen_ ? &*onScreen_ : nullptr; }
     const std::map<int, JudgedTruth>& truths() const { return truths_; }
     bool isBlack() const;  // in all its truths
     const PixelPicks& picks() const { return *picks_; }  // since obtainTruths: the judged pixels
@@ -58,14 +61,17 @@ public:
 private:
     bool loadShipped(JudgedTruth& truth) const;
     void addTruth(JudgedTruth judged);
+    void complete(JudgedTruth& judged) const;
+    void traceOnScreen(const TruthOptions& options);
     std::vector<Truth> trace(const studio::GBuffer& gbuffer, const std::vector<int>& bounces,
-                             const TruthOptions& options, double noise) const;
+                             const TruthOptions& options, double noise, bool onScreen = false) const;
     void addLayers(studio::Image& image) const;
 
     std::shared_ptr<studio::RayScene> scene_;
     std::string camera_;
     RenderInputs inputs_;
     std::map<int, JudgedTruth> truths_;  // by bounces
+    std::optional<JudgedTruth> onScreen_;
     std::optional<PixelPicks> picks_;
 };
 

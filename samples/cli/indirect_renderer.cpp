@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "cli.h"
 #include "library_renderer.h"
 #include "open_device.h"
 #include "rival_renderer.h"
@@ -37,9 +38,14 @@ void addPasses(std::vector<PassSamples>& passes, const FrameSample& frame) {
 
 std::unique_ptr<IndirectRenderer> makeRenderer(const Parameters& parameters, const RenderInputs& inputs,
                                                const DeviceOptions& options) {
-    if (!parameters.needsDevice()) return makeRenderer(parameters, inputs, nullptr);
+    if (!parameters.needsDevice()) {
+        if (options.quantity != Quantity::Irradiance)
+            throw UsageError("technique " + parameters.technique() +
+                             ": makes no ambient occlusion; expected one of the library");
+        return makeRenderer(parameters, inputs, nullptr);
+    }
     const lightwell::Device device = openDevice(options.device, options.width);
-    return makeRenderer(parameters, inputs, &device);
+    return std::make_unique<LibraryRenderer>(device, parameters, inputs, options.quantity);
 }
 
 std::unique_ptr<IndirectRenderer> makeRenderer(const Parameters& parameters, const RenderInputs& inputs,

@@ -68,9 +68,14 @@ public:
     virtual DebugPlanes readDebugView(const std::string& name) const = 0;
 };
 
+enum class Quantity { Irradiance, AmbientOcclusion };
+
 struct DeviceOptions {
     std::string device;       // as openDevice takes it; "": by LIGHTWELL_DEVICE, else the best
     std::uint32_t width = 0;  // lanes per work-item; 0: by probe
+    // What is asked of the technique. Ambient occlusion (1 = open) stands in all three planes of
+    // irradiance(), so that whatever looks at a picture looks at it likewise; validity is not asked for.
+    Quantity quantity = Quantity::Irradiance;
 };
 
 // The renderer of `parameters.technique()`, for inputs of at most the size of `inputs`; everything is

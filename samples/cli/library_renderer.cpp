@@ -40,16 +40,21 @@ FrameSample describeFrame(const LWStats& stats, double wallMilliseconds) {
 }  // namespace
 
 LibraryRenderer::LibraryRenderer(const lightwell::Device& device, const Parameters& parameters,
-                                 const RenderInputs& inputs)
+                                 const RenderInputs& inputs, Quantity quantity)
     : device_(device),
       view_(device, std::uint32_t(inputs.gbuffer().width), std::uint32_t(inputs.gbuffer().height)),
       descriptor_(device, parameters),
       technique_(device, parameters.technique().c_str(), descriptor_.get()),
+      quantity_(quantity),
       irradiance_(inputs.gbuffer().width, inputs.gbuffer().height, 3),
       validity_(inputs.gbuffer().width, inputs.gbuffer().height, 1),
+      ambient_(inputs.gbuffer().width, inputs.gbuffer().height, 1),
       estimatedBytes_(device.estimateMemory(
           parameters.technique().c_str(), descriptor_.get(), std::uint32_t(inputs.gbuffer().width),
           std::uint32_t(inputs.gbuffer().height), inputs.rsmTexelCount())) {
+    for (std::size_t i = 0; i < inputs.lwSources().size(); ++i)
+        sources_.emplace_back(device_, std::uint32_t(inputs.gbuffer().width),
+                              std::uint32_t(inputs.gbuffer().height));
     technique_.prewarm(view_);
     info_ = device_.info();
 }
@@ -58,30 +63,50 @@ LibraryRenderer::LibraryRenderer(const lightwell::Device& device, const Paramete
 void LibraryRenderer::fitSize(int width, int height) {
     if (width == irradiance_.width() && height == irradiance_.height()) return;
     view_.setSize(std::uint32_t(width), std::uint32_t(height));
+    for (lightwell::View& source : sources_) source.setSize(std::uint32_t(width), std::uint32_t(height));
     irradiance_ = studio::PlanarBuffer(width, height, 3);
     validity_ = studio::PlanarBuffer(width, height, 1);
+    ambient_ = studio::PlanarBuffer(width, height, 1);
+}
+
+LWOutput LibraryRenderer::describeOutput() {
+    LWOutput output = lightwell::make<LWOutput>();
+    if (quantity_ == Quantity::AmbientOcclusion) {
+        output.ambientOcclusion = describePlanes(ambient_);
+    } else {
+        output.irradiance = describePlanes(irradiance_);
+        output.validity = describePlanes(validity_);
+    }
+    return output;
+}
+
+void LibraryRenderer::spreadAmbient() {
+    for (int plane = 0; plane < 3; ++plane)
+        for (int y = 0; y < ambient_.height(); ++y)
+            std::copy_n(ambient_.row(0, y), ambient_.width(), irradiance_.row(plane, y));
 }
 
 FrameSample LibraryRenderer::renderFrame(const RenderInputs& inputs, bool reset) {
     fitSize(inputs.gbuffer().width, inputs.gbuffer().height);
     const auto start = std::chrono::steady_clock::now();
-    LWSourceView source{view_.get(), &inputs.lwGBuffer()};
+    std::vector<LWSourceView> sources{{view_.get(), &inputs.lwGBuffer()}};
+    for (std::size_t i = 0; i < sources_.size(); ++i)
+        sources.push_back({sources_[i].get(), &inputs.lwSources().at(i)});
     LWFrame frame = lightwell::make<LWFrame>();
     frame.reset = reset || frameIndex_ == 0 ? 1 : 0;
     frame.frameIndex = frameIndex_++;
     frame.lights = inputs.lights().data();
     frame.lightCount = std::uint32_t(inputs.lights().size());
-    frame.sourceViews = &source;
-    frame.sourceViewCount = 1;
+    frame.sourceViews = sources.data();
+    frame.sourceViewCount = std::uint32_t(sources.size());
     frame.geometry = &inputs.geometry();
     std::copy_n(inputs.environment(), 3, frame.environment);
-    LWOutput output = lightwell::make<LWOutput>();
-    output.irradiance = describePlanes(irradiance_);
-    output.validity = describePlanes(validity_);
+    LWOutput output = describeOutput();
     technique_.update(frame);
     technique_.render(view_, inputs.lwGBuffer(), output);
     device_.finish();
     const std::chrono::duration<double, std::milli> wall = std::chrono::steady_clock::now() - start;
+    if (quantity_ == Quantity::AmbientOcclusion) spreadAmbient();
     return describeFrame(technique_.stats(), wall.count());
 }
 

@@ -8,7 +8,7 @@ namespace cli {
 class LibraryRenderer final : public IndirectRenderer {
 public:
     LibraryRenderer(const lightwell::Device& device, const Parameters& parameters,
-                    const RenderInputs& inputs);
+                    const RenderInputs& inputs, Quantity quantity = Quantity::Irradiance);
 
     FrameSample renderFrame(const RenderInputs& inputs, bool reset) override;
     const studio::PlanarBuffer& irradiance() const override { return irradiance_; }
@@ -20,13 +20,17 @@ public:
 
 private:
     void fitSize(int width, int height);
+    LWOutput describeOutput();
+    void spreadAmbient();
 
     lightwell::Device device_;
     LWDeviceInfo info_{};
     lightwell::View view_;
+    std::vector<lightwell::View> sources_;  // of the further source views
     Descriptor descriptor_;
     lightwell::Technique technique_;
-    studio::PlanarBuffer irradiance_, validity_;
+    Quantity quantity_;
+    studio::PlanarBuffer irradiance_, validity_, ambient_;
     std::uint64_t estimatedBytes_ = 0, frameIndex_ = 0;
 };
 

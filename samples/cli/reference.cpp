@@ -25,16 +25,38 @@ struct ReferenceOptions {
     ViewOptions view;
     std::string bounces, vpls, until, out, checkpoint;
     std::string samples = "256", seed = "1";
-    bool unshadowed = false, half = false, compact = false;
+    std::string quantity = "irradiance", radius = "0.2", weighting = "cosine";
+    std::vector<std::string> sourceViews;
+    bool unshadowed = false, half = false, compact = false, onScreen = false;
+    bool isAmbient() const { return quantity == "ambient-occlusion"; }
 };
+
+void checkQuantity(const ReferenceOptions& options) {
+    requireOneOf("--quantity", options.quantity, {"irradiance", "ambient-occlusion"});
+    requireOneOf("--weighting", options.weighting, {"cosine", "uniform"});
+    if (!options.sourceViews.empty() && !options.onScreen)
+        throw UsageError("--source-view: expected --on-screen with it, whose light it adds to");
+    if (options.onScreen && !options.vpls.empty())
+        throw UsageError("--on-screen: --vpls has senders of its own; leave one of them out");
+    const bool hasLight =
+        !options.bounces.empty() || options.unshadowed || options.onScreen || !options.vpls.empty();
+    if (options.isAmbient() && hasLight)
+        throw UsageError(
+            "--quantity ambient-occlusion: knows no light; leave out --bounces, --unshadowed, "
+            "--on-screen and --vpls");
+}
 
 // The traced layers whose sum stands in R, G, B.
 std::vector<std::string> chosenLayers(const ReferenceOptions& options) {
+    if (options.isAmbient()) return {"ambient"};
     if (options.bounces.empty()) throw UsageError("--bounces is required; valid: 1, 2, all");
     requireOneOf("--bounces", options.bounces, {"1", "2", "all"});
-    if (options.bounces != "1" && (options.unshadowed || !options.vpls.empty()))
+    if (options.bounces != "1" && (options.unshadowed || options.onScreen || !options.vpls.empty()))
         throw UsageError(fmt::format("--bounces {}: {} knows one bounce only; expected --bounces 1",
-                                     options.bounces, options.unshadowed ? "--unshadowed" : "--vpls"));
+                                     options.bounces,
+                                     options.unshadowed ? "--unshadowed"
+                                     : options.onScreen ? "--on-screen"
+                                                        : "--vpls"));
     if (options.bounces == "1") return {"bounce1"};
     if (options.bounces == "2") return {"bounce1", "bounce2"};
     return {"all"};
@@ -60,6 +82,9 @@ studio::PathTracerOptions tracerOptions(const ReferenceOptions& options) {
     tracer.seed = parseUnsigned("--seed", options.seed);
     tracer.unshadowed = options.unshadowed;
     tracer.judgedLayers = chosenLayers(options);
+    // Nobody keeps what later bounces bring: the same bits of the first ones for less time.
+    if (options.compact && options.bounces != "all" && !options.isAmbient())
+        tracer.maxBounces = options.bounces == "1" ? 1 : 2;
     if (!options.until.empty()) {
         if (!options.vpls.empty())
             throw UsageError("--until: --vpls sums without noise; leave --until out");
@@ -90,11 +115,17 @@ studio::Image assemble(const studio::Image& traced, const std::vector<std::strin
     for (const std::string& layer : chosen)
         for (const std::string half : {"a.", "b."})
             if (traced.has(half + layer + ".R")) addTo(image, half + layer + ".", traced, half + layer);
-    for (const std::string layer : {"direct", "bounce1", "bounce2", "all"})
+    for (const std::string layer : {"direct", "bounce1", "bounce2", "all", "ambient"})
         if (traced.has(layer + ".R"))
             addTo(image, layer == "direct" ? "direct_irradiance." : layer + ".", traced, layer);
     if (traced.has("validity")) image.plane("validity") = traced.plane("validity");
     return image;
+}
+
+std::vector<std::string> seenBy(const ReferenceOptions& options, const std::string& camera) {
+    std::vector<std::string> names{camera};
+    names.insert(names.end(), options.sourceViews.begin(), options.sourceViews.end());
+    return names;
 }
 
 void describe(studio::Image& image, const ReferenceOptions& options, const studio::Camera& camera,
@@ -105,9 +136,30 @@ void describe(studio::Image& image, const ReferenceOptions& options, const studi
     image.metadata["camera"] = camera.name;
     image.metadata["size"] = options.view.size;
     if (options.unshadowed) image.metadata["unshadowed"] = "1";
+    if (options.onScreen)
+        image.metadata["senders"] = fmt::format("{}", fmt::join(seenBy(options, camera.name), ", "));
+    if (options.isAmbient()) {
+        image.metadata["radius"] = options.radius;
+        image.metadata["weighting"] = options.weighting;
+    }
     if (!options.vpls.empty())
         image.metadata["vpls_file"] = std::filesystem::path(options.vpls).filename().string();
     if (noise >= 0.0) image.metadata["noise." + layer] = fmt::format("{:.9g}", noise);
+}
+
+// The pictures whose surfaces send light; none: all surfaces do.
+std::vector<studio::PictureView> sendersSeenBy(const ReferenceOptions& options,
+                                               const studio::Scene& scene, const studio::Camera& camera,
+                                               const Size& size) {
+    std::vector<studio::PictureView> views;
+    if (!options.onScreen) return views;
+    views.push_back({camera, size.width, size.height});
+    for (const std::string& name : options.sourceViews) {
+        ViewOptions other = options.view;
+        other.camera = name;
+        views.push_back({findCamera(scene, other), size.width, size.height});
+    }
+    return views;
 }
 
 std::string checkpointPath(const ReferenceOptions& options) {
@@ -133,7 +185,11 @@ studio::Image traceWithProgress(const studio::RayScene& rayScene, const studio::
 }
 
 void traceReference(const ReferenceOptions& options) {
+    checkQuantity(options);
     studio::PathTracerOptions tracer = tracerOptions(options);
+    const studio::AmbientOptions ambient{parsePositive("--radius", options.radius),
+                                         options.weighting == "uniform"};
+    if (options.isAmbient()) tracer.ambient = &ambient;
     tracer.checkpoint = checkpointPath(options);
     const Size size = parseSize(options.view.size);
     requireOutputPath("--out", options.out, {".exr"});
@@ -148,6 +204,7 @@ void traceReference(const ReferenceOptions& options) {
     }
     const auto scene = loadScene(options.view);
     const studio::Camera camera = findCamera(*scene, options.view);
+    tracer.sendersSeenBy = sendersSeenBy(options, *scene, camera, size);
 
     const float time = float(options.view.time);
     const auto rayScenePointer =
@@ -187,6 +244,27 @@ void addReference(CLI::App& app) {
     command->add_option(
         "--bounces", options->bounces,
         "Required; what stands in R,G,B: 1 = one indirect bounce; 2 = first and second together; all");
+    command
+        ->add_option("--quantity", options->quantity,
+                     "irradiance, or ambient-occlusion: the open share of the hemisphere, 1 = open")
+        ->capture_default_str();
+    command
+        ->add_option("--radius", options->radius,
+                     "Of ambient-occlusion: what counts lies nearer, in heights of the picture at the "
+                     "pixel's depth")
+        ->capture_default_str();
+    command
+        ->add_option("--weighting", options->weighting,
+                     "Of ambient-occlusion: directions by their cosine, or uniform")
+        ->capture_default_str();
+    command->add_flag(
+        "--on-screen", options->onScreen,
+        "Only surfaces that the picture shows send light (one bounce): what a technique of "
+        "the picture alone can know");
+    command
+        ->add_option("--source-view", options->sourceViews,
+                     "Cameras whose pictures' surfaces send light too, with --on-screen")
+        ->take_all();
     command->add_flag("--unshadowed", options->unshadowed,
                       "Every lit surface along a pixel's ray sends light, none blocks it (one bounce)");
     command->add_option(

@@ -154,6 +154,7 @@ private:
         studio::PathTracerOptions options;
         options.maxBounces = depth_ == 0 ? kAllBounces : depth_;
         options.checkpoint = checkpoint_.string();
+        options.sendersSeenBy = request_.sendersSeenBy;
         options.samplesPerPixel = noise > 0.0 ? kFewestSamples : 2;
         if (noise > 0.0) {
             options.judgedLayers = layersOf(bounces);
@@ -230,15 +231,21 @@ std::vector<Truth> obtainTruths(const studio::RayScene& scene, const studio::GBu
     if (request.bounces.empty() || !isKnown)
         throw std::invalid_argument(fmt::format("truths of {} bounces: expected 1, 2 or 0 (all)",
                                                 fmt::join(request.bounces, ", ")));
+    const bool isPart = !request.sendersSeenBy.empty();
+    if (isPart && request.bounces != std::vector<int>{1})
+        throw std::invalid_argument(
+            fmt::format("truths of {} bounces by senders that pictures show: expected 1",
+                        fmt::join(request.bounces, ", ")));
     fs::create_directories(RunFile::directoryOf(request));
-    const std::string stem = fmt::format("{}-{:016x}-{:016x}", scene.scene().name,
-                                         studio::hashScene(scene), studio::hashView(view));
+    std::string stem = fmt::format("{}-{:016x}-{:016x}", scene.scene().name, studio::hashScene(scene),
+                                   studio::hashView(view));
+    if (isPart) stem += fmt::format("-seen-{:016x}", studio::hashPictureViews(request.sendersSeenBy));
     const FileLock lock(RunFile::directoryOf(request) / (stem + ".lock"), [&] {
         if (request.progress) request.progress(0.0, -1.0);
         return true;
     });
     std::map<int, RunFile> runs;  // by depth
-    for (const int depth : {1, 2, 0}) {
+    for (const int depth : isPart ? std::vector<int>{1} : std::vector<int>{1, 2, 0}) {
         const auto made = runs.emplace(std::piecewise_construct, std::forward_as_tuple(depth),
                                        std::forward_as_tuple(scene, view, request, stem, depth));
         made.first->second.load();

@@ -13,11 +13,15 @@
 
 #include "gbuffer.h"
 #include "image.h"
+#include "seen_surfaces.h"
 
 namespace cli {
 
 struct TruthRequest {
     std::vector<int> bounces{1};  // counts of bounces; 0: all
+    // Only surfaces that these pictures show send light (path_tracer.h); one bounce alone. Empty: all
+    // do.
+    std::vector<studio::PictureView> sendersSeenBy;
     double noise = 1e-3;          // relMSE to be reached by each
     double seconds = 0.0;         // > 0: stop after this time, whatever the noise
     bool takesKept = false;       // what is kept will do, whatever its noise

@@ -1,17 +1,15 @@
-// `lightwell render`: one view of a scene with a technique, measured. A little over 300 lines: a third declares
-// and checks the options, which read best beside the steps they belong to.
+// `lightwell render`: one view of a scene with a technique, measured.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "cli.h"
 #include "indirect_renderer.h"
-#include "layers.h"
 #include "path_tracer.h"
 #include "render_inputs.h"
+#include "render_picture.h"
 #include "render_report.h"
 #include "render_sequence.h"
 #include "vpl_view.h"
@@ -24,10 +22,12 @@ constexpr const char* kNoTechnique = "none";
 
 struct RenderOptions {
     ViewOptions view;
-    std::string technique, seed, vplsOut, device, debugView, exposure, scale = "1", step = "0";
-    std::vector<std::string> assignments, outs;
+    std::string quantity = "irradiance", technique, seed, vplsOut, device, debugView, exposure,
+                scale = "1", step = "0";
+    std::vector<std::string> assignments, outs, sourceViews;
     int frames = 9, warmup = 3, width = 0, rsmSize = 512, cascades = 1;
     bool asJson = false, printsHash = false;
+    bool isAmbient() const { return quantity == "ambient-occlusion"; }
 };
 
 void checkDistinctOutputs(const RenderOptions& options) {
@@ -43,7 +43,8 @@ void checkDistinctOutputs(const RenderOptions& options) {
 constexpr double kPixelBytes = 300.0, kTexelBytes = 72.0;
 
 void checkMemory(const RenderOptions& options, const Size& size, const studio::Scene& scene) {
-    requireMemory("--size", options.view.size, kPixelBytes * size.width * size.height);
+    requireMemory("--size", options.view.size,
+                  kPixelBytes * size.width * size.height * double(1 + options.sourceViews.size()));
     double maps = 0.0;
     for (const studio::Light& light : scene.lights)
         maps += light.kind == studio::LightKind::Sun     ? options.cascades
@@ -59,6 +60,7 @@ void checkOptions(const RenderOptions& options) {
     if (options.technique.empty())
         throw UsageError("--technique is required; valid: " + joinNames(techniques));
     requireOneOf("technique", options.technique, techniques);
+    requireOneOf("--quantity", options.quantity, {"irradiance", "ambient-occlusion"});
     if (options.width != 0)
         requireOneOf("--width", std::to_string(options.width), {"1", "4", "8", "16"});
     for (const std::string& assignment : options.assignments) splitAssignment("--set", assignment);
@@ -80,8 +82,11 @@ void checkOptions(const RenderOptions& options) {
         !options.outs.empty() || !options.vplsOut.empty() || options.asJson || options.printsHash;
     if (!hasResult) throw UsageError("--out is required: a file name ending in .exr or .png");
     if (options.technique == kNoTechnique) {
-        if (!options.vplsOut.empty() || !options.debugView.empty() || !options.assignments.empty())
-            throw UsageError("--technique none has no VPLs, debug views or parameters");
+        if (!options.vplsOut.empty() || !options.debugView.empty() || !options.assignments.empty() ||
+            !options.sourceViews.empty() || options.isAmbient())
+            throw UsageError(
+                "--technique none has no VPLs, debug views, parameters, source views or ambient "
+                "occlusion");
     }
 }
 
@@ -97,52 +102,12 @@ Parameters parseParameters(const RenderOptions& options) {
     return parameters;
 }
 
-// FNV-1a over the bits of the pixels, padding left out: equal hashes, equal pictures.
-std::uint64_t hashBits(const studio::PlanarBuffer& buffer) {
-    std::uint64_t hash = 0xcbf29ce484222325u;
-    for (int plane = 0; plane < buffer.planes(); ++plane)
-        for (int y = 0; y < buffer.height(); ++y)
-            for (int x = 0; x < buffer.width(); ++x) {
-                std::uint32_t bits = 0;
-                std::memcpy(&bits, buffer.row(plane, y) + x, sizeof bits);
-                for (int byte = 0; byte < 4; ++byte)
-                    hash = (hash ^ ((bits >> (8 * byte)) & 0xffu)) * 0x100000001b3u;
-            }
-    return hash;
-}
-
-// The channels c00, c01, ... of an intermediate buffer.
-void writeDebugView(const IndirectRenderer& renderer, const std::string& argument) {
-    const auto [name, path] = splitAssignment("--debug-view", argument);
-    const DebugPlanes planes = renderer.readDebugView(name);
-    studio::Image image(int(planes.width), int(planes.height));
-    for (std::uint32_t c = 0; c < planes.channels; ++c)
-        image.plane(fmt::format("c{:02}", c))
-            .assign(planes.plane(c), planes.plane(c) + image.pixelCount());
-    studio::writeExr(path, image);
-}
-
-studio::Image assemble(const RenderInputs& inputs, const studio::PlanarBuffer& irradiance,
-                       const studio::PlanarBuffer& validity, const RenderReport& report) {
-    studio::Image image(report.size.width, report.size.height);
-    addLayer(image, "", irradiance);
-    addLayer(image, "validity", validity);
-    addViewLayers(image, inputs.gbuffer());
-    image.metadata = {{"layer", "irradiance"},
-                      {"scene", report.scene},
-                      {"camera", report.camera},
-                      {"technique", report.technique}};
-    if (report.hasDevice) image.metadata["device"] = report.device.name;
-    for (const auto& [name, value] : report.parameters)
-        image.metadata["set." + name] =
-            std::visit([](const auto& held) { return fmt::format("{}", held); }, value);
-    return image;
-}
-
 void writeOutputs(const RenderOptions& options, const studio::Image& image, RenderReport& report) {
     for (const std::string& out : options.outs) {
         if (hasExtension(out, ".exr")) {
             studio::writeExr(out, image);
+        } else if (options.isAmbient()) {
+            studio::writePng(out, image);  // already in [0,1]
         } else {
             const studio::Image lit = studio::composite(image);
             const float exposure = options.exposure.empty()
@@ -159,8 +124,10 @@ void writeOutputs(const RenderOptions& options, const studio::Image& image, Rend
 studio::Image renderWithTechnique(const RenderOptions& options, Sequence& sequence,
                                   RenderReport& report) {
     const Parameters parameters = parseParameters(options);
-    const auto renderer = makeRenderer(parameters, sequence.at(0),
-                                       DeviceOptions{options.device, std::uint32_t(options.width)});
+    const auto renderer = makeRenderer(
+        parameters, sequence.at(0),
+        DeviceOptions{options.device, std::uint32_t(options.width),
+                      options.isAmbient() ? Quantity::AmbientOcclusion : Quantity::Irradiance});
     report.parameters = parameters.resolved();
     report.figures = measure(
         *renderer, [&](int frame) -> const RenderInputs& { return sequence.at(frame); }, options.warmup,
@@ -176,14 +143,15 @@ studio::Image renderWithTechnique(const RenderOptions& options, Sequence& sequen
         report.outputs.push_back(options.vplsOut);
     }
     if (!options.debugView.empty()) writeDebugView(*renderer, options.debugView);
-    return assemble(sequence.last(), renderer->irradiance(), renderer->validity(), report);
+    return assemblePicture(sequence.last(), renderer->irradiance(), renderer->validity(),
+                           options.isAmbient(), report);
 }
 
 studio::Image renderDirectOnly(const RenderInputs& inputs, RenderReport& report) {
     const studio::PlanarBuffer nothing(report.size.width, report.size.height, 3);
     const studio::PlanarBuffer invalid(report.size.width, report.size.height, 1);
     report.hash = hashBits(nothing);
-    return assemble(inputs, nothing, invalid, report);
+    return assemblePicture(inputs, nothing, invalid, false, report);
 }
 
 // `--set a=1 b=2 SCENE`: the last word is no assignment, so it is the scene.
@@ -221,6 +189,7 @@ void render(RenderOptions& options) {
 
     SequenceOptions sequenceOptions;
     sequenceOptions.camera = options.view.camera;
+    sequenceOptions.sources = options.sourceViews;
     sequenceOptions.time = options.view.time;
     sequenceOptions.step = parseNumber("--step", options.step);
     sequenceOptions.frames = options.technique == kNoTechnique ? 1 : options.warmup + options.frames;
@@ -249,6 +218,10 @@ void declareExtras(CLI::App& command, RenderOptions& options) {
         "gpu, cpu, PLATFORM:DEVICE indices or part of a name; default: LIGHTWELL_DEVICE, else the best");
     command.add_option("--width", options.width,
                        "Lanes per work-item: 1, 4, 8 or 16; default: by probe");
+    command
+        .add_option("--source-view", options.sourceViews,
+                    "Cameras whose pictures are further source views of the frame, one or several")
+        ->take_all();
     command.add_option("--rsm-size", options.rsmSize, "Texels along each side of an RSM")
         ->check(CLI::Range(1, kMaxSize))
         ->capture_default_str();
@@ -281,6 +254,10 @@ void addRender(CLI::App& app) {
     options->view.declare(*command)->required(false);
     command->add_option("--technique", options->technique,
                         "Required: a technique (below), or none: direct light only");
+    command
+        ->add_option("--quantity", options->quantity,
+                     "irradiance, or ambient-occlusion (1 = open) of techniques that make it")
+        ->capture_default_str();
     command->add_option("--set", options->assignments,
                         "key=value, one or several: parameters of the technique (below)");
     command->add_option("--frames", options->frames, "Frames measured; times are medians")

@@ -104,6 +104,11 @@ RenderInputs::RenderInputs(const studio::RayScene& scene, const studio::Camera& 
       lwGBuffer_(describeGBuffer(gbuffer_)),
       triangles_(studio::sceneTriangles(scene)),
       lwGeometry_(describeTriangles(triangles_)) {
+    for (const auto& [source, before] : options.sources)
+        sources_.push_back(studio::renderGBuffer(
+            scene, source, options.width, options.height, before,
+            options.previousCamera != nullptr ? options.previousTime : options.time));
+    for (const studio::GBuffer& source : sources_) lwSources_.push_back(describeGBuffer(source));
     studio::RsmOptions rsmOptions = options.rsm;
     rsmOptions.view = &gbuffer_;
     for (std::size_t i = 0; i < scene.scene().lights.size(); ++i) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "gbuffer.h"
@@ -18,6 +19,8 @@ struct InputOptions {
     // The frame before, for motion vectors and the previous camera; null: nothing has moved.
     const studio::Camera* previousCamera = nullptr;
     float previousTime = 0.0f;
+    // Further source views of the frame: a camera, and the same one the frame before.
+    std::vector<std::pair<studio::Camera, studio::Camera>> sources;
 };
 
 // The structs point into the buffers beside them: made once, never moved. `scene` must live as long.
@@ -31,6 +34,8 @@ public:
     const studio::RayScene& scene() const { return scene_; }
     const studio::GBuffer& gbuffer() const { return gbuffer_; }
     const LWGBuffer& lwGBuffer() const { return lwGBuffer_; }
+    // Of the further source views, in their order.
+    const std::vector<LWGBuffer>& lwSources() const { return lwSources_; }
     const std::vector<LWLight>& lights() const { return lights_; }
     const LWGeometry& geometry() const { return lwGeometry_; }
     const float* environment() const { return environment_; }
@@ -43,6 +48,8 @@ private:
     std::vector<std::vector<LWRsm>> lwRsms_;
     std::vector<LWLight> lights_;
     LWGBuffer lwGBuffer_{};
+    std::vector<studio::GBuffer> sources_;
+    std::vector<LWGBuffer> lwSources_;
     studio::SceneTriangles triangles_;
     LWGeometry lwGeometry_{};
     float environment_[3] = {};

@@ -8,10 +8,13 @@ namespace cli {
 Sequence::Sequence(std::shared_ptr<const studio::Scene> scene, const SequenceOptions& options)
     : scene_(std::move(scene)),
       options_(options),
-      camera_(asUsage([&] { return scene_->findCamera(options.camera); })) {}
+      camera_(asUsage([&] { return scene_->findCamera(options.camera); })) {
+    for (const std::string& name : options.sources)
+        sources_.push_back(asUsage([&] { return scene_->findCamera(name); }));
+}
 
-studio::Camera Sequence::cameraAt(float time) const {
-    return asUsage([&] { return scene_->cameraAt(camera_, time); });
+studio::Camera Sequence::cameraAt(int camera, float time) const {
+    return asUsage([&] { return scene_->cameraAt(camera, time); });
 }
 
 const RenderInputs& Sequence::at(int frame) {
@@ -22,7 +25,11 @@ const RenderInputs& Sequence::at(int frame) {
     InputOptions inputs = options_.inputs;
     inputs.time = float(time);
     inputs.previousTime = float(time - options_.step);
-    const studio::Camera camera = cameraAt(inputs.time), before = cameraAt(inputs.previousTime);
+    const studio::Camera camera = cameraAt(camera_, inputs.time),
+                         before = cameraAt(camera_, inputs.previousTime);
+    for (const int source : sources_)
+        inputs.sources.emplace_back(cameraAt(source, inputs.time),
+                                    cameraAt(source, inputs.previousTime));
     inputs.previousCamera = &before;
     rayScene_ = asUsage([&] { return std::make_unique<studio::RayScene>(scene_, inputs.time); });
     inputs_ = std::make_unique<RenderInputs>(*rayScene_, camera, inputs);

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "render_inputs.h"
 
@@ -10,6 +11,7 @@ namespace cli {
 
 struct SequenceOptions {
     std::string camera;  // by name; "": the scene's first
+    std::vector<std::string> sources;  // further source views: cameras by name
     double time = 0.0;   // s, of the last frame
     double step = 0.0;   // s from frame to frame; 0: one picture at rest for all frames
     int frames = 1;
@@ -26,11 +28,12 @@ public:
     const RenderInputs& last() { return at(options_.frames - 1); }
 
 private:
-    studio::Camera cameraAt(float time) const;
+    studio::Camera cameraAt(int camera, float time) const;
 
     std::shared_ptr<const studio::Scene> scene_;
     SequenceOptions options_;
     int camera_ = 0, frame_ = 0;
+    std::vector<int> sources_;
     std::unique_ptr<studio::RayScene> rayScene_;
     std::unique_ptr<RenderInputs> inputs_;  // of rayScene_
 };

@@ -149,11 +149,14 @@ Json describeSequence(const studio::FailureSequence& sequence, int samples) {
 }
 
 std::string stabilityTable(const Json& results) {
-    constexpr const char* kRow = "{:{}} {:7} {:>16} {:>16} {:>16} {:>16} {:>16} {:>18} {:>7}\n";
-    std::size_t width = 19;  // of the first column; scenes' sequences have long names
+    constexpr const char* kRow = "{:{}} {:{}} {:>16} {:>16} {:>16} {:>16} {:>16} {:>18} {:>7}\n";
+    std::size_t width = 19,
+                by = 7;  // of the first columns; scenes' sequences and variants have long names
     for (const Json& sequence : results.at("sequences"))
         width = std::max(width, sequence.at("id").get<std::string>().size());
-    std::string table = fmt::format(fmt::runtime(kRow), "failure", width, "by", "flicker", "ghost",
+    for (const Json& result : results.at("results"))
+        by = std::max(by, result.at("technique").get<std::string>().size());
+    std::string table = fmt::format(fmt::runtime(kRow), "failure", width, "by", by, "flicker", "ghost",
                                     "leak", "drift", "spike", "relMSE", "bias");
     for (const Json& sequence : results.at("sequences"))
         for (const Json& result : results.at("results")) {
@@ -164,7 +167,7 @@ std::string stabilityTable(const Json& results) {
             std::string bias = cell(errors, Json::object(), "bias", "{:+.3f}");
             if (result.at("passes") == false) bias += "  FAILS: light or NaN where there must be none";
             table += fmt::format(fmt::runtime(kRow), sequence.at("id").get<std::string>(), width,
-                                 result.at("technique").get<std::string>(), index("flicker"),
+                                 result.at("technique").get<std::string>(), by, index("flicker"),
                                  index("ghost"), index("leak"), index("drift"), index("spike"),
                                  cell(errors, result.at("error_floors"), "relMSE", "{:.3g}"), bias);
         }

@@ -90,6 +90,8 @@ bool isOther(const Parameters& parameters, const std::pair<std::string, Paramete
 
 std::string valueText(const ParameterValue& value) {
     if (const bool* isOn = std::get_if<bool>(&value)) return *isOn ? "on" : "off";
+    // A descriptor's number is a float: 0.1, not the double nearest to it.
+    if (const double* number = std::get_if<double>(&value)) return fmt::format("{}", float(*number));
     return std::visit([](const auto& held) { return fmt::format("{}", held); }, value);
 }
 
@@ -118,6 +120,10 @@ int modelledBounces(const Parameters& parameters) {
         most = bounces == 0 || most == 0 ? 0 : std::max(most, bounces);
     }
     return most;
+}
+
+bool knowsPictureOnly(const std::string& technique) {
+    return technique == "screen_space" || technique == "horizon" || technique == "ao";
 }
 
 std::string describeDifference(const Parameters& parameters) {

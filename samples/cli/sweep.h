@@ -22,6 +22,10 @@ std::vector<SweepPoint> sweepOf(const std::string& technique, bool quick);
 // Indirect bounces that a set of parameters models; 0: all.
 int modelledBounces(const Parameters& parameters);
 
+// Whether a technique takes its light from the view's own picture alone, so that the light of what the
+// view shows is the most that it can know.
+bool knowsPictureOnly(const std::string& technique);
+
 // "vpls=256 interleave=4": what differs from the defaults; "defaults" when nothing does.
 std::string describeDifference(const Parameters& parameters);
 std::string valueText(const ParameterValue& value);

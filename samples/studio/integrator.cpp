@@ -87,7 +87,7 @@ LayerSample Integrator::tracePath(const Surface& pixel, const glm::vec3& punctua
             break;
         }
         add(bounce, areaLights_.emissionOfRay(at, direction, hit));
-        if (bounce == maxBounces_) break;
+        if (bounce == maxBounces_ || !sends(hit.position, hit.geometricNormal)) break;
         throughput *= hit.albedo;
         add(bounce + 1, punctualOfRay(at, direction, hit));
 
@@ -136,7 +136,8 @@ glm::vec3 Integrator::connect(const Surface& at, Sampler& sampler) const {
         return glm::vec3(0.0f);
     const LightArrival lamp = arrivalOf(scene_.lights()[point.light], lit.position);
     const float lampCosine = glm::dot(lit.normal, lamp.toLight);
-    if (lampCosine <= 0.0f || scene_.occluded(link.origin, link.direction, 0.0f, link.distance))
+    if (lampCosine <= 0.0f || scene_.occluded(link.origin, link.direction, 0.0f, link.distance) ||
+        !sends(lit.position, lit.geometricNormal))
         return glm::vec3(0.0f);
     const float byRay = rayDensity(cosine, litCosine, link.squared);
     return point.albedo * lamp.irradiance * (lampCosine * rayShare(byRay, point.density));
@@ -177,16 +178,17 @@ glm::vec3 Integrator::lightThrough(const Surface& pixel, const glm::vec3& direct
     // Sky and emission come from everywhere: the side whose lobe meets the pixel is the one that counts.
     const float facing = -glm::dot(hit.normal, direction);
     const glm::vec3 lobeSide = facing > 0.0f ? hit.geometricNormal : -hit.geometricNormal;
-    glm::vec3 light =
-        extendedIrradiance(scene_, areaLights_, {hit.position, lobeSide, lobeSide}, sampler) *
-        (std::abs(facing) / projected);
+    glm::vec3 light(0.0f);
+    if (hasExtendedLight_ && sends(hit.position, lobeSide))
+        light = extendedIrradiance(scene_, areaLights_, {hit.position, lobeSide, lobeSide}, sampler) *
+                (std::abs(facing) / projected);
     for (std::size_t l = 0; l < scene_.lights().size(); ++l) {
         const Light& lamp = scene_.lights()[l];
         const glm::vec3 toLamp = arrivalOf(lamp, hit.position).toLight;
         const glm::vec3 side =
             glm::dot(hit.geometricNormal, toLamp) > 0.0f ? hit.geometricNormal : -hit.geometricNormal;
         const float lobe = -glm::dot(lobeNormal(side, hit.normal, toLamp), direction);
-        if (lobe <= 0.0f) continue;
+        if (lobe <= 0.0f || !sends(hit.position, side)) continue;
         const float share = rayShare(byRay, litPoints_.density(l, hit.position, side));
         light += scene_.directIrradiance(lamp, hit.position, side, side) * (share * lobe / projected);
     }
@@ -202,7 +204,8 @@ glm::vec3 Integrator::connectUnshadowed(const Surface& at, Sampler& sampler) con
     const float cosine = glm::dot(at.normal, link.direction);
     const float lobe =
         -glm::dot(lobeNormal(lit.geometricNormal, lit.normal, lamp.toLight), link.direction);
-    if (cosine <= 0.0f || lobe <= 0.0f) return glm::vec3(0.0f);
+    if (cosine <= 0.0f || lobe <= 0.0f || !sends(lit.position, lit.geometricNormal))
+        return glm::vec3(0.0f);
     const float lampCosine = glm::dot(lit.geometricNormal, lamp.toLight);
     const float projected = std::abs(glm::dot(lit.geometricNormal, link.direction));
     const float transfer = cosine * lobe / (kPi * link.squared);

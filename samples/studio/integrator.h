@@ -6,6 +6,7 @@
 
 #include "area_lights.h"
 #include "lit_points.h"
+#include "seen_surfaces.h"
 
 namespace studio {
 
@@ -14,11 +15,14 @@ using LayerSample = std::array<glm::vec3, kLayerCount>;
 
 class Integrator {
 public:
-    Integrator(const RayScene& scene, LitPoints litPoints, int maxBounces)
+    // `senders`: surfaces that reflect light, which must live as long; null: all.
+    Integrator(const RayScene& scene, LitPoints litPoints, int maxBounces,
+               const SeenSurfaces* senders = nullptr)
         : scene_(scene),
           areaLights_(scene),
           litPoints_(std::move(litPoints)),
           maxBounces_(maxBounces),
+          senders_(senders),
           hasExtendedLight_(!areaLights_.empty() || scene.scene().sky != glm::vec3(0.0f)) {}
 
     // Irradiance by a path from `pixel`; `punctual`: what scene.directIrradiance gives there.
@@ -35,11 +39,15 @@ private:
     glm::vec3 lightThrough(const Surface& pixel, const glm::vec3& direction, const Hit& hit,
                            Sampler& sampler) const;
     glm::vec3 connectUnshadowed(const Surface& at, Sampler& sampler) const;
+    bool sends(const glm::vec3& position, const glm::vec3& side) const {
+        return senders_ == nullptr || senders_->contains(position, side);
+    }
 
     const RayScene& scene_;
     AreaLights areaLights_;
     LitPoints litPoints_;
     int maxBounces_;
+    const SeenSurfaces* senders_;
     bool hasExtendedLight_;  // emissive surfaces or a sky
 };
 

@@ -108,7 +108,8 @@ double LitPoints::Chart::measurePerArea(const glm::vec3& position,
     return std::abs(glm::dot(glm::dvec3(geometricNormal), way)) / (squared * std::sqrt(squared));
 }
 
-LitPoints::LitPoints(const RayScene& scene, const std::vector<Surface>& receivers, bool occlusion)
+LitPoints::LitPoints(const RayScene& scene, const std::vector<Surface>& receivers, bool occlusion,
+                     const SeenSurfaces* senders)
     : scene_(scene) {
     for (const Light& light : scene.lights()) charts_.emplace_back(scene, light);
     const std::vector<Surface> judges = someOf(receivers);
@@ -125,7 +126,8 @@ LitPoints::LitPoints(const RayScene& scene, const std::vector<Surface>& receiver
             const glm::vec3 facing = arrivalOf(chart.light, hit.position).irradiance;
             const float cosine = -glm::dot(hit.geometricNormal, ray.direction);
             flux[cell] = double(largest(hit.albedo * facing) * cosine) * area;
-            useful[cell] = flux[cell] * transfer(hit, area, judges, occlusion);
+            if (senders == nullptr || senders->contains(hit.position, hit.geometricNormal))
+                useful[cell] = flux[cell] * transfer(hit, area, judges, occlusion);
         }
     });
     chooseCells(flux, useful);

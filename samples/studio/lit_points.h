@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "area_lights.h"
+#include "seen_surfaces.h"
 
 namespace studio {
 
@@ -16,8 +17,10 @@ public:
         float density = 0.0f;  // see density()
     };
 
-    // Points that matter to `receivers` are found more often; with `occlusion`, those that they see.
-    LitPoints(const RayScene& scene, const std::vector<Surface>& receivers, bool occlusion);
+    // Points that matter to `receivers` are found more often; with `occlusion`, those that they see;
+    // with `senders`, those among them.
+    LitPoints(const RayScene& scene, const std::vector<Surface>& receivers, bool occlusion,
+              const SeenSurfaces* senders = nullptr);
     // The same choice of rays in another scene, or in this one at another time, so that a frame's points are
     // those of `like` moved with their lights. Throws std::invalid_argument unless both have as many lights.
     LitPoints(const RayScene& scene, const LitPoints& like);

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "ambient_reference.h"
 #include "integrator.h"
 #include "noise.h"
 #include "reference_run.h"
@@ -36,21 +37,31 @@ void checkOptions(const GBuffer& view, const PathTracerOptions& o) {
     requireOption(o.threads >= 0, "threads", "0 (all) or more", text(o.threads));
     requireOption(o.vpls == nullptr || o.untilRelMse == 0.0, "untilRelMse",
                   "0 with VPLs, which have no noise", text(o.untilRelMse));
+    requireOption(o.sendersSeenBy.empty() || o.vpls == nullptr, "sendersSeenBy",
+                  "no pictures with VPLs, which are the senders", text(o.sendersSeenBy.size()));
+    if (o.ambient == nullptr) return;
+    requireOption(o.ambient->radius > 0.0 && std::isfinite(o.ambient->radius), "ambient.radius",
+                  "a positive number", text(o.ambient->radius));
+    requireOption(o.vpls == nullptr && o.sendersSeenBy.empty() && !o.unshadowed, "ambient",
+                  "no VPLs, sendersSeenBy or unshadowed beside it", "one of them");
 }
 
 Film integratePaths(const RayScene& scene, const GBuffer& view, const PixelSurfaces& pixels,
                     const PathTracerOptions& options) {
     std::vector<std::string> layers(kLayerNames, kLayerNames + kLayerCount);
-    if (options.unshadowed) layers = {kLayerNames[kBounce1]};
+    const bool onlyFirst = options.unshadowed || !options.sendersSeenBy.empty();
+    if (onlyFirst) layers = {kLayerNames[kBounce1]};
     Film film(view.width, view.height, layers, 2);
     const int most = options.untilRelMse > 0.0 ? options.maxSamplesPerPixel : options.samplesPerPixel;
     Run run(scene, view, pixels, options, film, std::uint32_t(options.samplesPerPixel / 2),
             std::uint32_t(most / 2));
+    const SeenSurfaces seen(scene, options.sendersSeenBy);
+    const SeenSurfaces* senders = options.sendersSeenBy.empty() ? nullptr : &seen;
     const Integrator integrator(scene,
-                                options.guide != nullptr && !options.unshadowed
+                                options.guide != nullptr && !onlyFirst
                                     ? LitPoints(scene, *options.guide)
-                                    : LitPoints(scene, pixels.shown(), !options.unshadowed),
-                                options.maxBounces);
+                                    : LitPoints(scene, pixels.shown(), !options.unshadowed, senders),
+                                onlyFirst ? 1 : options.maxBounces, senders);
 
     run.fill([&](const Tile& tile, std::uint32_t first, std::uint32_t last) {
         forEachPixel(tile, film, pixels, [&](std::size_t pixel) {
@@ -68,6 +79,10 @@ Film integratePaths(const RayScene& scene, const GBuffer& view, const PixelSurfa
                         continue;
                     }
                     const LayerSample sample = integrator.tracePath(at, punctual, sampler);
+                    if (onlyFirst) {
+                        sums[0] += glm::dvec3(sample[kBounce1]);
+                        continue;
+                    }
                     for (int layer = 0; layer < kLayerCount; ++layer)
                         sums[layer] += glm::dvec3(sample[std::size_t(layer)]);
                 }
@@ -119,8 +134,9 @@ std::unique_ptr<LitPoints> makeGuide(const RayScene& scene, const GBuffer& view)
 Image tracePaths(const RayScene& scene, const GBuffer& view, const PathTracerOptions& options) {
     checkOptions(view, options);
     const PixelSurfaces pixels(scene, view);
-    const Film film = options.vpls != nullptr ? gatherVpls(scene, view, pixels, options)
-                                              : integratePaths(scene, view, pixels, options);
+    const Film film = options.ambient != nullptr ? traceAmbient(scene, view, pixels, options)
+                      : options.vpls != nullptr  ? gatherVpls(scene, view, pixels, options)
+                                                 : integratePaths(scene, view, pixels, options);
 
     Image image(view.width, view.height);
     std::vector<float>& validity = image.plane("validity");

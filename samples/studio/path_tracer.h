@@ -10,6 +10,7 @@
 
 #include "gbuffer.h"
 #include "image.h"
+#include "seen_surfaces.h"
 
 namespace studio {
 
@@ -31,6 +32,11 @@ struct CheckpointError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+struct AmbientOptions {
+    double radius = 0.2;     // what counts lies nearer, in heights of the picture at the pixel's depth
+    bool isUniform = false;  // all directions alike; else by their cosine
+};
+
 struct PathTracerOptions {
     int samplesPerPixel = 64;  // of both halves together; even
     double untilRelMse = 0.0;  // > 0: go on past samplesPerPixel until the halves agree
@@ -50,6 +56,11 @@ struct PathTracerOptions {
     // Every surface along the ray sends light, none blocks: the limit of a gather without visibility.
     // Light falls on those surfaces with its shadows. Only "bounce1" is made.
     bool unshadowed = false;
+    // Only surfaces that these pictures show send light (see SeenSurfaces): what a technique of the
+    // picture can know at best. Empty: all surfaces do. Only "bounce1" is made; goes with `unshadowed`.
+    std::vector<PictureView> sendersSeenBy;
+    // Not irradiance: "ambient" is the share of the hemisphere that is open, in each channel.
+    const AmbientOptions* ambient = nullptr;
     // Irradiance from these VPLs (bounded term) with exact visibility of each (pixel, VPL); with
     // `unshadowed`, the same without shadow rays. Only "bounce1" is made, without halves: no noise.
     const std::vector<VplRecord>* vpls = nullptr;

@@ -50,6 +50,14 @@ std::uint64_t hashOptions(const PathTracerOptions& options, int halves) {
         const std::uint64_t guide = options.guide->hash();
         hash = hashBytes(&guide, sizeof guide, hash);
     }
+    if (!options.sendersSeenBy.empty()) {
+        const std::uint64_t senders = hashPictureViews(options.sendersSeenBy);
+        hash = hashBytes(&senders, sizeof senders, hash);
+    }
+    if (options.ambient != nullptr) {
+        hash = hashBytes(options.ambient->isUniform ? "uniform" : "cosine", 6, hash);
+        hash = hashBytes(&options.ambient->radius, sizeof options.ambient->radius, hash);
+    }
     if (options.vpls != nullptr)
         hash = hashBytes(options.vpls->data(), options.vpls->size() * sizeof(VplRecord), hash);
     return hash;

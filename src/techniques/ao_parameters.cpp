@@ -11,8 +11,8 @@ namespace {
 constexpr const char* kMethodNames[] = {"ssao", "ssdo", nullptr};
 constexpr const char* kResolutionNames[] = {"full", "half", nullptr};
 constexpr const char* kWeightingNames[] = {"cosine", "uniform", nullptr};
-constexpr double kSampleSweep[] = {8, 16, 32, 64};
-constexpr double kRadiusSweep[] = {0.05, 0.2, 0.5, 1};
+constexpr double kSampleSweep[] = {8, 16, 64};
+constexpr double kRadiusSweep[] = {0.05, 0.2, 1};
 constexpr double kPackingSweep[] = {0, 1};
 constexpr double kResolutionSweep[] = {LW_RESOLUTION_FULL, LW_RESOLUTION_HALF};
 

@@ -13,11 +13,9 @@ constexpr const char* kWeightingNames[] = {"cosine", "uniform", nullptr};
 constexpr double kDirectionValues[] = {4, 8, 16, 24, 40};
 constexpr double kStepValues[] = {1, 2, 4, 8};
 constexpr double kInterleaveValues[] = {1, 2, 4};
-constexpr double kDirectionSweep[] = {4, 8, 16, 40};
+constexpr double kDirectionSweep[] = {4, 8, 16};
 constexpr double kStepSweep[] = {1, 2, 4};
-constexpr double kInterleaveSweep[] = {1, 4};
-constexpr double kThicknessSweep[] = {0.01, 0.03, 0.1};
-constexpr double kReachSweep[] = {0.25, 1};
+constexpr double kThicknessSweep[] = {0.03, 0.1};
 constexpr double kResolutionSweep[] = {LW_RESOLUTION_FULL, LW_RESOLUTION_HALF};
 
 }  // namespace
@@ -32,19 +30,17 @@ const std::vector<LWParameter>& horizonParameters() {
                                  LW_PARAMETER_UINT, offsetof(LWHorizonDesc, steps), 1, 8, 2),
                        kStepValues),
               kStepSweep),
-        swept(allowing(parameter("interleave", "rows of pixels that share out the slices: time falls with it, noise at edges grows",
-                                 LW_PARAMETER_UINT, offsetof(LWHorizonDesc, interleave), 1, 4, 4),
-                       kInterleaveValues),
-              kInterleaveSweep),
+        allowing(parameter("interleave", "rows of pixels that share out the slices: time falls with it, noise at edges grows",
+                           LW_PARAMETER_UINT, offsetof(LWHorizonDesc, interleave), 1, 4, 4),
+                 kInterleaveValues),
         parameter("filter", "edge-aware filter over the rows that share out the slices", LW_PARAMETER_BOOL,
                   offsetof(LWHorizonDesc, filter), 0, 1, 1),
         swept(choosing(parameter("resolution", "pixels that are gathered; half: every second column and row, up-sampled after",
                                  LW_PARAMETER_ENUM, offsetof(LWHorizonDesc, resolution), 0, 1, LW_RESOLUTION_HALF),
                        kResolutionNames),
               kResolutionSweep),
-        swept(parameter("reach", "how far a pixel looks, in image heights: light from farther away is missed", LW_PARAMETER_FLOAT,
-                        offsetof(LWHorizonDesc, reach), 1e-3, 4, 1),
-              kReachSweep),
+        parameter("reach", "how far a pixel looks, in image heights: light from farther away is missed", LW_PARAMETER_FLOAT,
+                  offsetof(LWHorizonDesc, reach), 1e-3, 4, 1),
         swept(parameter("thickness", "of everything along the view, in image heights at its depth: thin things leak with little, hide too much with much",
                         LW_PARAMETER_FLOAT, offsetof(LWHorizonDesc, thickness), 0, 10, 0.03),
               kThicknessSweep),
@@ -59,6 +55,7 @@ const std::vector<LWParameter>& horizonParameters() {
 const std::vector<LWSetting>& horizonSettings() {
     static const std::vector<LWSetting> settings = {
         {"fast", "directions=4 steps=1"},
+        {"near", "reach=0.25"},
         {"fine", "directions=16 steps=4 interleave=1 resolution=full"},
         {"limit", "directions=40 steps=8 interleave=1 resolution=full"}};
     return settings;

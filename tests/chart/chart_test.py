@@ -175,6 +175,28 @@ class Chart(unittest.TestCase):
             self.assertLess(abs(own["bias"] - whole[point["id"]]["bias"]), 0.03)
         self.assertIn("--judge-one-of 8", self.chart(*common, "--judge-one-of", "8", code=2))
 
+    def test_one_bounce_against_what_the_view_shows(self):
+        """--on-screen: techniques of the picture alone have a second truth, kept apart from the first, with less light."""
+        common = ("--quick", "--scenes", "cornell", "--size", "64x36", "--noise", "0.02", "--techniques", "screen_space", "rival",
+                  "--only", "samples=64", "levels=0,4", "start=quarter", "spp=1", "resolution=quarter", "--no-report")
+        self.chart(*common)
+        without = {p["id"]: p for p in self.results()["points"]}
+        self.assertEqual([p["errors"]["screen"] for p in without.values()], [None] * len(without))
+        self.chart(*common, "--on-screen")
+        [view] = self.results()["views"]
+        self.assertLessEqual(view["on_screen"]["noise"], 0.02)
+        self.assertIn("-seen-", view["on_screen"]["name"])
+        self.assertNotIn(view["on_screen"]["name"], [t["name"] for t in view["truths"]])
+        points = self.results()["points"]
+        self.assertEqual({p["technique"] for p in points}, {"screen_space", "rival"})
+        for point in points:
+            known = without[point["id"]]
+            self.assertEqual(point["errors"]["screen"] is None, point["technique"] == "rival")
+            if point["technique"] == "screen_space":
+                self.assertEqual(point["ms"], known["ms"])  # judged anew, not timed
+                # The Cornell box's front wall is not in the picture: it sends in one truth alone.
+                self.assertGreater(point["errors"]["screen"]["bias"], point["errors"]["own"]["bias"] + 0.1)
+
     def test_refusals(self):
         self.assertIn("rsm", self.chart("--techniques", "nothing", code=2))
         self.assertIn("nothing", self.chart("--quick", "--scenes", "nothing", "--no-report", code=2))

@@ -13,6 +13,7 @@ import unittest
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
 sys.path.insert(0, os.path.join(ROOT, "samples", "chart"))
+from looks import looks  # noqa: E402
 from pareto import pareto_front  # noqa: E402
 import report  # noqa: E402
 import results as charts  # noqa: E402
@@ -43,6 +44,23 @@ class Pareto(unittest.TestCase):
             self.assertEqual({points[i] for i in front}, expected, points)
             self.assertEqual(len(front), len(expected))
             self.assertEqual([points[i][0] for i in front], sorted(points[i][0] for i in front))
+
+
+class Looks(unittest.TestCase):
+    KNOWN = ["rsm", "ssvp", "screen_space", "horizon", "ao", "fallback", "rival"]
+
+    def test_each_technique_has_a_colour_of_its_own_in_every_figure(self):
+        colours = {name: look[0] for name, look in looks(self.KNOWN + ["new", "newer"]).items()}
+        self.assertEqual(len(set(colours.values())), len(colours))
+        for name in self.KNOWN:
+            self.assertEqual(looks([name])[name][0], colours[name])
+
+    def test_variants_share_the_colour_and_differ_by_line(self):
+        variants = ["ssvp", "ssvp,warm_start=off", "ssvp,clusters=4", "rsm"]
+        found = looks(variants)
+        self.assertEqual({found[v][0] for v in variants[:3]}, {found["ssvp"][0]})
+        self.assertEqual(len({found[v][:2] for v in variants}), len(variants))
+        self.assertNotEqual(found["rsm"][0], found["ssvp"][0])
 
 
 def made_point(view, settings, ms, relmse, noise, label=""):

@@ -163,6 +163,15 @@ class WrongArguments(CommandLine):
         self.refused([*one, "--until", "relMSE=-1", *out], "relMSE=-1")
         self.refused([*one, "--until", "relMSE=1", "--spp", "4", *out], "--spp", "--until")
         self.refused([*one, "--vpls", "/no/such/file", *out], "/no/such/file")
+        self.refused(["reference", "cornell", "--bounces", "2", "--on-screen", *out], "--on-screen", "1")
+        self.refused([*one, "--source-view", "inside", *out], "--source-view", "--on-screen")
+        self.refused([*one, "--on-screen", "--source-view", "nothing", *out], "nothing", "inside")
+        self.refused([*one, "--on-screen", "--vpls", "a", *out], "--on-screen", "--vpls")
+        self.refused([*one, "--quantity", "occlusion", *out], "'occlusion'", "ambient-occlusion")
+        ambient = ["reference", "cornell", "--quantity", "ambient-occlusion"]
+        self.refused([*ambient, "--bounces", "1", *out], "ambient-occlusion", "--bounces")
+        self.refused([*ambient, "--radius", "0", *out], "--radius", "'0'")
+        self.refused([*ambient, "--weighting", "sine", *out], "'sine'", "cosine, uniform")
 
     def test_files_to_compare(self):
         self.refused(["compare", "/no/image.exr", "/no/reference.exr"], "/no/image.exr")
@@ -305,6 +314,37 @@ class Render(CommandLine):
         shadowed, gathered = exr.read(truth)[2]["R"], exr.read(picture)[2]["R"]
         self.assertLess(sum(shadowed), 0.99 * sum(gathered))  # the boxes do cast shadows
 
+    def test_source_views(self):
+        """A second camera that sees what the first does not brings light; one that sees the same brings next to none."""
+        def light(*arguments):
+            file = self.path("cameras.exr")
+            self.done("render", "cornell", "--technique", "screen_space", *SIZE, "--frames", "1", "--warmup", "0", "--out", file, *arguments)
+            return sum(exr.read(file)[2]["R"])
+        one = light()
+        self.assertGreater(light("--set", "cameras=on", "--source-view", "inside"), 1.02 * one)
+        self.assertEqual(light("--source-view", "inside"), one)  # cameras=off: they are not looked at
+        self.assertAlmostEqual(light("--set", "cameras=on", "--source-view", "front") / one, 1.0, delta=0.02)
+        self.refused(["render", "cornell", "--technique", "screen_space", *SIZE, "--hash", "--source-view", "nothing"], "nothing", "inside")
+        self.refused(["render", "cornell", "--technique", "none", *SIZE, "--hash", "--source-view", "inside"], "none", "source views")
+
+    def test_ambient_occlusion_against_its_truth(self):
+        """What horizon makes of ambient occlusion is that of the path tracer, but for what the view hides."""
+        picture, truth = self.path("ambient.exr"), self.path("open.exr")
+        size = ["--size", "160x90"]
+        self.done("render", "cornell", "--technique", "horizon", "--quantity", "ambient-occlusion", "--set", "directions=16", "steps=4",
+                  "resolution=full", "thickness=10", *size, "--frames", "1", "--warmup", "0", "--out", picture)
+        self.done("reference", "cornell", "--quantity", "ambient-occlusion", *size, "--spp", "256", "--out", truth)
+        found = self.json("compare", picture, truth, "--json")
+        # Found 0.025 and +2.5 %: the boxes' hidden sides and the front wall. (With the default thickness, for which light leaks
+        # behind the boxes, 0.036 and +4.8 %.)
+        self.assertLess(found["relMSE"], 0.03)
+        self.assertLess(abs(found["bias"]), 0.035)
+        planes = exr.read(picture)[2]
+        self.assertEqual(planes["R"], planes["B"])
+        self.assertNotIn("validity", planes)
+        self.refused(["render", "cornell", "--technique", "none", "--quantity", "ambient-occlusion", *SIZE, "--hash"], "none", "ambient")
+        self.refused(["render", "cornell", "--technique", "rival", "--quantity", "ambient-occlusion", *SIZE, "--hash"], "rival", "ambient")
+
     def test_debug_view(self):
         view = self.path("vpls.exr")
         self.render("--set", "vpls=64", "--debug-view", "vpls=" + view)
@@ -388,6 +428,21 @@ class Reference(CommandLine):
             self.assertEqual(texts[key], text)
         self.assertGreater(float(texts["noise.bounce1+bounce2"]), 0)
 
+    def test_light_of_what_the_picture_shows(self):
+        """Less than all light, more with another camera; without shadows more again; and said in the file."""
+        def light(*arguments):
+            file = self.path("senders.exr")
+            self.done("reference", "cornell", "--bounces", "1", *SIZE, "--spp", "64", "--out", file, *arguments)
+            _, _, planes, texts = exr.read(file)
+            return sum(planes["R"]), texts
+        (every, _), (seen, texts) = light(), light("--on-screen")
+        both, both_texts = light("--on-screen", "--source-view", "inside")
+        self.assertLess(seen, 0.9 * every)
+        self.assertGreater(both, 1.05 * seen)
+        self.assertLess(both, 1.01 * every)
+        self.assertGreater(light("--on-screen", "--unshadowed")[0], 1.02 * seen)
+        self.assertEqual((texts["senders"], both_texts["senders"]), ("front", "front, inside"))
+
     def test_same_seed_same_file_and_compact(self):
         arguments = ["reference", "cornell", "--bounces", "1", *SIZE, "--spp", "8"]
         paths = [self.path(name) for name in ("a.exr", "b.exr", "other.exr", "compact.exr")]
@@ -402,6 +457,9 @@ class Reference(CommandLine):
         self.assertLess(len(contents[3]), len(contents[0]) / 3)
         full, compact = (self.json("compare", paths[2], paths[i], "--json")["reference_noise"] for i in (0, 3))
         self.assertTrue(math.isclose(full, compact, rel_tol=0.01), (full, compact))
+        # Only the first bounce is traced for it: the same light, but for the halves' rounding.
+        for whole, half in zip(exr.read(paths[0])[2]["R"], exr.read(paths[3])[2]["R"]):
+            self.assertTrue(math.isclose(whole, half, rel_tol=1e-3, abs_tol=1e-6), (whole, half))
 
     def test_until(self):
         picture = self.path("until.exr")

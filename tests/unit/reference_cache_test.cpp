@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include <filesystem>
+#include <set>
 #include <thread>
 
 #include "../support/quad_scene.h"
@@ -65,6 +66,28 @@ bool sameBits(const Truth& a, const Truth& b) {
 struct Stop {};
 
 }  // namespace
+
+TEST_CASE("light of what pictures show is kept apart from all light, and by picture", "[chart]") {
+    const studio_test::TempFolder folder;
+    const studio::RayScene scene = corner(0.7f);
+    const test::Receivers view = floorView(12);
+    studio::PictureView picture{view.view.camera, 32, 32};
+    picture.camera.target = vec3(0, 1, 0);
+    TruthRequest some = request(folder.path(), 0.02);
+    some.sendersSeenBy = {picture};
+    const Truth all = truthOf(scene, view.view, request(folder.path(), 0.02));
+    const Truth shown = truthOf(scene, view.view, some);
+    picture.camera.target = vec3(0, 1, 9);  // looks away
+    some.sendersSeenBy = {picture};
+    const Truth none = truthOf(scene, view.view, some);
+    CHECK(std::set<std::string>{all.name, shown.name, none.name}.size() == 3);
+    CHECK(filesIn(folder.path(), ".exr") == 3);
+    CHECK(meanGreen(shown) > 0.0);
+    CHECK(meanGreen(none) == 0.0);
+    CHECK(sameBits(all, truthOf(scene, view.view, request(folder.path(), 0.02))));
+    some.bounces = {2};
+    CHECK_THROWS_WITH(cli::obtainTruths(scene, view.view, some), Catch::Contains("expected 1"));
+}
 
 TEST_CASE("a truth is traced once, to the noise asked for", "[chart]") {
     const studio_test::TempFolder folder;
