@@ -24,28 +24,27 @@ typedef struct {
 
 LW_FN real along_(float4 axis, lw_direction v) { return fma_(axis.x, v.x, fma_(axis.y, v.y, axis.z * v.z)); }
 
-LW_FN lw_packet packet_of(lw_paraboloid frame, float step, lanei x, lanei y, float middleX, float middleY) {
-    lw_packet p;
+// Written in place: Oclgrind does not know what clang leaves where a structure that is returned stays in memory.
+LW_FN void set_packet(lw_packet* p, lw_paraboloid frame, float step, lanei x, lanei y, float middleX, float middleY) {
     const real u = paraboloid_uv(to_real(x), step), v = paraboloid_uv(to_real(y), step), r2 = u * u + v * v;
-    p.ray = world_ray(frame, u, v);
-    p.length = 1.0f + r2;
-    p.inside = r2 <= LW_PARABOLOID_RIM * LW_PARABOLOID_RIM;
+    p->ray = world_ray(frame, u, v);
+    p->length = 1.0f + r2;
+    p->inside = r2 <= LW_PARABOLOID_RIM * LW_PARABOLOID_RIM;
     const float mu = (middleX + 0.5f) * step - LW_PARABOLOID_RIM, mv = (middleY + 0.5f) * step - LW_PARABOLOID_RIM;
     const float scale = 1.0f / (1.0f + mu * mu + mv * mv);
-    p.axis = (2.0f * mu * scale) * frame.axisX + (2.0f * mv * scale) * frame.axisY +
-             ((1.0f - mu * mu - mv * mv) * scale) * frame.axisZ;
-    p.axis.w = 0.0f;
-    p.axis = p.axis * rsqrt(dot(p.axis, p.axis));
+    p->axis = (2.0f * mu * scale) * frame.axisX + (2.0f * mv * scale) * frame.axisY +
+              ((1.0f - mu * mu - mv * mv) * scale) * frame.axisZ;
+    p->axis.w = 0.0f;
+    p->axis = p->axis * rsqrt(dot(p->axis, p->axis));
     float4 across[2];
-    paraboloid_axes(p.axis, &across[0], &across[1]);
-    const real depth = along_(p.axis, p.ray), inverse = 1.0f / depth;
-    p.cosine = depth / p.length;
+    paraboloid_axes(p->axis, &across[0], &across[1]);
+    const real depth = along_(p->axis, p->ray), inverse = 1.0f / depth;
+    p->cosine = depth / p->length;
     for (int i = 0; i < 2; ++i) {
-        const real slope = along_(across[i], p.ray) * inverse;
-        p.side[2 * i] = across[i] - (min_lane(slope) - LW_FRUSTUM_MARGIN) * p.axis;
-        p.side[2 * i + 1] = (max_lane(slope) + LW_FRUSTUM_MARGIN) * p.axis - across[i];
+        const real slope = along_(across[i], p->ray) * inverse;
+        p->side[2 * i] = across[i] - (min_lane(slope) - LW_FRUSTUM_MARGIN) * p->axis;
+        p->side[2 * i + 1] = (max_lane(slope) + LW_FRUSTUM_MARGIN) * p->axis - across[i];
     }
-    return p;
 }
 
 // Boxes of centres `c` and half extents `h`, one a lane: those that reach into the frustum, and how far along its axis

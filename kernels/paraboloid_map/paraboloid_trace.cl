@@ -137,8 +137,9 @@ __kernel void paraboloid_map_trace(__global const float* triangles, int stride, 
     laneu normal = 0, colour = 0;
     if (states[map] & LW_MAP_DRAWN && hasTriangles) {
         const lw_paraboloid frame = frames[map];
-        const lw_packet p = packet_of(frame, paraboloid_step(size), x, y, (float)column + 0.5f * (LW_BLOCK_COLUMNS - 1),
-                                      (float)(row % size) + 0.5f * (LW_BLOCK_ROWS - 1));
+        lw_packet p;
+        set_packet(&p, frame, paraboloid_step(size), x, y, (float)column + 0.5f * (LW_BLOCK_COLUMNS - 1),
+                   (float)(row % size) + 0.5f * (LW_BLOCK_ROWS - 1));
         lw_nearest n = {select_((real)(0.0f), (real)(INFINITY), p.inside), (lanei)(-1), INFINITY};
         if (any_(p.inside)) trace(&n, &p, triangles, stride, nodes, frame.origin);
         const mask hit = n.triangle >= 0;
