@@ -40,19 +40,32 @@ LW_FN real cluster_visibility(lw_maps maps, int cluster, const lw_surface s) {
 #endif
 }
 
-// The cluster whose visibility is at hand.
+// The cluster whose visibility is at hand, and one that was looked up ahead.
 typedef struct {
-    float cluster;
-    real seen;
+    float cluster, last;
+    real seen, lastSeen;
 } lw_current;
 
 LW_FN real visibility_of(lw_current* current, lw_maps maps, __global const float* vpl, const lw_surface s) {
     const float cluster = vpl[11];
     if (cluster != current->cluster) {
         current->cluster = cluster;
-        current->seen = cluster_visibility(maps, (int)cluster, s);
+        current->seen = cluster == current->last ? current->lastSeen : cluster_visibility(maps, (int)cluster, s);
     }
     return current->seen;
+}
+
+// The clusters of the first and of the last VPL among those of `bits` are looked up together: a look-up is one long chain of
+// dependent operations, and two such take little longer than one.
+LW_FN lw_current look_ahead(uint bits, __global const float* vpls, lw_maps maps, const lw_surface s) {
+    lw_current current = {-1.0f, -1.0f, (real)1.0f, (real)1.0f};
+    if (!bits) return current;
+    current.cluster = vpls[12 * (int)popcount(~bits & (bits - 1u)) + 11];
+    current.last = vpls[12 * (31 - (int)clz(bits)) + 11];
+    current.seen = cluster_visibility(maps, (int)current.cluster, s);
+    current.lastSeen = current.seen;
+    if (current.last != current.cluster) current.lastSeen = cluster_visibility(maps, (int)current.last, s);
+    return current;
 }
 
 LW_FN void add_two_seen(rgb* e, const lw_surface s, const lw_surface away, __global const float* first,
@@ -65,16 +78,18 @@ LW_FN void add_two_seen(rgb* e, const lw_surface s, const lw_surface away, __glo
 
 // All VPLs of a subset that the tile has not skipped, in the order of their slots.
 LW_FN rgb gather_subset(const lw_surface s, __global const float* vpls, lw_subset_order order, int subset,
-                        __global const uint* masks, lw_vpl_tiles tiles, int tile, lw_maps maps) {
+                        __global const uint* masks, lw_vpl_tiles tiles, int tile, lw_maps maps,
+                        uint shadowed) {
     rgb e = {(real)0.0f, (real)0.0f, (real)0.0f};
     const lw_surface away = turned_away(s);
-    lw_current current = {-1.0f, (real)1.0f};
+    lw_current current = {-1.0f, -1.0f, (real)1.0f, (real)1.0f};
     vpls += 12 * subset * order.capacity;
     if (tiles.words == 0) {
         for (int k = 0; k < order.capacity; k += 2)
             add_two_seen(&e, s, away, vpls + 12 * k, vpls + 12 * k + 12, maps, &current);
         return e;
     }
+    current = look_ahead(masks[subset * tiles.words * lw_tile_stride(tiles) + tile] & shadowed, vpls, maps, s);
     for (int word = 0; word < tiles.words; ++word, vpls += 12 * 32) {
         uint bits = masks[(subset * tiles.words + word) * lw_tile_stride(tiles) + tile];
         while (bits) {
@@ -94,8 +109,8 @@ __kernel void clustered_gather_gather(__global const float* position, int4 posit
                                       __global const uint* masks, lw_vpl_tiles tiles,
                                       __global const lw_paraboloid* frames, __global const float* records,
                                       __global const lw_paraboloid* secondFrames, __global const float* secondRecords,
-                                      int seconds, int size, __global float* irradiance, int4 irradianceLayout,
-                                      __global int* counts) {
+                                      int seconds, int size, uint shadowed, __global float* irradiance,
+                                      int4 irradianceLayout, __global int* counts) {
     const int x = (int)get_global_id(0) * LW_WIDTH * LW_INTERLEAVE, y = (int)get_global_id(1);
     if (x >= width || y >= height) return;
     const int tile = (y / LW_TILE_ROWS) * tiles.columns + x / tiles.tileWidth;
@@ -113,7 +128,7 @@ __kernel void clustered_gather_gather(__global const float* position, int4 posit
         rgb sum = {(real)0.0f, (real)0.0f, (real)0.0f};
         if (any_(s.valid)) {
             const int subset = (y & (LW_INTERLEAVE - 1)) * LW_INTERLEAVE + j;
-            sum = gather_subset(s, vpls, order, subset, masks, tiles, tile, maps);
+            sum = gather_subset(s, vpls, order, subset, masks, tiles, tile, maps, shadowed);
         }
         const mask saturated = finish_irradiance(sum, s.valid, &e[0][j], &e[1][j], &e[2][j]);
         rejectedHere += selecti_((lanei)0, (lanei)1, s.rejected);

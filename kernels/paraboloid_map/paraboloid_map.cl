@@ -1,8 +1,8 @@
 // Paraboloid maps of clusters of VPLs (Heidrich & Seidel 1998; imperfect shadow maps, Ritschel et al. 2008; one map
-// for a cluster, Dong et al. 2009): where each map stands, its empty records, and what the triangles that the sweeps
-// of paraboloid_draw.cl left in them come to. Formats: shared/paraboloid_types.h.
-#include "paraboloid_raster.h"
+// for a cluster, Dong et al. 2009): where each map stands, and its empty records. What triangles leave in them:
+// paraboloid_trace.cl. Formats: shared/paraboloid_types.h.
 #include "shared/cluster_types.h"
+#include "shared/paraboloid.h"
 #include "shared/paraboloid_map_types.h"
 
 LW_FN int differs(float4 a, float4 b) { return any(as_int4(a) != as_int4(b)); }
@@ -45,59 +45,6 @@ __kernel void paraboloid_map_clear(__global const int* states, int texels, __glo
     const int texel = (int)get_global_id(0), map = (int)get_global_id(1);
     if (texel >= texels || !(states[map] & LW_MAP_STALE)) return;
     vstore2((uint2)(as_uint(INFINITY), 0xffffffffu), (size_t)map * texels + texel, records);
-}
-
-// The second words of `LW_WIDTH` records from the first on.
-LW_FN void store_second(laneu second, real first, __global uint* records) {
-    const real o = as_real_(second);
-    store(zip_lo_(first, o), (__global float*)records, 0);
-    store(zip_hi_(first, o), (__global float*)records, LW_WIDTH);
-}
-
-LW_FN lw_direction gather3(__global const float* triangles, int stride, int plane, lanei t) {
-    const lw_direction v = {gather(triangles + plane * stride, t), gather(triangles + (plane + 1) * stride, t),
-                            gather(triangles + (plane + 2) * stride, t)};
-    return v;
-}
-
-// One work-item = LW_WIDTH texels (x) of a map (y): the nearest triangle becomes its normal, turned to the
-// origin, and its albedo. `texels` of a map: a multiple of 16.
-__kernel void paraboloid_map_resolve(__global const float* triangles, int stride,
-                                     __global const lw_paraboloid* frames, __global const int* states, int size,
-                                     int hasTriangles, __global uint* records, __global uint* albedo) {
-    const int texel = (int)get_global_id(0) * LW_WIDTH, map = (int)get_global_id(1);
-    if (texel >= size * size || !(states[map] & LW_MAP_STALE)) return;
-    const int at = map * size * size + texel;
-    __global const float* words = (__global const float*)(records + 2 * at);
-    const real low = load(words, 0), high = load(words, LW_WIDTH);
-    const lanei id = as_lanei_(odd_(low, high));
-    const real distance = even_(low, high);
-    const mask hit = id >= 0;
-    laneu bits = 0, colour = 0;
-    if (hasTriangles && any_(hit)) {
-        const lw_paraboloid frame = frames[map];
-        const lanei t = selecti_((lanei)(0), id, hit);
-        const lw_direction a = gather3(triangles, stride, LW_TRIANGLE_A, t);
-        lw_direction normal = cross_(minus_(gather3(triangles, stride, LW_TRIANGLE_B, t), a),
-                                     minus_(gather3(triangles, stride, LW_TRIANGLE_C, t), a));
-        // So that no square leaves float's range, in whatever unit of length.
-        const real largest = 1.0f / fmax(fmax(fabs(normal.x), fabs(normal.y)), fmax(fabs(normal.z), FLT_MIN));
-        normal.x = normal.x * largest;
-        normal.y = normal.y * largest;
-        normal.z = normal.z * largest;
-        const float step = paraboloid_step(size);
-        const real x = to_real(lanei_iota() + texel % size), y = (real)((float)(texel / size));
-        // Against the ray that met it.
-        const lw_direction ray = world_ray(frame, paraboloid_uv(x, step), paraboloid_uv(y, step));
-        const real length = rsqrt(dot_(normal, normal));
-        const real scale = select_(length, -length, dot_(normal, ray) > 0.0f);
-        const lw_direction n = to_frame(frame, normal);
-        bits = selectu_(bits, pack_normal(n.x * scale, n.y * scale, n.z * scale), hit);
-        const lw_direction rgb = gather3(triangles, stride, LW_TRIANGLE_ALBEDO, t);
-        colour = selectu_(colour, pack_albedo(rgb.x, rgb.y, rgb.z), hit);
-    }
-    store_second(bits, distance, records + 2 * at);
-    store(colour, albedo, at);
 }
 
 // One work-item = LW_WIDTH texels (x) of a map (y): distance, normal in the world, albedo as planes for a debug

@@ -61,19 +61,4 @@ LW_FN lw_texel_box box_of_cap(lw_direction axis, real cosine, real sine, int siz
     return box_of(x - radius, x + radius, y - radius, y + radius, size, not_(round), beyond);
 }
 
-// Groups of triangles by their bounding spheres; radius below 0: an empty group.
-LW_FN lw_texel_box box_of_spheres(lw_paraboloid frame, int size, real cx, real cy, real cz, real radius) {
-    const lw_direction world = {cx - frame.origin.x, cy - frame.origin.y, cz - frame.origin.z};
-    lw_direction axis = to_frame(frame, world);
-    const real distance = sqrt(axis.x * axis.x + axis.y * axis.y + axis.z * axis.z);
-    const real inverse = 1.0f / fmax(distance, FLT_MIN);
-    const real sine = fmin(radius * inverse * 1.0001f, 1.0f);
-    axis.x = axis.x * inverse;
-    axis.y = axis.y * inverse;
-    axis.z = axis.z * inverse;
-    lw_texel_box box = box_of_cap(axis, sqrt(fmax(1.0f - sine * sine, 0.0f)), sine, size);
-    box.any = and_(box.any, radius >= 0.0f);
-    return box;
-}
-
 #endif

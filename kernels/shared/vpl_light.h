@@ -38,13 +38,6 @@ LW_FN void add_light(rgb* e, real w, __global const float* vpl) {
     e->b = fma_(w, vpl[10], e->b);
 }
 
-// Takes the lowest bit out of `bits` and returns its number.
-LW_FN int take_lowest(uint* bits) {
-    const int lowest = (int)popcount(~*bits & (*bits - 1u));
-    *bits &= *bits - 1u;
-    return lowest;
-}
-
 // The surface with its normal turned round, as weigh_two_vpls wants it.
 LW_FN lw_surface turned_away(lw_surface s) {
     s.nx = -s.nx;

@@ -1,4 +1,4 @@
-// The host's triangles on the device, ordered and grouped for kernels that draw them into maps.
+// The host's triangles on the device, ordered, in a tree of boxes for kernels that send rays.
 #pragma once
 
 #include <cstdint>
@@ -35,9 +35,8 @@ public:
     void forget() { key_ = Key{}; }  // the next import() brings all again, whatever its key
 
     Planes triangles;  // kPlaneCount planes, height 1, width = triangles padded; none without triangles
-    Buffer groups;     // planes of centre xyz and radius per group of LW_TRIANGLE_GROUP triangles; radius -1: empty
+    Buffer nodes;      // of the tree of boxes over the triangles, see geometry_types.h
     std::uint32_t triangleCount = 0;  // drawn
-    std::uint32_t groupCount = 0;     // padded to 16: floats per plane of `groups`
     float diagonal = 0.0f;            // of the bounding box of what is drawn, m
     double area = 0.0;                // of all that is drawn, m^2
     // For each drawn triangle the share of the area up to and with it, of 2^32; the last one's is the largest number.
@@ -46,7 +45,7 @@ public:
     std::vector<std::uint32_t> hostIndices;  // of each drawn triangle: its number among the host's
 
     void report(Report& report) const;  // triangles, rejected_triangles
-    std::uint64_t bytes() const { return memory_.bytes() + groups.bytes(); }
+    std::uint64_t bytes() const { return memory_.bytes() + nodes.bytes(); }
     // The most that bytes() becomes for so many triangles, and the refusal of more than kernels can index.
     static std::uint64_t estimateBytes(std::uint32_t triangleCount);
 

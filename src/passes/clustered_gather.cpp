@@ -70,6 +70,7 @@ void ClusteredGather::recordOrder(Executor& executor, const std::vector<Gathered
     cl_int2 slots{};
     cl_int firstCluster = 0;
     std::size_t sortedLists = 0;
+    shadowed_ = 0;
     for (const GatheredList& list : lists) {
         const lw_subset_order dealt = subsetOrder(list.vpls.count, subsets);
         slots.s[1] = dealt.capacity;
@@ -86,6 +87,7 @@ void ClusteredGather::recordOrder(Executor& executor, const std::vector<Gathered
             firstCluster += cl_int(list.clusterCount);
         }
         slots.s[0] += slots.s[1];
+        if (list.assignment) shadowed_ = slots.s[0] < 32 ? (1u << slots.s[0]) - 1u : 0xffffffffu;
     }
 }
 
@@ -98,7 +100,7 @@ void ClusteredGather::recordGather(Executor& executor, const Planes& position, c
     executor.run("clustered_gather.gather", gather_, {(position.width + pixels - 1) / pixels, position.height},
                  groupOf(gather_), position, normal, cl_int(position.width), cl_int(position.height), vpls_, order_, masks,
                  tiles, maps.frames, maps.records, maps.secondFrames, maps.secondRecords, cl_int(maps.seconds),
-                 cl_int(maps.size), irradiance, counts);
+                 cl_int(maps.size), shadowed_, irradiance, counts);
 }
 
 Planes ClusteredGather::visibilityShape(const Planes& position, std::uint32_t clusterCount) {

@@ -77,6 +77,7 @@ private:
     Buffer vpls_;
     std::array<Buffer, kMostClusteredLists> sorted_;
     lw_subset_order order_{};
+    cl_uint shadowed_ = 0;  // of a subset's first 32 slots those whose light is shadowed, a bit each
 };
 
 }  // namespace lightwell

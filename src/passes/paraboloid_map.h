@@ -30,7 +30,7 @@ public:
     // only when its cluster's medoid or normal moved or the geometry changed; that is found out on the device.
     void record(Executor& executor, const Buffer& clusters, std::uint32_t clusterCount,
                 const GeometryInput& geometry);
-    // For another pass to draw into: places the maps and empties those that are stale. `diagonal`: of the geometry, a
+    // For another pass to draw into: places the maps, and empties those that are stale. `diagonal`: of the geometry, a
     // float on the device, m; `revision`: differs whenever the geometry does. Once all is recorded: noteDrawn().
     void recordPlaces(Executor& executor, const Buffer& clusters, std::uint32_t clusterCount, const Buffer& diagonal,
                       std::uint64_t revision);
@@ -51,21 +51,21 @@ public:
     Planes debugShape() const;
     void recordPlanes(Executor& executor, const Planes& planes);  // fills them
 
-    void report(Report& report) const;  // maps_redrawn, inline_triangles
+    void report(Report& report) const;  // maps_redrawn
     std::uint64_t bytes() const;
-    static std::uint64_t estimateBytes(std::uint32_t size, std::uint32_t clusterCount, std::uint32_t triangleCount);
+    static std::uint64_t estimateBytes(std::uint32_t size, std::uint32_t clusterCount);
     // Where other passes draw into the maps.
     static std::uint64_t estimatePlacesBytes(std::uint32_t size, std::uint32_t clusterCount);
 
 private:
     void reserve(std::uint32_t clusterCount);
-    void reserveTriangles(std::uint32_t clusterCount, std::uint32_t groupCount);
-    void draw(Executor& executor, const GeometryInput& geometry);
+    void place(Executor& executor, const Buffer& clusters, std::uint32_t clusterCount, const Buffer& diagonal,
+               std::uint64_t revision);
 
     Device& device_;
     std::uint32_t size_;
-    Kernel &place_, &clear_, &depth_, &depthLarge_, &identity_, &identityLarge_, &resolve_, &planes_;
-    Buffer frames_, state_, records_, albedo_, candidates_, large_, counters_, diagonal_;
+    Kernel &place_, &clear_, &trace_, &planes_;
+    Buffer frames_, state_, records_, albedo_, counters_, diagonal_;
     std::uint32_t mapCount_ = 0;
     std::uint32_t drawnCount_ = 0;  // maps that hold what `drawnRevision_` showed
     std::uint64_t drawnRevision_ = 0;

@@ -170,7 +170,7 @@ std::uint64_t SsvpMaps::estimateBytes(const LWSsvpDesc& desc, const std::vector<
     if (source == Source::none || source == Source::triangles) {
         const bool draws = source == Source::triangles;
         for (const std::uint32_t clusters : clusterCounts)
-            total += ParaboloidMap::estimateBytes(desc.mapSize, draws ? clusters : 0, draws ? shape.triangles : 0);
+            total += ParaboloidMap::estimateBytes(desc.mapSize, draws ? clusters : 0);
         return total;
     }
     std::uint64_t surfels = 0;

@@ -1,4 +1,4 @@
-// The host's triangles on the device: order, padding, groups, what is refused, when it is uploaded.
+// The host's triangles on the device: order, padding, what is refused, when it is uploaded.
 #include "inputs/geometry_input.h"
 
 #include <catch2/catch.hpp>
@@ -31,6 +31,17 @@ Mesh scatter(int count) {
     return mesh;
 }
 
+// Whether one of the node's boxes holds the triangle.
+bool isUnder(const std::vector<float>& node, const std::vector<float>& planes, std::size_t stride, std::size_t t) {
+    for (std::size_t child = 0; child < LW_TREE_CHILDREN; ++child) {
+        bool holds = true;
+        for (std::size_t p = 0; p < 9; ++p)
+            holds = holds && std::abs(planes[p * stride + t] - node[16 * (p % 3) + child]) <= node[LW_TREE_HALF + 16 * (p % 3) + child];
+        if (holds) return true;
+    }
+    return false;
+}
+
 std::uint64_t uploads(KernelRig& rig) {
     rig.device().finish();
     std::uint64_t launches = 0;
@@ -41,7 +52,7 @@ std::uint64_t uploads(KernelRig& rig) {
 
 }  // namespace
 
-TEST_CASE("every triangle once, as planes, in groups that hold it", "[geometry_input]") {
+TEST_CASE("every triangle once, as planes, under the tree's boxes", "[geometry_input]") {
     KernelRig rig(16);
     const Mesh mesh = scatter(301);
     GeometryInput input;
@@ -50,10 +61,9 @@ TEST_CASE("every triangle once, as planes, in groups that hold it", "[geometry_i
     rig.device().finish();
     CHECK(input.triangleCount == 301);
     CHECK(input.triangles.width == 304);
-    CHECK(input.groupCount == 32);
     const std::size_t stride = std::size_t(input.triangles.planeStride);
     const std::vector<float> planes = floatsOf(input.triangles.memory, rig.device(), stride * GeometryInput::kPlaneCount);
-    const std::vector<float> groups = floatsOf(input.groups.get(), rig.device(), 4 * input.groupCount);
+    const std::vector<float> root = floatsOf(input.nodes.get(), rig.device(), LW_TREE_NODE);
     std::vector<int> seen(301);
     for (std::size_t t = 0; t < 304; ++t) {
         const std::size_t host = input.hostIndices[std::min<std::size_t>(t, 300)];
@@ -61,16 +71,9 @@ TEST_CASE("every triangle once, as planes, in groups that hold it", "[geometry_i
         for (std::size_t p = 0; p < 9; ++p)
             CHECK(planes[p * stride + t] == mesh.vertices[9 * host + (t < 301 ? p : p % 3)]);
         for (std::size_t c = 0; c < 3; ++c) CHECK(planes[(9 + c) * stride + t] == mesh.albedo[3 * host + c]);
-        const std::size_t g = t / LW_TRIANGLE_GROUP;
-        for (std::size_t corner = 0; corner < 3; ++corner) {
-            double squared = 0.0;
-            for (std::size_t c = 0; c < 3; ++c)
-                squared += std::pow(double(planes[(3 * corner + c) * stride + t]) - double(groups[c * input.groupCount + g]), 2.0);
-            CHECK(std::sqrt(squared) <= double(groups[3 * input.groupCount + g]));
-        }
+        CHECK(isUnder(root, planes, stride, t));
     }
     for (const int times : seen) CHECK(times == 1);
-    for (std::size_t g = 19; g < 32; ++g) CHECK(groups[3 * input.groupCount + g] == -1.0f);
     CHECK(input.bytes() == GeometryInput::estimateBytes(301));
 }
 

@@ -59,9 +59,47 @@ std::uint64_t countOf(const std::vector<LWCount>& counts, const std::string& nam
 const std::vector<lw_cluster> kFour = {clusterAt({0, 0, 0}, {0, 0, 1}), clusterAt({0.3, -0.2, 0.1}, {0, 0, -1}),
                                        clusterAt({-1, 0.5, 0.2}, {1, 2, -3}), clusterAt({2, 2, 2}, {-1, -1, -0.5})};
 
+void compareWithTwin(std::uint32_t width, const Mesh& mesh, const std::vector<lw_cluster>& clusters) {
+    const std::vector<reference::Triangle> triangles = mesh.triangles();
+    ParaboloidRig rig(width, 64);
+    const DrawnMaps maps = rig.drawn(mesh, clusters);
+    int texels = 0, ties = 0, wrong = 0, turned = 0;
+    for (std::size_t k = 0; k < clusters.size(); ++k) {
+        const reference::ParaboloidFrame frame(maps.frames[k]);
+        for (std::uint32_t y = 0; y < maps.size; ++y)
+            for (std::uint32_t x = 0; x < maps.size; ++x) {
+                const std::size_t at = maps.at(k, x, y);
+                if (!reference::isBeforeRim(x, y, maps.size)) {
+                    CHECK(!maps.hit(at));
+                    continue;
+                }
+                ++texels;
+                const Vec d = frame.world(reference::localDirection(x, y, maps.size));
+                const reference::Nearest expected = reference::nearest(triangles, frame.origin, d);
+                const bool hits = std::isfinite(expected.distance);
+                if (maps.hit(at) != hits || (hits && maps.triangle(at) != expected.triangle)) {
+                    ++ties;
+                } else if (hits) {
+                    const Vec n = triangles[expected.triangle].normal();
+                    const double cosine = dot(n, d);
+                    if (std::abs(double(maps.distance(at)) / expected.distance - 1.0) >
+                        kDistanceRounding + kDirectionRounding / std::abs(cosine))
+                        ++wrong;
+                    const Vec stored = frame.world(maps.normal(at)), turnedTo = n * (cosine > 0.0 ? -1.0 : 1.0);
+                    if (reference::length(stored - turnedTo) > kNormalRounding) ++turned;
+                } else {
+                    CHECK(std::isinf(maps.distance(at)));
+                }
+            }
+    }
+    CHECK(ties <= kNearTies * texels);
+    CHECK(wrong == 0);
+    CHECK(turned == 0);
+}
+
 }  // namespace
 
-TEST_CASE("a closed box from inside: the right distance in every texel, no crack", "[paraboloid_map]") {
+TEST_CASE("a closed box from inside: the right distance in every texel, no crack", "[paraboloid_map][large]") {
     const auto width = GENERATE(1u, 16u);
     const auto cut = GENERATE(std::pair<int, int>{1, 1}, std::pair<int, int>{37, 3});
     const Vec size{1.75, 1.125, 2.25};  // exact as floats
@@ -100,47 +138,16 @@ TEST_CASE("a closed box from inside: the right distance in every texel, no crack
     CHECK(turned == 0);
 }
 
-TEST_CASE("random triangles as the serial twin sees them", "[paraboloid_map]") {
-    const auto width = GENERATE(1u, 16u);
-    const Mesh mesh = soup(300, 7);
-    const std::vector<reference::Triangle> triangles = mesh.triangles();
-    ParaboloidRig rig(width, 64);
-    const DrawnMaps maps = rig.drawn(mesh, kFour);
-    int texels = 0, ties = 0, wrong = 0, turned = 0;
-    for (std::size_t k = 0; k < kFour.size(); ++k) {
-        const reference::ParaboloidFrame frame(maps.frames[k]);
-        for (std::uint32_t y = 0; y < maps.size; ++y)
-            for (std::uint32_t x = 0; x < maps.size; ++x) {
-                const std::size_t at = maps.at(k, x, y);
-                if (!reference::isBeforeRim(x, y, maps.size)) {
-                    CHECK(!maps.hit(at));
-                    continue;
-                }
-                ++texels;
-                const Vec d = frame.world(reference::localDirection(x, y, maps.size));
-                const reference::Nearest expected = reference::nearest(triangles, frame.origin, d);
-                const bool hits = std::isfinite(expected.distance);
-                if (maps.hit(at) != hits || (hits && maps.triangle(at) != expected.triangle)) {
-                    ++ties;
-                } else if (hits) {
-                    const Vec n = triangles[expected.triangle].normal();
-                    const double cosine = dot(n, d);
-                    if (std::abs(double(maps.distance(at)) / expected.distance - 1.0) >
-                        kDistanceRounding + kDirectionRounding / std::abs(cosine))
-                        ++wrong;
-                    const Vec stored = frame.world(maps.normal(at)), turnedTo = n * (cosine > 0.0 ? -1.0 : 1.0);
-                    if (reference::length(stored - turnedTo) > kNormalRounding) ++turned;
-                } else {
-                    CHECK(std::isinf(maps.distance(at)));
-                }
-            }
-    }
-    CHECK(ties <= kNearTies * texels);
-    CHECK(wrong == 0);
-    CHECK(turned == 0);
+TEST_CASE("random triangles as the serial twin sees them", "[paraboloid_map][large]") {
+    compareWithTwin(GENERATE(1u, 16u), soup(300, 7), kFour);
 }
 
-TEST_CASE("the same bits whatever the order of triangles, the width and the run", "[paraboloid_map]") {
+// Small enough for simulated devices.
+TEST_CASE("a few random triangles as the serial twin sees them", "[paraboloid_map]") {
+    compareWithTwin(GENERATE(1u, 16u), soup(20, 7), {kFour[1]});
+}
+
+TEST_CASE("the same bits whatever the order of triangles, the width and the run", "[paraboloid_map][large]") {
     const Mesh mesh = soup(400, 3);
     ParaboloidRig rig(16, 64), narrow(1, 64);
     const DrawnMaps maps = rig.drawn(mesh, kFour);
@@ -162,7 +169,7 @@ TEST_CASE("the same bits whatever the order of triangles, the width and the run"
         CHECK(std::memcmp(&shuffled.vertices[9 * rig.input.hostIndices[i]], &mesh.vertices[9 * narrow.input.hostIndices[i]], 36) == 0);
 }
 
-TEST_CASE("nothing depends on the unit of length", "[paraboloid_map]") {
+TEST_CASE("nothing depends on the unit of length", "[paraboloid_map][large]") {
     const auto width = GENERATE(1u, 16u);
     const Mesh mesh = soup(200, 11);
     ParaboloidRig rig(width, 64);
@@ -180,7 +187,7 @@ TEST_CASE("nothing depends on the unit of length", "[paraboloid_map]") {
     CHECK(scaled.albedo == maps.albedo);
 }
 
-TEST_CASE("a map is redrawn when its medoid, its normal or the geometry moved, and only then", "[paraboloid_map]") {
+TEST_CASE("a map is redrawn when its medoid, its normal or the geometry moved, and only then", "[paraboloid_map][large]") {
     const auto width = GENERATE(1u, 16u);
     ParaboloidRig rig(width, 64);
     Mesh mesh = soup(60, 2);
@@ -225,23 +232,22 @@ TEST_CASE("no triangles, no clusters, more clusters than before", "[paraboloid_m
     const DrawnMaps empty = rig.drawn(Mesh{}, kFour);
     for (std::size_t t = 0; t < empty.albedo.size(); ++t)
         REQUIRE((!empty.hit(t) && std::isinf(empty.distance(t)) && empty.albedo[t] == 0));
-    const Mesh mesh = soup(60, 2);
+    const Mesh mesh = soup(12, 2);
     rig.draw(mesh, {kFour[0], kFour[1]});
     const DrawnMaps four = rig.drawn(mesh, kFour);
     ParaboloidRig fresh(width, 64);
     CHECK(four.records == fresh.drawn(mesh, kFour).records);
-    CHECK(rig.pass.bytes() >= ParaboloidMap::estimateBytes(64, 4, mesh.count()));
-    CHECK(fresh.pass.bytes() == ParaboloidMap::estimateBytes(64, 4, mesh.count()));
+    CHECK(rig.pass.bytes() >= ParaboloidMap::estimateBytes(64, 4));
+    CHECK(fresh.pass.bytes() == ParaboloidMap::estimateBytes(64, 4));
 }
 
-TEST_CASE("more large triangles than the list holds are drawn all the same, and counted", "[paraboloid_map][large]") {
+TEST_CASE("of many walls the nearest is seen", "[paraboloid_map][large]") {
     const auto width = GENERATE(1u, 16u);
     ParaboloidRig rig(width, 64);
-    Mesh mesh;  // walls one behind the other, each over half the map
+    Mesh mesh;  // one behind the other, each over half the map
     for (int i = 0; i < 600; ++i) mesh.addQuad({-9, -9, 2.0 - 0.002 * i}, {18, 0, 0}, {0, 18, 0});
     const std::vector<lw_cluster> clusters = {kFour[0]};
-    const std::uint64_t inlined = countOf(rig.draw(mesh, clusters), "inline_triangles");
-    CHECK(inlined == 1200 - 1024);
+    rig.draw(mesh, clusters);
     const DrawnMaps maps = rig.maps();
     CHECK(double(maps.distance(maps.at(0, 32, 32))) == Approx(2.0 - 0.002 * 599).epsilon(0.01));
     Mesh front;

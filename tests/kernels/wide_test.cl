@@ -16,7 +16,7 @@ __kernel void wide_memory(__global const float* floats, __global const int* ints
 }
 
 // One work-item = LW_WIDTH pixels; out: planes of `count` with 1 where a mask is true, else 0; whole: any_,
-// all_ and count_ of x < y per work-item.
+// all_, count_ and bits_ of x < y per work-item.
 __kernel void wide_masks(__global const float* xs, __global const float* ys, __global const int* ints, int count,
                          __global float* out, __global int* outInts, __global int* whole) {
     const int i = (int)get_global_id(0) * LW_WIDTH;
@@ -40,9 +40,10 @@ __kernel void wide_masks(__global const float* xs, __global const float* ys, __g
     store(selecti_(n, -n, less), outInts, i);
     store(to_lanei(selectu_(u, u + 5u, less)), outInts + count, i);
     const int group = (int)get_global_id(0);
-    whole[3 * group] = any_(less);
-    whole[3 * group + 1] = all_(less);
-    whole[3 * group + 2] = count_(less);
+    whole[4 * group] = any_(less);
+    whole[4 * group + 1] = all_(less);
+    whole[4 * group + 2] = count_(less);
+    whole[4 * group + 3] = (int)bits_(less);
 }
 
 // One work-item = LW_WIDTH pixels.

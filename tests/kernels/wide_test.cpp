@@ -101,7 +101,7 @@ TEST_CASE("mask forms at every width", "[wide]") {
 
     const std::size_t groups = kPixels / width;
     const Guarded out = rig.make<float>(12 * kPixels), outInts = rig.make<cl_int>(2 * kPixels);
-    const Guarded whole = rig.make<cl_int>(3 * groups);
+    const Guarded whole = rig.make<cl_int>(4 * groups);
     rig.run("test.masks", rig.kernel(kProgram, "wide_masks"), {groups, 1}, {1, 1}, rig.upload(xs),
             rig.upload(ys), rig.upload(ints), cl_int(kPixels), out, outInts, whole);
     const auto values = rig.download<float>(out);
@@ -128,10 +128,15 @@ TEST_CASE("mask forms at every width", "[wide]") {
     for (std::size_t group = 0; group < groups; ++group) {
         CAPTURE(group);
         int count = 0;
-        for (std::size_t lane = 0; lane < width; ++lane) count += less(group * width + lane);
-        CHECK(wholes[3 * group] == (count > 0));
-        CHECK(wholes[3 * group + 1] == (count == int(width)));
-        CHECK(wholes[3 * group + 2] == count);
+        cl_int bits = 0;
+        for (std::size_t lane = 0; lane < width; ++lane) {
+            count += less(group * width + lane);
+            bits |= less(group * width + lane) << lane;
+        }
+        CHECK(wholes[4 * group] == (count > 0));
+        CHECK(wholes[4 * group + 1] == (count == int(width)));
+        CHECK(wholes[4 * group + 2] == count);
+        CHECK(wholes[4 * group + 3] == bits);
     }
 }
 
