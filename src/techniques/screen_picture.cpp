@@ -6,8 +6,6 @@
 namespace lightwell {
 namespace {
 
-constexpr std::uint32_t kNeeds = kNeedsDirectRadiance | kNeedsReceiveMask;
-
 std::uint64_t patternBytes(const ScreenSpaceOptions& options) {
     return std::uint64_t(options.interleave) * options.interleave * options.samples * sizeof(LwScreenSample);
 }
@@ -27,36 +25,40 @@ ScreenPicture::ScreenPicture(Device& device, const ScreenSpaceOptions& options, 
     for (Buffer& patterns : patterns_) patterns = Buffer(device, std::size_t(patternBytes(options)), "sample patterns");
 }
 
-void ScreenPicture::check(Device& device, const View& view, const LWGBuffer& gbuffer, const std::string& name) {
-    GBufferInput::check(device, view, gbuffer, kNeeds, name.c_str());
+void ScreenPicture::check(Device& device, const ScreenSpaceOptions& options, const View& view, const LWGBuffer& gbuffer, const std::string& name) {
+    GBufferInput::check(device, view, gbuffer, options.needs(), name.c_str());
     const Camera camera(gbuffer.camera, view.width, view.height, name + ".camera");
 }
 
 // The first level's disc and the ring of all others, in texels of the level.
-void ScreenPicture::makePatterns(Executor& executor, std::uint32_t rows) {
-    if (rows == patternRows_) return;
+void ScreenPicture::makePatterns(Executor& executor, std::uint32_t rows, std::uint32_t turn) {
+    const bool isNew = rows != patternRows_;
+    if (!isNew && (turn == patternTurn_ || (alike_[0] && alike_[1]))) return;
     const double r = options_.radiusAt(rows);
     const std::vector<LwScreenSample> tables[2] = {
-        screenPatterns(0.0, 2.0 * r, options_.samples, options_.interleave, options_.seed),
-        screenPatterns(r, 2.0 * r, options_.samples, options_.interleave, options_.seed)};
-    alike_[0] = takesEveryTexel(0.0, 2.0 * r, options_.samples);
-    alike_[1] = takesEveryTexel(r, 2.0 * r, options_.samples);
+        screenPatterns(0.0, 2.0 * r, options_.samples, options_.interleave, options_.seed, turn),
+        screenPatterns(r, 2.0 * r, options_.samples, options_.interleave, options_.seed, turn)};
+    if (isNew) {
+        alike_[0] = takesEveryTexel(0.0, 2.0 * r, options_.samples);
+        alike_[1] = takesEveryTexel(r, 2.0 * r, options_.samples);
+    }
     for (int i = 0; i < 2; ++i)
         executor.writeCopy("screen_gather.patterns", patterns_[i], 0, tables[i].size() * sizeof(LwScreenSample), tables[i].data());
     patternRows_ = rows;
+    patternTurn_ = turn;
 }
 
 void ScreenPicture::light(Executor& executor, ScreenSpacePasses& passes, const View& view, const LWGBuffer& gbuffer,
-                       const std::string& name) {
+                          const std::string& name, std::uint32_t turn) {
     const Camera camera(gbuffer.camera, view.width, view.height, name + ".camera");
-    gbuffer_.import(executor, view, gbuffer, kNeeds, name.c_str());
+    gbuffer_.import(executor, view, gbuffer, options_.needs(), name.c_str());
     camera_ = camera;
     // Should a later step fail, the images of the frame before are gone.
     contributions_.clear();
     lit_ = Planes{};
     isLit_ = true;
     executor.fill("screen_gather.counts", counts_, 0, 0, counts_.bytes());
-    makePatterns(executor, view.height);
+    makePatterns(executor, view.height, turn);
     levels_.resize(executor, view.width, view.height);
     passes.pyramid.record(executor, gbuffer_.position, gbuffer_.normal, gbuffer_.directRadiance, gbuffer_.receiveMask, camera_,
                           pyramid_, counts_);
@@ -122,7 +124,7 @@ std::uint64_t ScreenPicture::bytes() const {
 }
 
 std::uint64_t ScreenPicture::estimateBytes(const ScreenSpaceOptions& options, const LWViewDesc& view, bool uploads) {
-    return GBufferInput::estimateBytes(view, kNeeds, uploads) +
+    return GBufferInput::estimateBytes(view, options.needs(), uploads) +
            PyramidLevels::estimateBytes(view.maxWidth, view.maxHeight, options.pyramid()) +
            ScreenLevels::estimateBytes(view.maxWidth, view.maxHeight, options.range(), options.interleave) +
            2 * patternBytes(options) + LW_SCREEN_COUNTERS * sizeof(cl_int);

@@ -10,6 +10,7 @@
 #include "passes/mip_pyramid.h"
 #include "passes/screen_combine.h"
 #include "passes/screen_gather.h"
+#include "passes/temporal_history.h"
 #include "techniques/technique.h"
 
 namespace lightwell {
@@ -19,10 +20,14 @@ struct ScreenSpaceOptions {
     std::uint32_t levels = 4, samples = 64, interleave = 4, seed = 0;
     double radius = 20.0;  // texels, of an image of kRadiusRows rows
     bool bounded = true, cameras = false;
+    TemporalHistoryOptions history;  // none with 0 frames
 
     static constexpr double kRadiusRows = 720.0;
     LevelRange range() const { return {start, start + levels - 1}; }
     PyramidOptions pyramid() const { return {ScreenGather::kExtras, start == 0 ? 0u : 1u, range().last}; }
+    bool keeps() const { return history.frames > 0; }
+    // GBufferNeeds.
+    std::uint32_t needs() const { return kNeedsDirectRadiance | kNeedsReceiveMask | (keeps() ? std::uint32_t(kNeedsMotion) : 0u); }
     // The radius in texels of every level, for an image of so many rows.
     double radiusAt(std::uint32_t rows) const { return radius * rows / kRadiusRows; }
 };
@@ -42,16 +47,23 @@ public:
     ScreenPicture(Device& device, const ScreenSpaceOptions& options, std::uint32_t maxWidth, std::uint32_t maxHeight);
 
     // Throws what light() would say of the images. Nothing is enqueued.
-    static void check(Device& device, const View& view, const LWGBuffer& gbuffer, const std::string& name);
-    // From the host's images to the light of the first level.
-    void light(Executor& executor, ScreenSpacePasses& passes, const View& view, const LWGBuffer& gbuffer, const std::string& name);
+    static void check(Device& device, const ScreenSpaceOptions& options, const View& view, const LWGBuffer& gbuffer, const std::string& name);
+    // From the host's images to the light of the first level, by sample patterns turned by `turn` steps.
+    void light(Executor& executor, ScreenSpacePasses& passes, const View& view, const LWGBuffer& gbuffer, const std::string& name,
+               std::uint32_t turn);
     // To the outputs, or none, after light().
     void finish(Executor& executor, ScreenSpacePasses& passes, const Planes& irradiance, const Planes& validity);
     // Raises outputs made by finish() to what `other` sees.
     void join(Executor& executor, ScreenSpacePasses& passes, const ScreenPicture& other, const Planes& irradiance, const Planes& validity);
 
+    // Of the last light(), at full resolution; motion only with a history, and where the host gave some.
+    Planes position() const { return gbuffer_.position; }
+    Planes normal() const { return gbuffer_.normal; }
+    Planes motion() const { return gbuffer_.motion; }
+
     void startFrame() { isLit_ = false; }
     bool isLit() const { return isLit_; }
+    bool isShown() const { return bool(lit_); }  // the last light() went all the way
     std::uint32_t maxWidth() const { return maxWidth_; }
     std::uint32_t maxHeight() const { return maxHeight_; }
     void report(Device& device, Report& report) const;
@@ -61,7 +73,7 @@ public:
     static std::uint64_t estimateBytes(const ScreenSpaceOptions& options, const LWViewDesc& view, bool uploads);
 
 private:
-    void makePatterns(Executor& executor, std::uint32_t rows);
+    void makePatterns(Executor& executor, std::uint32_t rows, std::uint32_t turn);
     void gatherLevels(Executor& executor, ScreenSpacePasses& passes);
 
     Device& device_;
@@ -72,7 +84,7 @@ private:
     ScreenLevels levels_;
     Buffer patterns_[2];  // of the first level's disc, and of the others' ring
     bool alike_[2] = {};  // the patterns of each
-    std::uint32_t patternRows_ = 0;
+    std::uint32_t patternRows_ = 0, patternTurn_ = 0;
     Buffer counts_;
     std::vector<Planes> contributions_;  // by level, of the last frame
     Planes lit_;                         // all levels together
