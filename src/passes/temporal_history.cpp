@@ -131,17 +131,12 @@ void TemporalHistory::record(Executor& executor, const HistoryFrame& frame, cons
     const Planes after = view.planes(next, now.width, now.height);
     // A kernel's argument must be some memory, also where none is read or written.
     const Planes& motion = frame.motion ? frame.motion : now;
-    // What nobody asked for is written where the history itself keeps it.
-    const auto into = [&](const Planes& asked, std::uint32_t value) {
-        Planes planes = after;
-        planes.offset += value * after.planeStride;
-        return asked ? asked : planes;
-    };
-    const Planes irradiance = into(frame.irradiance, 0), first = into(frame.first, 3), second = into(frame.second, 4);
+    const Planes& first = options_.scalars > 0 ? frame.first : after;
+    const Planes& second = options_.scalars > 1 ? frame.second : after;
     executor.fill("temporal_history.counts", view.counts_, 0, 0, kCountBytes);
     executor.run("temporal_history.blend", blend_, itemsOver(now, blend_), groupOf(blend_), now, frame.normal, cl_int(now.width),
                  cl_int(now.height), frame.current, motion, mode, where, cl_float(options_.frames), cl_float(options_.clamp),
-                 before, after, irradiance, first, second, view.counts_);
+                 before, after, frame.irradiance, first, second, view.counts_);
     view.drawn_[next] = {now.width, now.height, camera, std::move(own)};
     view.last_ = next;
     view.isDrawn_ = true;

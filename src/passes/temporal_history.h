@@ -34,8 +34,8 @@ struct HistoryFrame {
     Planes position, normal;  // as the technique imports them
     Planes motion;            // GBufferInput::motion; empty: by the cameras alone, which is right for what does not move itself
     Planes current;           // 3 planes of irradiance, W/m^2, and the scalars
-    Planes irradiance;        // the mean; empty: not asked for, and kept all the same
-    Planes first, second;     // those of the scalars, likewise
+    Planes irradiance;        // the mean
+    Planes first, second;     // those of the scalars; of as many as options.scalars says
 };
 
 // The history of one view, at that view's largest size: bytesPerPixel of memory, whatever the current size.
