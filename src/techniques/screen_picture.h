@@ -2,6 +2,7 @@
 // light of every level of it.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,7 @@ struct ScreenSpaceOptions {
 
     static constexpr double kRadiusRows = 720.0;
     LevelRange range() const { return {start, start + levels - 1}; }
-    PyramidOptions pyramid() const { return {ScreenGather::kExtras, start == 0 ? 0u : 1u, range().last}; }
+    PyramidOptions pyramid() const { return {ScreenGather::kExtras, start, range().last}; }
     bool keeps() const { return history.frames > 0; }
     // GBufferNeeds.
     std::uint32_t needs() const { return kNeedsDirectRadiance | kNeedsReceiveMask | (keeps() ? std::uint32_t(kNeedsMotion) : 0u); }
@@ -36,10 +37,13 @@ struct ScreenSpaceOptions {
 struct ScreenSpacePasses {
     ScreenSpacePasses(Device& device, const ScreenSpaceOptions& options)
         : pyramid(device, ScreenGather::kExtras), gather(device, options.interleave),
-          combine(device, {options.interleave, 1u << options.start, options.levels > 1, options.cameras}) {}
+          combine(device, {options.interleave, 1u << options.start, options.levels > 1, options.cameras, options.keeps()}) {
+        if (options.keeps()) history.emplace(device, options.history);
+    }
     MipPyramid pyramid;
     ScreenGather gather;
     ScreenCombine combine;
+    std::optional<TemporalHistory> history;
 };
 
 class ScreenPicture {
@@ -56,18 +60,16 @@ public:
     // Raises outputs made by finish() to what `other` sees.
     void join(Executor& executor, ScreenSpacePasses& passes, const ScreenPicture& other, const Planes& irradiance, const Planes& validity);
 
-    // Of the last light(), at full resolution; motion only with a history, and where the host gave some.
-    Planes position() const { return gbuffer_.position; }
-    Planes normal() const { return gbuffer_.normal; }
-    Planes motion() const { return gbuffer_.motion; }
-
-    void startFrame() { isLit_ = false; }
+    // Once per update. `forget`: what the picture showed before is no history.
+    void startFrame(bool forget) {
+        isLit_ = false;
+        if (history_) history_->view.startFrame(forget);
+    }
     bool isLit() const { return isLit_; }
-    bool isShown() const { return bool(lit_); }  // the last light() went all the way
     std::uint32_t maxWidth() const { return maxWidth_; }
     std::uint32_t maxHeight() const { return maxHeight_; }
     void report(Device& device, Report& report) const;
-    void addDebugViews(std::vector<DebugView>& views) const;
+    void addDebugViews(std::vector<DebugView>& views, ScreenSpacePasses& passes) const;
     std::uint64_t bytes() const;
     // The most that bytes() becomes for a view. `uploads`: FrameShape::uploads.
     static std::uint64_t estimateBytes(const ScreenSpaceOptions& options, const LWViewDesc& view, bool uploads);
@@ -75,6 +77,7 @@ public:
 private:
     void makePatterns(Executor& executor, std::uint32_t rows, std::uint32_t turn);
     void gatherLevels(Executor& executor, ScreenSpacePasses& passes);
+    void keep(Executor& executor, ScreenSpacePasses& passes, const View& view, const LWCamera& camera);
 
     Device& device_;
     ScreenSpaceOptions options_;
@@ -86,6 +89,15 @@ private:
     bool alike_[2] = {};  // the patterns of each
     std::uint32_t patternRows_ = 0, patternTurn_ = 0;
     Buffer counts_;
+    // Of the light at the first level's resolution.
+    struct History {
+        History(Device& device, const ScreenSpaceOptions& options, std::uint32_t maxWidth, std::uint32_t maxHeight);
+        ViewHistory view;
+        PlanarImage motion;  // in texels
+        Buffer memory;
+        Planes light;  // the mean, laid out as ScreenLevels' is
+    };
+    std::optional<History> history_;
     std::vector<Planes> contributions_;  // by level, of the last frame
     Planes lit_;                         // all levels together
     Camera camera_;

@@ -1,7 +1,6 @@
 // Frame and view parts, report and registration; the table of parameters is screen_space_parameters.cpp's.
 #include "techniques/screen_space.h"
 
-#include <optional>
 #include <string>
 #include <utility>
 
@@ -33,13 +32,6 @@ ScreenSpaceOptions optionsOf(const LWScreenSpaceDesc& desc) {
     return options;
 }
 
-// What only lends its light has no history of its own.
-ScreenSpaceOptions sourceOptions(const LWScreenSpaceDesc& desc) {
-    ScreenSpaceOptions options = optionsOf(desc);
-    options.history.frames = 0;
-    return options;
-}
-
 std::string sourceName(std::uint32_t i) { return "frame.sourceViews[" + std::to_string(i) + "].gbuffer"; }
 
 // A source view's images have one size, that of its normals.
@@ -49,13 +41,6 @@ View sourceView(const LWGBuffer& gbuffer, const std::string& name) {
         fail(LW_ERROR_INVALID_ARGUMENT, name, ".normal: expected an image of 1 .. ", kMaxSide, " pixels a side, got ",
              image.width, " x ", image.height);
     return View(image.width, image.height);
-}
-
-Planes part(const Planes& image, std::uint32_t first, std::uint32_t count) {
-    Planes planes = image;
-    planes.offset += first * planes.planeStride;
-    planes.count = count;
-    return planes;
 }
 
 // What the host gave and this technique does not read.
@@ -75,31 +60,30 @@ std::vector<LWChoice> unusedInputs(const LWFrame& frame, bool cameras) {
 class ScreenSpaceTechnique final : public Technique {
 public:
     ScreenSpaceTechnique(Device& device, const LWScreenSpaceDesc& desc)
-        : device_(device), desc_(desc), options_(optionsOf(desc)), sourceOptions_(sourceOptions(desc)), passes_(device, options_) {
-        if (options_.keeps()) history_.emplace(device, options_.history);
-    }
+        : device_(device), desc_(desc), options_(optionsOf(desc)), passes_(device, options_) {}
 
     // The other cameras' light.
     void update(Executor& executor, const LWFrame& frame) override {
         const std::uint32_t count = desc_.cameras ? frame.sourceViewCount : 0;
         for (std::uint32_t i = 0; i < count; ++i) {
             const LWGBuffer& gbuffer = *frame.sourceViews[i].gbuffer;
-            ScreenPicture::check(device_, sourceOptions_, sourceView(gbuffer, sourceName(i)), gbuffer, sourceName(i));
+            ScreenPicture::check(device_, options_, sourceView(gbuffer, sourceName(i)), gbuffer, sourceName(i));
         }
         unused_ = unusedInputs(frame, desc_.cameras != 0);
         const bool forget = frame.reset != 0 || device_.failures() != failures_;
         failures_ = device_.failures();
-        if (history_) turn_ = forget ? 0 : turn_ + 1;
+        if (options_.keeps()) turn_ = forget ? 0 : turn_ + 1;
         states_.purge();
-        states_.each([&](ViewState& state) { state.startFrame(forget); });
+        states_.each([&](ViewState& state) { state.screen.startFrame(forget); });
         sources_.resize(count);
         for (std::uint32_t i = 0; i < count; ++i) {
             const LWGBuffer& gbuffer = *frame.sourceViews[i].gbuffer;
             const View view = sourceView(gbuffer, sourceName(i));
             Source& source = sources_[i];
             if (!source.screen || source.screen->maxWidth() != view.width || source.screen->maxHeight() != view.height)
-                source.screen = std::make_unique<ScreenPicture>(device_, sourceOptions_, view.width, view.height);
+                source.screen = std::make_unique<ScreenPicture>(device_, options_, view.width, view.height);
             source.view = frame.sourceViews[i].view;
+            source.screen->startFrame(forget);
             source.screen->light(executor, passes_, view, gbuffer, sourceName(i), turn_);
         }
     }
@@ -111,16 +95,10 @@ public:
         state.screen.light(executor, passes_, *view, gbuffer, "gbuffer", turn_);
         const Planes irradiance = state.irradiance.begin(executor, *view, output.irradiance, 3, "output.irradiance");
         const Planes validity = state.validity.begin(executor, *view, output.validity, 1, "output.validity");
-        // The frame's own light goes to the host, or to the history and from there.
-        const Planes all = history_ ? state.current.planes(view->width, view->height) : Planes{};
-        const Planes ownIrradiance = history_ ? part(all, 0, 3) : irradiance, ownValidity = history_ ? part(all, 3, 1) : validity;
-        state.screen.finish(executor, passes_, ownIrradiance, ownValidity);
+        state.screen.finish(executor, passes_, irradiance, validity);
         for (const Source& source : sources_)
             if (!source.view || source.view != view->handle)
-                state.screen.join(executor, passes_, *source.screen, ownIrradiance, ownValidity);
-        if (history_)
-            history_->record(executor, {state.screen.position(), state.screen.normal(), state.screen.motion(), all, irradiance, validity, {}},
-                             gbuffer.camera, *state.history);
+                state.screen.join(executor, passes_, *source.screen, irradiance, validity);
         state.irradiance.end(executor);
         state.validity.end(executor);
     }
@@ -131,28 +109,19 @@ public:
     }
 
     Report report() override;
-    std::vector<DebugView> debugViews(const View* view) override;
+    std::vector<DebugView> debugViews(const View* view) override {
+        std::vector<DebugView> views;
+        if (const ViewState* state = states_.find(view)) state->screen.addDebugViews(views, passes_);
+        return views;
+    }
     std::uint64_t bytes() const override;
 
 private:
     struct ViewState {
         ViewState(Device& device, const ScreenSpaceOptions& options, const View& view)
-            : screen(device, options, view.maxWidth, view.maxHeight) {
-            if (!options.keeps()) return;
-            current = PlanarImage(device, view.maxWidth, view.maxHeight, LW_LIGHT_PLANES, "light of a frame alone");
-            history.emplace(device, options.history, view.maxWidth, view.maxHeight);
-        }
-        void startFrame(bool forget) {
-            screen.startFrame();
-            if (history) history->startFrame(forget);
-        }
-        std::uint64_t bytes() const {
-            return screen.bytes() + irradiance.bytes() + validity.bytes() + current.bytes() + (history ? history->bytes() : 0);
-        }
+            : screen(device, options, view.maxWidth, view.maxHeight) {}
         ScreenPicture screen;
         OutputTarget irradiance, validity;
-        PlanarImage current;  // irradiance and validity before the history
-        std::optional<ViewHistory> history;
     };
     struct Source {
         LWView view = nullptr;  // the host's handle: a view takes nothing from itself
@@ -161,9 +130,8 @@ private:
 
     Device& device_;
     LWScreenSpaceDesc desc_;
-    ScreenSpaceOptions options_, sourceOptions_;
+    ScreenSpaceOptions options_;
     ScreenSpacePasses passes_;
-    std::optional<TemporalHistory> history_;
     std::uint64_t failures_ = 0;  // that the device had seen when the last update began
     std::uint32_t turn_ = 0;      // of the sample patterns, one a frame while there is a history
     PerView<ViewState> states_;
@@ -176,33 +144,20 @@ Report ScreenSpaceTechnique::report() {
     for (const LWChoice& choice : unused_) report.choose(choice.name, choice.reason);
     for (const char* name : {"rejected_pixels", "rejected_radiances", "upsample_fallbacks", "saturated_pixels"})
         report.counts.push_back({name, 0});
-    if (history_) report.counts.push_back({"history_new", 0});
+    if (options_.keeps()) report.counts.push_back({"history_new", 0});
     states_.each([&](const ViewState& state) {
         if (!state.screen.isLit()) return;
         state.screen.report(device_, report);
         state.irradiance.report(report);
         state.validity.report(report);
-        if (state.history) state.history->report(device_, report);
     });
     for (const Source& source : sources_) source.screen->report(device_, report);
     return report;
 }
 
-std::vector<DebugView> ScreenSpaceTechnique::debugViews(const View* view) {
-    std::vector<DebugView> views;
-    const ViewState* state = states_.find(view);
-    if (!state) return views;
-    state->screen.addDebugViews(views);
-    if (!history_ || !state->screen.isShown()) return views;
-    if (const Planes shape = history_->ageShape(*state->history); shape.width)
-        views.push_back({"history_age", "frames in each pixel's mean; 1: new in this frame, 0: no surface", shape,
-                         [this, state](Executor& executor, const Planes& planes) { history_->recordAge(executor, *state->history, planes); }});
-    return views;
-}
-
 std::uint64_t ScreenSpaceTechnique::bytes() const {
     std::uint64_t total = 0;
-    states_.each([&](const ViewState& state) { total += state.bytes(); });
+    states_.each([&](const ViewState& state) { total += state.screen.bytes() + state.irradiance.bytes() + state.validity.bytes(); });
     for (const Source& source : sources_) total += source.screen->bytes();
     return total;
 }
@@ -213,15 +168,12 @@ std::uint64_t estimateBytes(const void* desc, const LWViewDesc& view, const Fram
     const LWScreenSpaceDesc& own = *static_cast<const LWScreenSpaceDesc*>(desc);
     std::uint64_t total = ScreenPicture::estimateBytes(optionsOf(own), view, shape.uploads) +
                           OutputTarget::estimateBytes(view, 3, shape.uploads) + OutputTarget::estimateBytes(view, 1, shape.uploads);
-    if (own.history)
-        total += ViewHistory::estimateBytes(optionsOf(own).history, view.maxWidth, view.maxHeight) +
-                 LW_LIGHT_PLANES * sizeof(float) * std::uint64_t(paddedWidth(view.maxWidth)) * view.maxHeight;
     if (!own.cameras) return total;
     for (const auto& [width, height] : shape.sources) {
         LWViewDesc source = view;
         source.maxWidth = width;
         source.maxHeight = height;
-        total += ScreenPicture::estimateBytes(sourceOptions(own), source, shape.uploads);
+        total += ScreenPicture::estimateBytes(optionsOf(own), source, shape.uploads);
     }
     return total;
 }

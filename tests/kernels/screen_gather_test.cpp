@@ -60,7 +60,7 @@ TEST_CASE("the same bits at every width", "[screen_gather][large]") {
         KernelRig rig(width);
         ScreenCorner corner(rig, 131, 57, 4);
         ScreenGather gather(rig.device(), 4);
-        ScreenCombine combine(rig.device(), {4, 2, true, false});
+        ScreenCombine combine(rig.device(), {4, 2, true, false, false});
         const auto samples = screenPatterns(0.0, 6.0, 16, 4, 5);
         const Guarded table = rig.upload(samples), e = rig.makePlanes(131, 57, 3), v = rig.makePlanes(131, 57, 1);
         for (std::uint32_t k = 1; k <= 2; ++k) {

@@ -31,7 +31,9 @@ Result frameOf(TestTechnique& technique, const TestView& view, const LWGBuffer& 
     output.structSize = sizeof output;
     if (wantsIrradiance) output.irradiance = irradiance.image();
     if (wantsValidity) output.validity = validity.image();
-    REQUIRE(lwRender(technique, view, &gbuffer, &output) == LW_SUCCESS);
+    const LWStatus status = lwRender(technique, view, &gbuffer, &output);
+    INFO(lastError(device));
+    REQUIRE(status == LW_SUCCESS);
     REQUIRE(lwFinish(device) == LW_SUCCESS);
     return {irradiance.packed(), validity.packed()};
 }
@@ -116,6 +118,48 @@ TEST_CASE("where a bright thing has been its light is gone after 8 frames", "[sc
     CAPTURE(was, left, now);
     REQUIRE(was > 3.0 * now);
     CHECK(std::abs(left - now) < 0.05 * (was - now));
+}
+
+TEST_CASE("a history follows the camera and moving things", "[screen_space][history]") {
+    // The slab goes 8 pixels to the right in a frame, by a sideways move of 8 pixels' width at its depth.
+    TestDevice device(16);
+    const auto slab = [](double x) {
+        std::vector<Quad> quads = litFloor(0.1);
+        quads.push_back({{x, 0.3, 0.5}, {0.4, 0, 0}, {0, 0.3, 0}, {0, 0, 1}, {2, 2, 2}});
+        return quads;
+    };
+    const double step = 8.0 * (kEye.z - 0.5) * 2.0 * 0.45 / 100.0;  // 100 rows
+    Picture before(162, 100, 0.45, kEye, slab(-0.7)), after(162, 100, 0.45, kEye, slab(-0.7 + step));
+    std::vector<float> motion(2 * 162 * 100);
+    for (std::uint32_t y = 0; y < 100; ++y)
+        for (std::uint32_t x = 0; x < 162; ++x)
+            if (after.normal.get(x, y).z > 0.5 && after.position.get(x, y).z > 0.4) motion[2 * (y * 162 + x)] = -8.0f;
+    TestView view(device, 162, 100);
+    const auto fresh = [&](bool withMotion) {
+        TestTechnique technique(device, keeping(16));
+        for (int f = 0; f < 3; ++f) frameOf(technique, view, before.gbuffer, device);
+        CHECK(technique.count("history_new") == 0);
+        LWGBuffer gbuffer = after.gbuffer;
+        if (withMotion) {
+            gbuffer.motion.host = motion.data();
+            gbuffer.motion.format = LW_FORMAT_FLOAT2;
+            gbuffer.motion.width = 162;
+            gbuffer.motion.height = 100;
+        }
+        frameOf(technique, view, gbuffer, device);
+        return technique.count("history_new");
+    };
+    const std::uint64_t followed = fresh(true), unfollowed = fresh(false);
+    CAPTURE(followed, unfollowed);
+    // What it uncovers is new, 4 texels wide and 8 high or so, and so is its front where it is not followed.
+    CHECK(followed > 0);
+    CHECK(2 * followed < unfollowed + 40);
+    // The camera half a texel to the right, of a picture that is no whole number of texels wide: all but an edge is known.
+    Picture turned(162, 100, 0.45, {kEye.x + 0.5 * step / 8.0, kEye.y, kEye.z}, slab(-0.7));
+    TestTechnique technique(device, keeping(16));
+    for (int f = 0; f < 3; ++f) frameOf(technique, view, before.gbuffer, device);
+    frameOf(technique, view, turned.gbuffer, device);
+    CHECK(technique.count("history_new") < 81 * 50 / 20);
 }
 
 TEST_CASE("a cut starts anew: the picture of a technique that has just been made", "[screen_space][history]") {
