@@ -30,7 +30,7 @@ double seedShift(std::uint32_t seed, std::uint32_t axis) {
 
 // A step of Roberts' R2 sequence a turn: 1 / g and 1 / g^2 with g^3 = g + 1, of which any stretch is spread evenly. In the
 // `cells` of a pattern that have one sample each: in the whole set's range the step of the radius would be 6.04 of 8 cells, the
-// next frame's samples would lie beside this one's, and 16 frames of 64 samples have twice the error.
+// next frame's samples would lie beside this one's, and 16 frames of 64 samples have up to twice the error.
 double shiftOf(std::uint32_t seed, std::uint32_t turn, std::uint32_t axis, std::uint32_t cells) {
     constexpr double kSteps[] = {0.7548776662466927, 0.5698402909980532};
     return fraction(seedShift(seed, axis) + turn * kSteps[axis] / cells);
