@@ -503,6 +503,8 @@ typedef struct LWScreenSpaceDesc {
     uint32_t cameras;        /**< 1: also the light between what each of LWFrame::sourceViews shows; the larger of both where
                                   it shows the view's own surface. A view takes nothing from a source with its own handle */
     uint32_t seed;           /**< shifts the sample patterns; 0: unshifted */
+    uint32_t history;        /**< as LWRsmDesc's, of irradiance and validity; takes LWGBuffer::motion, if given */
+    float historyClamp;      /**< as LWRsmDesc's */
 } LWScreenSpaceDesc;
 
 LW_API void lwDefaultScreenSpace(LWScreenSpaceDesc* desc);

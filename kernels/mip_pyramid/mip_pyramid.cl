@@ -8,13 +8,6 @@
 
 typedef struct { real even, odd; } lw_pair;
 
-// One load of the whole register: PoCL's vload16 comes as quarters, and a shuffle of quarters as loads of single lanes.
-#if LW_WIDTH > 1 && defined(POCL_DEVICE_ADDRESS_BITS)
-LW_FN real load_whole(__global const float* p) { return *(__global const lw_loose_real*)p; }
-#else
-LW_FN real load_whole(__global const float* p) { return load(p, 0); }
-#endif
-
 // Columns x .. x + 2 LW_WIDTH - 1 of a row that may be read up to rowEnd; beyond, the first half again.
 LW_FN lw_pair load_pair(__global const float* image, int row, int x, int rowEnd) {
     const real a = load_whole(image + row + x);
@@ -87,14 +80,16 @@ __kernel void mip_pyramid_copy(LW_BASE_ARGUMENTS) {
     add_rejected(rejected, counts);
 }
 
-// One work-item = LW_WIDTH texels of level 1, from 2 x 2 pixels each; counts as above.
-__kernel void mip_pyramid_base(LW_BASE_ARGUMENTS) {
-    const int x = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);
-    if (2 * x >= width || 2 * y >= height) return;
+#define LW_BASE_IMAGES position, positionLayout, normal, normalLayout, radiance, radianceLayout, receiveMask, receiveMaskLayout, hasMask
+
+// LW_WIDTH texels of level 1 from column x of its row y on, of 2 x 2 pixels each.
+LW_FN lw_texel half_texels(__global const float* position, int4 positionLayout, __global const float* normal, int4 normalLayout,
+                           __global const float* radiance, int4 radianceLayout, __global const float* receiveMask,
+                           int4 receiveMaskLayout, int hasMask, int width, int height, const LwPyramidCamera camera, int x, int y,
+                           int* rejected) {
     const int rowEnd = (width + 15) & ~15;
     const lanei column = lanei_iota() * 2 + (lanei)(2 * x);
     lw_texel child[4];  // round the block, so that a level may start with the corner across
-    int rejected[2] = {0, 0};
     LW_UNROLL for (int j = 0; j < 2; ++j) {
         const int row = min(2 * y + j, height - 1);
         const mask rowInside = splat_mask(2 * y + j < height);
@@ -114,7 +109,75 @@ __kernel void mip_pyramid_base(LW_BASE_ARGUMENTS) {
         child[1 + j] = pixel_texel(v[0].odd, v[1].odd, v[2].odd, v[3].odd, v[4].odd, v[5].odd, v[6].odd, v[7].odd, v[8].odd,
                                        v[9].odd, and_(rowInside, column + 1 < (lanei)width), camera, rejected);
     }
-    const lw_texel t = merged(child, 0);
+    return merged(child, 0);
+}
+
+// One work-item = LW_WIDTH texels of level 1, from 2 x 2 pixels each; counts as above.
+__kernel void mip_pyramid_base(LW_BASE_ARGUMENTS) {
+    const int x = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);
+    if (2 * x >= width || 2 * y >= height) return;
+    int rejected[2] = {0, 0};
+    const lw_texel t = half_texels(LW_BASE_IMAGES, width, height, camera, x, y, rejected);
+    store_texel(&t, level, levelLayout.x + y * levelLayout.y + x, levelLayout.z);
+    add_rejected(rejected, counts);
+}
+
+// A child of level 2 as mip_pyramid_reduce would read it back: its depth is that of its place.
+LW_FN lw_texel half_child(real px, real py, real pz, real nx, real ny, real nz, real r, real g, real b, real area,
+                          const LwPyramidCamera camera) {
+    lw_texel t = empty_texel();
+    t.s.px = px;
+    t.s.py = py;
+    t.s.pz = pz;
+    t.s.nx = nx;
+    t.s.ny = ny;
+    t.s.nz = nz;
+    t.s.valid = squared_length(nx, ny, nz) > 0.25f;
+    t.r = r;
+    t.g = g;
+    t.b = b;
+    t.area = area;
+    t.depth = axial_depth(t.s, camera);
+    return t;
+}
+
+// One work-item = LW_WIDTH texels of level 2, from 4 x 4 pixels each: to the bit what mip_pyramid_base and mip_pyramid_reduce
+// make of them one after the other, without level 1 in memory. counts as above.
+__kernel void mip_pyramid_quarter(LW_BASE_ARGUMENTS) {
+    const int x = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);
+    if (4 * x >= width || 4 * y >= height) return;
+    int rejected[2] = {0, 0};
+    lw_texel child[4];
+    // What the next work-item reads: without, it waits for memory first.
+    for (int j = 0; j < 4; ++j) {
+        const int row = min(4 * y + j, height - 1), next = 4 * (x + LW_WIDTH);
+        LW_UNROLL for (int a = 0; a < 3; ++a)
+            LW_UNROLL for (int i = 0; i < 4; ++i) {
+                will_load(position + positionLayout.x + a * positionLayout.z + row * positionLayout.y + next + i * LW_WIDTH);
+                will_load(normal + normalLayout.x + a * normalLayout.z + row * normalLayout.y + next + i * LW_WIDTH);
+#if LW_PYRAMID_RADIANCE
+                will_load(radiance + radianceLayout.x + a * radianceLayout.z + row * radianceLayout.y + next + i * LW_WIDTH);
+#endif
+            }
+    }
+    for (int j = 0; j < 2; ++j) {
+        // The second half may lie beyond the image: pixels there are none, and none are read.
+        lw_texel t[2];
+        LW_UNROLL for (int i = 0; i < 2; ++i) {
+            if (2 * (2 * x + i * LW_WIDTH) < width && 2 * (2 * y + j) < height)
+                t[i] = half_texels(LW_BASE_IMAGES, width, height, camera, 2 * x + i * LW_WIDTH, 2 * y + j, rejected);
+            else
+                t[i] = empty_texel();
+        }
+#define LW_CHILD(half) \
+    half_child(half(t[0].s.px, t[1].s.px), half(t[0].s.py, t[1].s.py), half(t[0].s.pz, t[1].s.pz), half(t[0].s.nx, t[1].s.nx), \
+               half(t[0].s.ny, t[1].s.ny), half(t[0].s.nz, t[1].s.nz), half(t[0].r, t[1].r), half(t[0].g, t[1].g), \
+               half(t[0].b, t[1].b), half(t[0].area, t[1].area), camera)
+        child[3 * j] = LW_CHILD(even_);
+        child[1 + j] = LW_CHILD(odd_);
+#undef LW_CHILD
+    }
+    const lw_texel t = merged(child, 2);
     store_texel(&t, level, levelLayout.x + y * levelLayout.y + x, levelLayout.z);
     add_rejected(rejected, counts);
 }

@@ -29,13 +29,13 @@ __kernel void screen_combine_filter(__global const float* texels, int4 texelLayo
     if (alike) {
         add_lit(&sum, ones_(s.valid), &own);
     } else if (any_(s.valid)) {
-        const lw_edges edges = edges_of(s, (real)1.0f);
+        const lw_lit_edges edges = lit_edges(&s);
         for (int j = max(-LW_REACH, -y); j <= min(LW_REACH, height - 1 - y); ++j) {
             lit_row(&row, texels, texelLayout, light, lightLayout, x, y + j);
             LW_UNROLL for (int i = -LW_REACH; i <= LW_REACH; ++i) {
                 lw_lit_texel t;
                 load_lit(&t, &row, i);
-                add_lit(&sum, lit_weight(&edges, &t) * (window_weight(i) * window_weight(j)), &t);
+                add_lit(&sum, lit_weight(&edges, &t, window_weight(i) * window_weight(j)), &t);
             }
         }
     }

@@ -59,6 +59,7 @@ MipPyramid::MipPyramid(Device& device, std::uint32_t extras)
     : extras_(extras),
       copy_(device.programs().kernel(kProgram, "mip_pyramid_copy", definesOf(extras))),
       base_(device.programs().kernel(kProgram, "mip_pyramid_base", definesOf(extras))),
+      quarter_(device.programs().kernel(kProgram, "mip_pyramid_quarter", definesOf(extras))),
       reduce_(device.programs().kernel(kProgram, "mip_pyramid_reduce", definesOf(extras))) {}
 
 void MipPyramid::record(Executor& executor, const Planes& position, const Planes& normal, const Planes& radiance,
@@ -78,8 +79,10 @@ void MipPyramid::record(Executor& executor, const Planes& position, const Planes
     std::uint32_t k = options.firstLevel;
     if (k == 0)
         fromBase("mip_pyramid.copy", copy_, levels.level(0));
-    else
+    else if (k == 1)
         fromBase("mip_pyramid.base", base_, levels.level(1));
+    else
+        fromBase("mip_pyramid.quarter", quarter_, levels.level(2));
     for (; k < options.lastLevel; ++k) {
         const Planes fine = levels.level(k), coarse = levels.level(k + 1);
         executor.run("mip_pyramid.reduce", reduce_, itemsOver(coarse, reduce_), groupOf(reduce_), fine, cl_int(fine.width),

@@ -23,7 +23,7 @@ enum PyramidPlanes : std::uint32_t {
 
 struct PyramidOptions {
     std::uint32_t extras = 0;      // PyramidPlanes
-    std::uint32_t firstLevel = 1;  // 0: with a checked copy of the base; 1: from half resolution on
+    std::uint32_t firstLevel = 1;  // 0: with a checked copy of the base; 1: from half resolution on; 2: from a quarter on, not `sampled`
     std::uint32_t lastLevel = 1;   // level k has 1 / 2^k of the columns and rows, rounded up
     // Levels above the first keep one child for all four, background too, in place of the nearest: surfaces then keep their
     // size in the mean, where the nearest grow by up to half a texel. Not with kPyramidArea or kPyramidDepth.
@@ -70,7 +70,7 @@ class MipPyramid {
 public:
     MipPyramid(Device& device, std::uint32_t extras);  // PyramidPlanes
 
-    // Passes "mip_pyramid.base", where asked for ".copy", and ".reduce". radiance: 3 planes, or none without
+    // Passes "mip_pyramid.base" (or ".copy", ".quarter": to the first level) and ".reduce". radiance: 3 planes, or none without
     // kPyramidRadiance; receiveMask: 1 plane, nonzero pixels send nothing (with kPyramidArea), or none.
     // counts[0] grows by the pixels with neither a surface nor a zero normal, counts[1] by surfaces whose radiance
     // lies outside 0 .. LW_LARGEST_RADIANCE and which therefore send nothing.
@@ -79,7 +79,7 @@ public:
 
 private:
     std::uint32_t extras_;
-    Kernel &copy_, &base_, &reduce_;
+    Kernel &copy_, &base_, &quarter_, &reduce_;
 };
 
 }  // namespace lightwell

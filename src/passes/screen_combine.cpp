@@ -14,9 +14,11 @@ Defines definesOf(std::uint32_t interleave) { return {{"LW_INTERLEAVE", std::to_
 
 Range groupOf(const Kernel& kernel) { return kernel.width() == 1 ? Range{64, 1} : Range{8, 1}; }
 
-Range itemsOver(const Planes& planes, std::uint32_t columnsPerItem) {
-    return {(planes.width + columnsPerItem - 1) / columnsPerItem, planes.height};
+Range itemsOver(const Planes& planes, std::uint32_t columnsPerItem, std::uint32_t rowsPerItem = 1) {
+    return {(planes.width + columnsPerItem - 1) / columnsPerItem, (planes.height + rowsPerItem - 1) / rowsPerItem};
 }
+
+constexpr std::uint32_t kRows = 2;  // LW_LIT_ROWS of kernels/screen_combine
 
 }  // namespace
 
@@ -26,6 +28,8 @@ ScreenCombine::ScreenCombine(Device& device, const Options& options)
         filter_ = &device.programs().kernel("screen_combine/screen_filter", "screen_combine_filter", definesOf(options.interleave));
     if (options.adds) add_ = &device.programs().kernel(kProgram, "screen_combine_add", definesOf(2));
     if (options.joins) join_ = &device.programs().kernel("screen_combine/screen_join", "screen_combine_join");
+    if (options.moves && factor_ > 1)
+        motion_ = &device.programs().kernel("screen_combine/screen_motion", "screen_combine_motion", definesOf(factor_));
 }
 
 void ScreenCombine::recordFilter(Executor& executor, const Planes& texels, bool alike, const Planes& light, const Planes& filtered) {
@@ -35,7 +39,7 @@ void ScreenCombine::recordFilter(Executor& executor, const Planes& texels, bool 
 
 void ScreenCombine::recordAdd(Executor& executor, const Planes& fine, const Planes& own, const Planes& coarse,
                               const Planes& light, const Planes& sum) {
-    executor.run("screen_combine.add", *add_, itemsOver(own, 2 * add_->width()), groupOf(*add_), fine, cl_int(own.width),
+    executor.run("screen_combine.add", *add_, itemsOver(own, 2 * add_->width(), kRows), groupOf(*add_), fine, cl_int(own.width),
                  cl_int(own.height), own, coarse, cl_int(coarse.height), light, sum);
 }
 
@@ -43,7 +47,7 @@ void ScreenCombine::recordFinish(Executor& executor, const Planes& position, con
                                  const Planes& light, const Planes& irradiance, const Planes& validity, const Buffer& counts) {
     const Planes& e = irradiance ? irradiance : light;  // not touched where there is none
     const Planes& v = validity ? validity : light;
-    executor.run("screen_combine.finish", finish_, itemsOver(position, factor_ * finish_.width()), groupOf(finish_), position,
+    executor.run("screen_combine.finish", finish_, itemsOver(position, factor_ * finish_.width(), kRows), groupOf(finish_), position,
                  normal, cl_int(position.width), cl_int(position.height), texels, cl_int(texels.height), light,
                  cl_int(irradiance ? 1 : 0), e, cl_int(validity ? 1 : 0), v, counts);
 }
@@ -55,6 +59,12 @@ void ScreenCombine::recordJoin(Executor& executor, const Planes& position, const
     executor.run("screen_combine.join", *join_, itemsOver(position, join_->width()), groupOf(*join_), position, normal,
                  cl_int(position.width), cl_int(position.height), texels, cl_int(texels.width), cl_int(texels.height),
                  camera.texelsOf(factor_), light, cl_int(irradiance ? 1 : 0), e, cl_int(validity ? 1 : 0), v);
+}
+
+void ScreenCombine::recordMotion(Executor& executor, const Planes& position, const Planes& motion, const Planes& texels,
+                                 const Planes& moved) {
+    executor.run("screen_combine.motion", *motion_, itemsOver(moved, motion_->width()), groupOf(*motion_), position, motion,
+                 cl_int(position.width), cl_int(position.height), texels, moved);
 }
 
 }  // namespace lightwell

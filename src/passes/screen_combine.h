@@ -14,7 +14,7 @@ public:
     struct Options {
         std::uint32_t interleave;  // of the gather: 1 (no filter), 2 or 4
         std::uint32_t factor;      // pixels of the host's image per texel of the first level along each axis: 1, 2 or 4
-        bool adds, joins;          // whether recordAdd and recordJoin will be called: what is built and never run is never cached
+        bool adds, joins, moves;   // whether recordAdd, recordJoin and (factor > 1) recordMotion will be called: what is built and never run is never cached
     };
     ScreenCombine(Device& device, const Options& options);
 
@@ -33,10 +33,13 @@ public:
     void recordJoin(Executor& executor, const Planes& position, const Planes& normal, const Planes& texels, const Camera& camera,
                     const Planes& light, const Planes& irradiance, const Planes& validity);
 
+    // Pass "screen_combine.motion": motion vectors of the host's image at the texels of its first level, in texels. factor > 1 only.
+    void recordMotion(Executor& executor, const Planes& position, const Planes& motion, const Planes& texels, const Planes& moved);
+
 private:
     std::uint32_t factor_;
     Kernel& finish_;
-    Kernel *filter_ = nullptr, *add_ = nullptr, *join_ = nullptr;
+    Kernel *filter_ = nullptr, *add_ = nullptr, *join_ = nullptr, *motion_ = nullptr;
 };
 
 }  // namespace lightwell

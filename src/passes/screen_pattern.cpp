@@ -14,8 +14,10 @@ double radicalInverse(std::uint32_t bits) {
     return result;
 }
 
+double fraction(double value) { return value - std::floor(value); }
+
 // In [0, 1); 0 for seed 0.
-double shiftOf(std::uint32_t seed, std::uint32_t axis) {
+double seedShift(std::uint32_t seed, std::uint32_t axis) {
     if (seed == 0) return 0.0;
     std::uint32_t h = seed * 0x9e3779b9u + axis * 0x7f4a7c15u;  // MurmurHash3's finaliser twice: axes must not be alike
     for (int round = 0; round < 2; ++round) {
@@ -26,7 +28,13 @@ double shiftOf(std::uint32_t seed, std::uint32_t axis) {
     return double(h) / 4294967296.0;
 }
 
-double fraction(double value) { return value - std::floor(value); }
+// A step of Roberts' R2 sequence a turn: 1 / g and 1 / g^2 with g^3 = g + 1, of which any stretch is spread evenly. In the
+// `cells` of a pattern that have one sample each: in the whole set's range the step of the radius would be 6.04 of 8 cells, the
+// next frame's samples would lie beside this one's, and 16 frames of 64 samples have up to twice the error.
+double shiftOf(std::uint32_t seed, std::uint32_t turn, std::uint32_t axis, std::uint32_t cells) {
+    constexpr double kSteps[] = {0.7548776662466927, 0.5698402909980532};
+    return fraction(seedShift(seed, axis) + turn * kSteps[axis] / cells);
+}
 
 LwScreenSample sampleAt(int column, int row, double weight, std::uint32_t interleave) {
     const int n = int(interleave), phase = ((column % n) + n) % n;
@@ -79,7 +87,7 @@ std::vector<LwScreenSample> everyTexel(double inner, double outer, std::uint32_t
 bool takesEveryTexel(double inner, double outer, std::uint32_t samples) { return !everyTexel(inner, outer, samples, 1).empty(); }
 
 std::vector<LwScreenSample> screenPatterns(double inner, double outer, std::uint32_t samples, std::uint32_t interleave,
-                                           std::uint32_t seed) {
+                                           std::uint32_t seed, std::uint32_t turn) {
     const std::uint32_t patterns = interleave * interleave;
     std::vector<LwScreenSample> table;
     table.reserve(std::size_t(patterns) * samples);
@@ -95,10 +103,11 @@ std::vector<LwScreenSample> screenPatterns(double inner, double outer, std::uint
     std::uint32_t low = 1;
     while (4 * low * low <= samples) low *= 2;
     const double total = double(patterns) * samples;
+    const double shift[] = {shiftOf(seed, turn, 0, samples / low), shiftOf(seed, turn, 1, low)};
     for (std::uint32_t p = 0; p < patterns; ++p)
         for (std::uint32_t s = 0; s < samples; ++s) {
             const std::uint32_t index = ((s / low) * patterns + p) * low + s % low;
-            const double u = fraction((index + 0.5) / total + shiftOf(seed, 0)), v = fraction(radicalInverse(index) + shiftOf(seed, 1));
+            const double u = fraction((index + 0.5) / total + shift[0]), v = fraction(radicalInverse(index) + shift[1]);
             const double radius = std::sqrt(inner * inner + u * (outer * outer - inner * inner)), angle = 2.0 * kPi * v;
             table.push_back(sampleAt(int(std::lround(radius * std::cos(angle))), int(std::lround(radius * std::sin(angle))),
                                      area / samples, interleave));

@@ -28,6 +28,7 @@ ScreenSpaceOptions optionsOf(const LWScreenSpaceDesc& desc) {
     options.bounded = desc.bounded != 0;
     options.cameras = desc.cameras != 0;
     options.seed = desc.seed;
+    options.history = {desc.history, desc.historyClamp, 1};
     return options;
 }
 
@@ -66,11 +67,14 @@ public:
         const std::uint32_t count = desc_.cameras ? frame.sourceViewCount : 0;
         for (std::uint32_t i = 0; i < count; ++i) {
             const LWGBuffer& gbuffer = *frame.sourceViews[i].gbuffer;
-            ScreenPicture::check(device_, sourceView(gbuffer, sourceName(i)), gbuffer, sourceName(i));
+            ScreenPicture::check(device_, options_, sourceView(gbuffer, sourceName(i)), gbuffer, sourceName(i));
         }
         unused_ = unusedInputs(frame, desc_.cameras != 0);
+        const bool forget = frame.reset != 0 || device_.failures() != failures_;
+        failures_ = device_.failures();
+        if (options_.keeps()) turn_ = forget ? 0 : turn_ + 1;
         states_.purge();
-        states_.each([](ViewState& state) { state.screen.startFrame(); });
+        states_.each([&](ViewState& state) { state.screen.startFrame(forget); });
         sources_.resize(count);
         for (std::uint32_t i = 0; i < count; ++i) {
             const LWGBuffer& gbuffer = *frame.sourceViews[i].gbuffer;
@@ -79,15 +83,16 @@ public:
             if (!source.screen || source.screen->maxWidth() != view.width || source.screen->maxHeight() != view.height)
                 source.screen = std::make_unique<ScreenPicture>(device_, options_, view.width, view.height);
             source.view = frame.sourceViews[i].view;
-            source.screen->light(executor, passes_, view, gbuffer, sourceName(i));
+            source.screen->startFrame(forget);
+            source.screen->light(executor, passes_, view, gbuffer, sourceName(i), turn_);
         }
     }
 
     void render(Executor& executor, const std::shared_ptr<View>& view, const LWGBuffer& gbuffer, const LWOutput& output) override {
         checkLightOutputs(device_, *view, output, "screen_space");
-        ScreenPicture::check(device_, *view, gbuffer, "gbuffer");
+        ScreenPicture::check(device_, options_, *view, gbuffer, "gbuffer");
         ViewState& state = states_.get(view, [&] { return std::make_unique<ViewState>(device_, options_, *view); });
-        state.screen.light(executor, passes_, *view, gbuffer, "gbuffer");
+        state.screen.light(executor, passes_, *view, gbuffer, "gbuffer", turn_);
         const Planes irradiance = state.irradiance.begin(executor, *view, output.irradiance, 3, "output.irradiance");
         const Planes validity = state.validity.begin(executor, *view, output.validity, 1, "output.validity");
         state.screen.finish(executor, passes_, irradiance, validity);
@@ -106,7 +111,7 @@ public:
     Report report() override;
     std::vector<DebugView> debugViews(const View* view) override {
         std::vector<DebugView> views;
-        if (const ViewState* state = states_.find(view)) state->screen.addDebugViews(views);
+        if (const ViewState* state = states_.find(view)) state->screen.addDebugViews(views, passes_);
         return views;
     }
     std::uint64_t bytes() const override;
@@ -127,6 +132,8 @@ private:
     LWScreenSpaceDesc desc_;
     ScreenSpaceOptions options_;
     ScreenSpacePasses passes_;
+    std::uint64_t failures_ = 0;  // that the device had seen when the last update began
+    std::uint32_t turn_ = 0;      // of the sample patterns, one a frame while there is a history
     PerView<ViewState> states_;
     std::vector<Source> sources_;
     std::vector<LWChoice> unused_;  // of the last update
@@ -137,6 +144,7 @@ Report ScreenSpaceTechnique::report() {
     for (const LWChoice& choice : unused_) report.choose(choice.name, choice.reason);
     for (const char* name : {"rejected_pixels", "rejected_radiances", "upsample_fallbacks", "saturated_pixels"})
         report.counts.push_back({name, 0});
+    if (options_.keeps()) report.counts.push_back({"history_new", 0});
     states_.each([&](const ViewState& state) {
         if (!state.screen.isLit()) return;
         state.screen.report(device_, report);

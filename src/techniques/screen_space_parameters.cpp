@@ -3,6 +3,7 @@
 
 #include <cstddef>
 
+#include "techniques/history_parameters.h"
 #include "techniques/parameter_table.h"
 
 namespace lightwell {
@@ -39,7 +40,9 @@ const std::vector<LWParameter>& screenSpaceParameters() {
                   offsetof(LWScreenSpaceDesc, bounded), 0, 1, 1),
         parameter("cameras", "light that the frame's other source views see, too; costs as much again for each", LW_PARAMETER_BOOL,
                   offsetof(LWScreenSpaceDesc, cameras), 0, 1, 0),
-        parameter("seed", "another set of samples; 0: unshifted", LW_PARAMETER_UINT, offsetof(LWScreenSpaceDesc, seed), 0, 4294967295.0, 0)};
+        parameter("seed", "another set of samples; 0: unshifted", LW_PARAMETER_UINT, offsetof(LWScreenSpaceDesc, seed), 0, 4294967295.0, 0),
+        historyParameter(offsetof(LWScreenSpaceDesc, history)),
+        historyClampParameter(offsetof(LWScreenSpaceDesc, historyClamp))};
     return table;
 }
 
@@ -64,4 +67,5 @@ extern "C" void lwDefaultScreenSpace(LWScreenSpaceDesc* desc) {
     desc->radius = 20.0f;
     desc->interleave = 4;
     desc->bounded = 1;
+    desc->historyClamp = lightwell::TemporalHistoryOptions{}.clamp;
 }

@@ -145,6 +145,24 @@ TEST_CASE("a pyramid equals its serial twin", "[mip_pyramid]") {
     }
 }
 
+TEST_CASE("a pyramid that starts at a quarter has the bits of one that starts at half", "[mip_pyramid]") {
+    const auto width = GENERATE(1u, 16u);
+    const auto size = testSize(GENERATE(std::make_pair(1u, 1u), std::make_pair(5u, 3u), std::make_pair(34u, 9u), std::make_pair(131u, 57u)));
+    const std::uint32_t extras = GENERATE(std::uint32_t(kPyramidRadiance | kPyramidArea), std::uint32_t(kPyramidRadiance), 0u);
+    CAPTURE(width, size.first, size.second, extras);
+    KernelRig rig(width);
+    const PinholeCamera camera{{0.1, 0.2, 0.5}, 0.4, size.first, size.second};
+    const Scene scene = cornerScene(size.first, size.second, camera);
+    const Read half = build(rig, scene, camera, {extras, 1, 3}), quarter = build(rig, scene, camera, {extras, 2, 3});
+    CHECK(quarter.counts == half.counts);
+    for (std::size_t k = 0; k < 2; ++k) {
+        CHECK(bitDifference(quarter.position[k].planes, half.position[k + 1].planes) == "");
+        CHECK(bitDifference(quarter.normal[k].planes, half.normal[k + 1].planes) == "");
+        if (extras & kPyramidRadiance) CHECK(bitDifference(quarter.radiance[k].planes, half.radiance[k + 1].planes) == "");
+        if (extras & kPyramidArea) CHECK(bitDifference(quarter.area[k], half.area[k + 1]) == "");
+    }
+}
+
 TEST_CASE("a pyramid has the same bits at every width, and fewer planes change nothing", "[mip_pyramid][large]") {
     const PinholeCamera camera{{0.2, 0.3, 0.5}, 0.4, 131, 57};
     const Scene scene = cornerScene(131, 57, camera);

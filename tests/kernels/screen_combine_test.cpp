@@ -21,7 +21,7 @@ TEST_CASE("filter, sum and finish equal their serial twins", "[screen_combine]")
     KernelRig rig(width);
     ScreenCorner corner(rig, size.first, size.second, n);
     const std::uint32_t w = size.first, h = size.second;
-    ScreenCombine pass(rig.device(), {n, 1u << start, true, false});
+    ScreenCombine pass(rig.device(), {n, 1u << start, true, false, false});
     // Any light will do: what the gather makes of random senders. Level 1 from level 2.
     ScreenGather gather(rig.device(), n);
     const auto samples = screenPatterns(0.0, 6.0, 16, n, 5);
@@ -62,4 +62,37 @@ TEST_CASE("filter, sum and finish equal their serial twins", "[screen_combine]")
     CHECK(disagreement(validity, share, kTwinTolerance, kTwinShare) == "");
     // Surfaces at an edge test's border may be counted by one and not by the other.
     CHECK(std::abs(rig.download<cl_int>(corner.counts)[LW_SCREEN_FALLBACKS] - int(lost)) <= int(kTwinShare * double(pixels)));
+}
+
+TEST_CASE("texels move as the pixel does that they lie nearest to", "[screen_combine]") {
+    const auto width = GENERATE(1u, 16u);
+    const std::uint32_t factor = GENERATE(2u, 4u);
+    const auto size = testSize(GENERATE(std::make_pair(1u, 1u), std::make_pair(34u, 9u), std::make_pair(131u, 57u)));
+    const std::uint32_t w = size.first, h = size.second, columns = (w + factor - 1) / factor, rows = (h + factor - 1) / factor;
+    CAPTURE(width, factor, w, h);
+    KernelRig rig(width);
+    ScreenCombine pass(rig.device(), {4, factor, false, false, true});
+    const reference::Image position = reference::randomImage(w, h, 3), texels = reference::randomImage(columns, rows, 5);
+    const reference::Image motion = reference::randomImage(w, h, 7);
+    const Guarded p = rig.uploadPlanes(position.planes, w, h, 3, kNoNumber), m = rig.uploadPlanes(motion.planes, w, h, 3, kNoNumber);
+    const Guarded t = rig.uploadPlanes(texels.planes, columns, rows, 3, kNoNumber), out = rig.makePlanes(columns, rows, 2);
+    pass.recordMotion(rig.executor(), rig.planes(p, w, h, 3), rig.planes(m, w, h, 3), rig.planes(t, columns, rows, 3),
+                      rig.planes(out, columns, rows, 2));
+    rig.device().finish();
+    const auto moved = rig.downloadPlanes(rig.planes(out, columns, rows, 2));
+    for (std::uint32_t y = 0; y < rows; ++y)
+        for (std::uint32_t x = 0; x < columns; ++x) {
+            double nearest = 1e30;
+            reference::Vec expected{};
+            for (std::uint32_t j = y * factor; j < std::min(h, (y + 1) * factor); ++j)
+                for (std::uint32_t i = x * factor; i < std::min(w, (x + 1) * factor); ++i) {
+                    const reference::Vec d = position.get(i, j) - texels.get(x, y);
+                    if (dot(d, d) >= nearest) continue;
+                    nearest = dot(d, d);
+                    expected = motion.get(i, j) * (1.0 / factor);
+                }
+            CAPTURE(x, y);
+            REQUIRE(moved[y * columns + x] == float(expected.x));
+            REQUIRE(moved[(rows + y) * columns + x] == float(expected.y));
+        }
 }

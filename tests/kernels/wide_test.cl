@@ -11,6 +11,8 @@ __kernel void wide_memory(__global const float* floats, __global const int* ints
     store(gather(floats, at), out + count, i);
     store(to_real(load(bytes, i + 3)), out + 2 * count, i);
     scatter(load(floats, i), out + 3 * count, at);
+    will_load(floats + 1000000);  // no memory of ours
+    store(load_whole(floats + i + 1), out + 4 * count, i);
     store(loadi(ints, i + 3), outInts, i);
     store(gatheri(ints, at), outInts + count, i);
 }

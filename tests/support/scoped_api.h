@@ -67,6 +67,7 @@ class TestTechnique {
 public:
     TestTechnique(LWDevice device, const LWRsmDesc& desc) : TestTechnique(device, "rsm", &desc) {}
     TestTechnique(LWDevice device, const LWSsvpDesc& desc) : TestTechnique(device, "ssvp", &desc) {}
+    TestTechnique(LWDevice device, const LWScreenSpaceDesc& desc) : TestTechnique(device, "screen_space", &desc) {}
     TestTechnique(LWDevice device, const char* name, const void* desc) : device_(device) {
         const LWStatus status = lwCreateTechnique(device, name, desc, &technique_);
         INFO(lastError(device));
