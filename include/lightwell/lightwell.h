@@ -519,9 +519,9 @@ typedef enum LWAmbientWeighting {
  *  light the view shows. Lengths are shares of the image's height at the pixel's own depth. */
 typedef struct LWHorizonDesc {
     uint32_t structSize;
-    uint32_t directions;     /**< slices: 4, 8, 16, 24, 40 */
+    uint32_t directions;     /**< slices: 4, 8, 16, 24, 40, 48 */
     uint32_t steps;          /**< along each side of a slice, every time that the distance doubles: 1, 2, 4, 8 */
-    uint32_t interleave;     /**< rows of pixels that share out the slices, then a filter over them; 1, 2, 4 */
+    uint32_t interleave;     /**< rows of pixels that share out the slices, then a filter over them; 1, 2, 4, 8, 16; or the most that do so evenly */
     uint32_t filter;         /**< 1: the edge-aware filter over those rows; 0: the raw image */
     LWResolution resolution; /**< HALF: gathered on every second pixel and row, then up-sampled */
     float reach;             /**< how far a pixel looks; above 0 .. 4 */

@@ -1,6 +1,8 @@
 // Frame part, report and registration; the table of parameters is horizon_parameters.cpp's.
 #include "techniques/horizon.h"
 
+#include <numeric>
+
 #include "compute/device.h"
 #include "passes/horizon_gather.h"
 #include "techniques/horizon_parameters.h"
@@ -13,7 +15,10 @@ namespace {
 
 bool isHalf(const LWHorizonDesc& desc) { return desc.resolution == LW_RESOLUTION_HALF; }
 
-HorizonPatternOptions patternOf(const LWHorizonDesc& desc) { return {desc.directions, desc.steps, desc.interleave}; }
+// Each row of pixels takes as many slices as the next.
+std::uint32_t rowsOf(const LWHorizonDesc& desc) { return std::gcd(desc.directions, desc.interleave); }
+
+HorizonPatternOptions patternOf(const LWHorizonDesc& desc) { return {desc.directions, desc.steps, rowsOf(desc)}; }
 
 // Of an image that is so many pixels high; in gathered ones.
 double reachPixels(const LWHorizonDesc& desc, std::uint32_t height) {
@@ -23,8 +28,8 @@ double reachPixels(const LWHorizonDesc& desc, std::uint32_t height) {
 ScreenOptions screenOptions(const LWHorizonDesc& desc, std::uint32_t maxHeight) {
     ScreenOptions options;
     options.half = isHalf(desc);
-    options.rows = desc.filter ? desc.interleave : 1;
-    options.columns = desc.filter ? 4 : 1;  // of the shifts on coarse levels
+    options.rows = desc.filter ? rowsOf(desc) : 1;
+    options.columns = desc.filter ? 8 : 1;  // of the shifts on coarse levels
     options.levels = horizonLevels(desc.steps, reachPixels(desc, maxHeight));
     return options;
 }
@@ -85,6 +90,7 @@ public:
     Report report() override {
         Report report;
         for (const LWChoice& choice : unused_) report.choose(choice.name, choice.reason);
+        if (rowsOf(desc_) != desc_.interleave) report.choose("interleave", "fewer rows: the most that share out the directions evenly");
         ScreenView::startReport(report);
         states_.each([&](const HorizonView& state) { state.screen.report(device_, report); });
         return report;

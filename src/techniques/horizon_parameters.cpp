@@ -10,12 +10,12 @@ namespace {
 
 constexpr const char* kResolutionNames[] = {"full", "half", nullptr};
 constexpr const char* kWeightingNames[] = {"cosine", "uniform", nullptr};
-constexpr double kDirectionValues[] = {4, 8, 16, 24, 40};
+constexpr double kDirectionValues[] = {4, 8, 16, 24, 40, 48};
 constexpr double kStepValues[] = {1, 2, 4, 8};
-constexpr double kInterleaveValues[] = {1, 2, 4};
+constexpr double kInterleaveValues[] = {1, 2, 4, 8, 16};
 constexpr double kDirectionSweep[] = {4, 8, 16, 40};
 constexpr double kStepSweep[] = {1, 2, 4};
-constexpr double kInterleaveSweep[] = {1, 4};
+constexpr double kInterleaveSweep[] = {1, 4, 8};
 constexpr double kThicknessSweep[] = {0.01, 0.03, 0.1};
 constexpr double kReachSweep[] = {0.25, 1};
 constexpr double kResolutionSweep[] = {LW_RESOLUTION_FULL, LW_RESOLUTION_HALF};
@@ -25,15 +25,15 @@ constexpr double kResolutionSweep[] = {LW_RESOLUTION_FULL, LW_RESOLUTION_HALF};
 const std::vector<LWParameter>& horizonParameters() {
     static const std::vector<LWParameter> table = {
         swept(allowing(parameter("directions", "slices of the hemisphere: error falls and time grows with them", LW_PARAMETER_UINT,
-                                 offsetof(LWHorizonDesc, directions), 4, 40, 8),
+                                 offsetof(LWHorizonDesc, directions), 4, 48, 16),
                        kDirectionValues),
               kDirectionSweep),
         swept(allowing(parameter("steps", "along each side of a slice whenever the distance doubles: what is thin is missed with few",
                                  LW_PARAMETER_UINT, offsetof(LWHorizonDesc, steps), 1, 8, 2),
                        kStepValues),
               kStepSweep),
-        swept(allowing(parameter("interleave", "rows of pixels that share out the slices: time falls with it, noise at edges grows",
-                                 LW_PARAMETER_UINT, offsetof(LWHorizonDesc, interleave), 1, 4, 4),
+        swept(allowing(parameter("interleave", "rows of pixels that share out the slices, or the most rows that do so evenly: time falls with it, noise at edges grows",
+                                 LW_PARAMETER_UINT, offsetof(LWHorizonDesc, interleave), 1, 16, 8),
                        kInterleaveValues),
               kInterleaveSweep),
         parameter("filter", "edge-aware filter over the rows that share out the slices", LW_PARAMETER_BOOL,
@@ -58,7 +58,7 @@ const std::vector<LWParameter>& horizonParameters() {
 
 const std::vector<LWSetting>& horizonSettings() {
     static const std::vector<LWSetting> settings = {
-        {"fast", "directions=4 steps=1"},
+        {"fast", "directions=8"},
         {"fine", "directions=16 steps=4 interleave=1 resolution=full"},
         {"limit", "directions=40 steps=8 interleave=1 resolution=full"}};
     return settings;
@@ -70,9 +70,9 @@ extern "C" void lwDefaultHorizon(LWHorizonDesc* desc) {
     if (!desc) return;
     *desc = LWHorizonDesc{};
     desc->structSize = sizeof *desc;
-    desc->directions = 8;
+    desc->directions = 16;
     desc->steps = 2;
-    desc->interleave = 4;
+    desc->interleave = 8;
     desc->filter = 1;
     desc->resolution = LW_RESOLUTION_HALF;
     desc->reach = 1.0f;

@@ -65,6 +65,8 @@ void ScreenView::reserve(const View& view) {
     if (!levels.bytes()) levels = PyramidLevels(device_, view.maxWidth, view.maxHeight, pyramidOptions(options_, wantsLight_));
     if (wantsLight_ && !light_) light_ = PlanarImage(device_, w, h, WeightedFilter::planes(true), "gathered light");
     if (!ambient_) ambient_ = PlanarImage(device_, w, h, WeightedFilter::planes(false), "gathered ambient occlusion");
+    if (options_.rows > 1 && between_.planes(w, h).count < WeightedFilter::planes(wantsLight_))
+        between_ = PlanarImage(device_, w, h, WeightedFilter::planes(wantsLight_), "sums of the filter's columns");
     if (!options_.half) return;
     if (wantsLight_ && !filteredLight_) filteredLight_ = PlanarImage(device_, w, h, 5, "filtered light");
     if (!filteredAmbient_) filteredAmbient_ = PlanarImage(device_, w, h, 1, "filtered ambient occlusion");
@@ -92,6 +94,8 @@ void ScreenView::begin(Executor& executor, const View& view, const LWGBuffer& gb
 
 Planes ScreenView::sized(const PlanarImage& image) const { return image.planes(width_, height_); }
 
+Planes ScreenView::between(bool light) const { return between_ ? part(sized(between_), 0, WeightedFilter::planes(light)) : Planes{}; }
+
 Planes ScreenView::gathered(bool light) const { return sized(light ? light_ : ambient_); }
 
 void ScreenView::finishLight(Executor& executor, ScreenPasses& passes, bool withAmbient) {
@@ -99,12 +103,12 @@ void ScreenView::finishLight(Executor& executor, ScreenPasses& passes, bool with
     const Planes position = levels().position(base), normal = levels().normal(base), open = withAmbient ? open_ : Planes{};
     hasLight_ = true;
     if (!options_.half) {
-        passes.filterLight_.record(executor, position, normal, options_.columns, options_.rows, gathered(true), irradiance_,
-                                   validity_, open);
+        passes.filterLight_.record(executor, position, normal, options_.columns, options_.rows, gathered(true), between(true),
+                                   irradiance_, validity_, open);
         return;
     }
     const Planes filtered = sized(filteredLight_);
-    passes.filterLight_.record(executor, position, normal, options_.columns, options_.rows, gathered(true),
+    passes.filterLight_.record(executor, position, normal, options_.columns, options_.rows, gathered(true), between(true),
                                part(filtered, 0, 3), part(filtered, 3, 1), part(filtered, 4, 1));
     passes.upsampleAll_->recordUpsampleAll(executor, gbuffer_.position, gbuffer_.normal, position, normal, filtered,
                                            irradiance_, validity_, open, upsampleCounts_);
@@ -114,7 +118,8 @@ void ScreenView::finishAmbient(Executor& executor, ScreenPasses& passes) {
     const std::uint32_t base = levels().options().firstLevel;
     const Planes position = levels().position(base), normal = levels().normal(base);
     const Planes filtered = options_.half ? sized(filteredAmbient_) : open_;
-    passes.filterAmbient_.record(executor, position, normal, options_.columns, options_.rows, gathered(false), {}, {}, filtered);
+    passes.filterAmbient_.record(executor, position, normal, options_.columns, options_.rows, gathered(false),
+                                 between(false), {}, {}, filtered);
     if (options_.half)
         passes.upsampleOne_->recordUpsample(executor, gbuffer_.position, gbuffer_.normal, position, normal, filtered, open_,
                                             upsampleCounts_);
@@ -153,7 +158,7 @@ void ScreenView::addDebugViews(std::vector<DebugView>& views) const {
 std::uint64_t ScreenView::bytes() const {
     return gbuffer_.bytes() + irradianceTarget_.bytes() + validityTarget_.bytes() + ambientTarget_.bytes() +
            withLight_.bytes() + plain_.bytes() + light_.bytes() + ambient_.bytes() + filteredLight_.bytes() +
-           filteredAmbient_.bytes() + counts_.bytes() + upsampleCounts_.bytes();
+           filteredAmbient_.bytes() + between_.bytes() + counts_.bytes() + upsampleCounts_.bytes();
 }
 
 std::uint64_t ScreenView::estimateBytes(const ScreenOptions& options, const LWViewDesc& view, bool uploads) {
@@ -161,7 +166,8 @@ std::uint64_t ScreenView::estimateBytes(const ScreenOptions& options, const LWVi
                           OutputTarget::estimateBytes(view, 3, uploads) + 2 * OutputTarget::estimateBytes(view, 1, uploads);
     for (const bool light : {true, false})
         total += PyramidLevels::estimateBytes(view.maxWidth, view.maxHeight, pyramidOptions(options, light));
-    const std::uint64_t planes = WeightedFilter::planes(true) + WeightedFilter::planes(false) + (options.half ? 5 + 1 : 0);
+    const std::uint64_t planes = WeightedFilter::planes(true) + WeightedFilter::planes(false) + (options.half ? 5 + 1 : 0) +
+                                 (options.rows > 1 ? WeightedFilter::planes(true) : 0);
     return total + planes * sizeof(float) * paddedWidth(options.gathered(view.maxWidth)) * options.gathered(view.maxHeight);
 }
 

@@ -69,13 +69,14 @@ public:
 private:
     void reserve(const View& view);
     Planes sized(const PlanarImage& image) const;
+    Planes between(bool light) const;  // scratch of the filter
 
     Device& device_;
     ScreenOptions options_;
     GBufferInput gbuffer_;
     OutputTarget irradianceTarget_, validityTarget_, ambientTarget_;
     PyramidLevels withLight_, plain_;
-    PlanarImage light_, ambient_, filteredLight_, filteredAmbient_;
+    PlanarImage light_, ambient_, filteredLight_, filteredAmbient_, between_;
     Buffer counts_, upsampleCounts_;  // rejected pixels, rejected radiances; rejected pixels once more, fallbacks
     Planes irradiance_, validity_, open_;
     std::uint32_t width_ = 0, height_ = 0;  // of the gathered image

@@ -79,33 +79,33 @@ inline std::vector<float> horizonGather(const std::vector<HorizonLevel>& levels,
                     for (int k = 0; k < slice.steps; ++k) {
                         const lw_horizon_step& step = pattern.steps[std::size_t(slice.first[against] + k)];
                         const HorizonLevel& level = levels[std::size_t(step.level)];
-                        // Rows of a 4 x 4 pattern: each shift across and down once.
-                        constexpr double kRows[4] = {-0.375, 0.125, 0.375, -0.125};
-                        const double texel = std::ldexp(1.0, step.level), blend = step.level < 3 ? 0.0 : texel;
-                        const double shiftX = blend * ((x % 4) * 0.25 - 0.375), shiftY = blend * kRows[(x + y) % 4];
-                        const int tx = int(std::floor((x + step.phaseX + shiftX) / texel)) + step.dx;
-                        const int ty = int(std::floor((y + step.phaseY + shiftY) / texel)) + step.dy;
+                        // Shifts of an 8 x 8 pattern, in sixteenths of a texel.
+                        const double texel = std::ldexp(1.0, step.level);
+                        const bool blends = step.level >= 3;
+                        const auto shifted = [&](int sixteenth) { return blends ? std::floor((2 * sixteenth - 7) * texel / 16.0) : 0.0; };
+                        const double placeX = x + step.phaseX + shifted(x % 8), placeY = y + step.phaseY + shifted((3 * x + 5 * y) % 8);
+                        const int tx = int(std::floor(placeX / texel)) + step.dx, ty = int(std::floor(placeY / texel)) + step.dy;
                         if (tx < 0 || ty < 0 || tx >= int(level.width) || ty >= int(level.height)) continue;
+                        if (blends && (placeX + step.dx * texel >= base.width || placeY + step.dy * texel >= base.height)) continue;
                         const glm::dvec3 q = level.get(tx, ty, 0), m = level.get(tx, ty, 3), d = q - p;
                         const double up = glm::dot(d, n), sign = against ? -1.0 : 1.0;
                         if (glm::dot(m, m) < 0.25 || up <= 0.01 * glm::length(d)) continue;
-                        // The plane at q along the line: points on the rays at begin and end.
+                        // The plane of q, met by the rays at begin and end.
                         double least = HUGE_VAL, last = 0.0;
                         glm::dvec3 farthest{0.0};
                         for (const double at : {double(step.begin), double(step.end)}) {
                             glm::dvec3 end;
                             if (perspective) {
                                 const glm::dvec3 ray = (p - camera.eye()) / depth + line * (sign * at);
-                                const double zq = camera.axial(q), m0 = std::fmax(-glm::dot(m, q - camera.eye()) / zq, 0.02);
-                                const double turn = glm::dot(m, line) * sign * (double(step.at) - at);
-                                const double z = zq * m0 / std::fmax(m0 + turn, 0.25 * m0);
+                                const double zq = camera.axial(q), seen = -glm::dot(m, q - camera.eye()) / zq, held = std::fmax(seen, 0.02);
+                                const double z = zq * held / std::fmax(held - seen - glm::dot(m, ray), 0.25 * held);
                                 end = camera.eye() + ray * z - p;
                                 const double angle = angleOf(end, s, sign);
                                 if (angle > last || least == HUGE_VAL) farthest = end + ray * (z * thick);
                                 last = std::fmax(last, angle);
                                 least = std::fmin(least, angle);
                             } else {
-                                const double rise = glm::dot(d, v) + (double(step.at) - at) * sign * glm::dot(m, line) / std::fmax(glm::dot(m, v), 0.02);
+                                const double facing = glm::dot(m, v), rise = glm::dot(d, v) + (glm::dot(m, d - v * glm::dot(d, v)) - at * sign * glm::dot(m, line)) / std::fmax(facing, 0.02);
                                 end = v * rise + line * (sign * at);
                                 const double angle = angleOf(end, s, sign);
                                 if (angle > last || least == HUGE_VAL) farthest = end - v * thick;
