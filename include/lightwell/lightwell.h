@@ -528,6 +528,9 @@ typedef struct LWHorizonDesc {
     float thickness;         /**< of everything along the view: what passes behind it is light; 0 .. 10 */
     float ambientRadius;     /**< what ambient occlusion counts lies nearer; above 0 .. 1e6 */
     LWAmbientWeighting weighting; /**< of ambient occlusion; light is always weighted by the cosine */
+    uint32_t history;        /**< frames in a mean of all three outputs, each with another pattern; 0 .. 64. More than 0 needs
+                                  LWGBuffer::motion where things move */
+    float historyClamp;      /**< as LWRsmDesc's */
 } LWHorizonDesc;
 
 LW_API void lwDefaultHorizon(LWHorizonDesc* desc);
@@ -550,6 +553,9 @@ typedef struct LWAoDesc {
     uint32_t filter;         /**< 1: the edge-aware 4 x 4 blur that the 4 x 4 rotations of the points need */
     LWResolution resolution; /**< HALF: on every second pixel and row, then up-sampled */
     LWAmbientWeighting weighting; /**< how points are spread over directions */
+    uint32_t history;        /**< frames in a mean of all three outputs, each with another pattern; 0 .. 64. More than 0 needs
+                                  LWGBuffer::motion where things move */
+    float historyClamp;      /**< as LWRsmDesc's */
 } LWAoDesc;
 
 LW_API void lwDefaultAo(LWAoDesc* desc);

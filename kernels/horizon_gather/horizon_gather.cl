@@ -164,20 +164,22 @@ __kernel void horizon_gather_gather(__global const float* pyramid, int4 layout, 
     const mask valid = squared_length(self.nx, self.ny, self.nz) > 0.25f;
     const real zero = (real)0.0f;
     real sumR = zero, sumG = zero, sumB = zero, sumSeen = zero, sumOpen = zero, sumWeight = zero;
-    const int slice0 = y % view.rows;
+    const int slice0 = (y + view.turn) % view.rows;
     const int sliceCount = any_(valid) ? view.slices : 0;
     const lw_receiver p = receiver_of(self, view);
     const float3 across = crossed(view.perI, view.perJ);
     const real crossSection = fabs(fma_(p.vx, (real)across.x, fma_(p.vy, (real)across.y, p.vz * across.z)));
     const lanei at = lanei_iota() + (lanei)x;
-    const lanei columnShift = ((at & (lanei)7) << 1) - (lanei)7;  // lw_horizon_column, lw_horizon_row
-    const lanei rowShift = (((at * 3 + (lanei)(5 * y)) & (lanei)7) << 1) - (lanei)7;
+    // lw_horizon_column, lw_horizon_row, and a turn of both
+    const lanei columnShift = (((at + (lanei)(3 * view.turn)) & (lanei)7) << 1) - (lanei)7;
+    const lanei rowShift = (((at * 3 + (lanei)(5 * (y + view.turn) + (view.turn >> 3))) & (lanei)7) << 1) - (lanei)7;
     for (int i = 0; i < sliceCount; ++i) {
         const lw_horizon_slice slice = slices[slice0 + i * view.rows];
         const float lx = slice.dx * view.perI.x + slice.dy * view.perJ.x;
         const float ly = slice.dx * view.perI.y + slice.dy * view.perJ.y;
         const float lz = slice.dx * view.perI.z + slice.dy * view.perJ.z;
         const lw_arc arc = make_arc(p.nx, p.ny, p.nz, p.vx, p.vy, p.vz, lx, ly, lz, crossSection, slice.share);
+        const float turned = slice.rounding + view.rounding, rounding = turned < 0.95f ? turned : turned - 0.9f;
         lw_found found = {zero, zero, zero, zero, (laneu)0u, (laneu)0u};
         for (int against = 0; against < 2; ++against) {
             lw_side side;
@@ -206,7 +208,7 @@ __kernel void horizon_gather_gather(__global const float* pyramid, int4 layout, 
                         continue;
                     fetch_blended(&s, pyramid + step.first, &step, start, y + step.phaseY, columnShift, rowShift, column, row, width, height);
                 }
-                look(&found, &s, &p, &arc, &side, &step, &view, slice.rounding);
+                look(&found, &s, &p, &arc, &side, &step, &view, rounding);
             }
         }
         const real weight = arc.weight;

@@ -144,7 +144,7 @@ LW_FN void keep_sample(lw_texel* child, const int k) {
 }
 
 // One work-item = LW_WIDTH texels of a level, from 2 x 2 of the finer one. width, height: the finer level's size.
-// first: which child is first among equals, 0 (top left) or 2 (bottom right). sampled: that child is kept wherever it lies,
+// first: which child is first among equals, round the block from 0 (top left) to 2 (bottom right). sampled: that child is kept wherever it lies,
 // and where it shows no surface neither does the texel.
 __kernel void mip_pyramid_reduce(__global const float* fine, int4 fineLayout, int width, int height, __global float* level,
                                  int4 levelLayout, LwPyramidCamera camera, int first, int sampled) {
@@ -188,9 +188,11 @@ __kernel void mip_pyramid_reduce(__global const float* fine, int4 fineLayout, in
             replace_texel(&child[1], &child[0], beyond);
             replace_texel(&child[2], &child[3], beyond);
         }
-        if (first) keep_sample(child, 2);
-        else keep_sample(child, 0);
+        if (first == 0) keep_sample(child, 0);
+        else if (first == 1) keep_sample(child, 1);
+        else if (first == 2) keep_sample(child, 2);
+        else keep_sample(child, 3);
     }
-    const lw_texel t = first ? merged(child, 2) : merged(child, 0);
+    const lw_texel t = first == 0 ? merged(child, 0) : first == 1 ? merged(child, 1) : first == 2 ? merged(child, 2) : merged(child, 3);
     store_texel(&t, level, levelLayout.x + y * levelLayout.y + x, levelLayout.z);
 }

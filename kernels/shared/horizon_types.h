@@ -36,10 +36,10 @@ typedef struct {
     lw_int dx, dy;
     lw_int level;               // above the one that the gather runs on
     lw_int phaseX, phaseY;      // pixels of that one
-    lw_float begin, at, end;    // distances in pixels of the full image
+    lw_float begin, end;        // distances in pixels of the full image
     lw_int columns, rows;       // of the level
     lw_int first, rowStride, planeStride;  // its layout, in floats
-    lw_int reserved0, reserved1, reserved2;
+    lw_int reserved0, reserved1, reserved2, reserved3;
 } lw_horizon_step;
 LW_SIZE_CHECK(lw_horizon_step, 64);
 
@@ -50,7 +50,8 @@ typedef struct {
     lw_float4 perJ;  // xyz: what one row down adds to a ray; w: the image's height at distance 1 (orthographic: anywhere)
     lw_int slices;   // a row of pixels looks at
     lw_int rows;     // that share out the slices
-    lw_int reserved0, reserved1;
+    lw_int turn;     // of the pattern: which rows take which slices, and which pixels which shifts
+    lw_float rounding;  // added to the slices', in [0, 0.9)
 } lw_horizon_view;
 LW_SIZE_CHECK(lw_horizon_view, 80);
 

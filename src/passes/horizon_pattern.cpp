@@ -67,7 +67,6 @@ void addSteps(HorizonPattern& pattern, const Line& line, int side, std::uint32_t
             step.phaseX = int(std::lround((fraction(0.7548776662 * n) - 0.5) * shift));
             step.phaseY = int(std::lround((fraction(0.5698402910 * n) - 0.5) * shift));
             step.begin = float(begin * every);
-            step.at = float(k * scale * every);
             step.end = float((k + 0.5) * scale * every);
             pattern.steps.push_back(step);
             pattern.levels = std::max(pattern.levels, std::uint32_t(step.level) + 1);

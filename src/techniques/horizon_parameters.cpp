@@ -3,6 +3,7 @@
 
 #include <cstddef>
 
+#include "techniques/history_parameters.h"
 #include "techniques/parameter_table.h"
 
 namespace lightwell {
@@ -52,7 +53,9 @@ const std::vector<LWParameter>& horizonParameters() {
                   offsetof(LWHorizonDesc, ambientRadius), 1e-6, 1e6, 0.2),
         choosing(parameter("weighting", "of ambient occlusion: directions by their cosine, or all alike", LW_PARAMETER_ENUM,
                            offsetof(LWHorizonDesc, weighting), 0, 1, LW_AMBIENT_COSINE),
-                 kWeightingNames)};
+                 kWeightingNames),
+        historyParameter(offsetof(LWHorizonDesc, history)),
+        historyClampParameter(offsetof(LWHorizonDesc, historyClamp))};
     return table;
 }
 
@@ -79,4 +82,5 @@ extern "C" void lwDefaultHorizon(LWHorizonDesc* desc) {
     desc->thickness = 0.03f;
     desc->ambientRadius = 0.2f;
     desc->weighting = LW_AMBIENT_COSINE;
+    desc->historyClamp = lightwell::TemporalHistoryOptions{}.clamp;
 }

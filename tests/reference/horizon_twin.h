@@ -53,7 +53,7 @@ inline double angleOf(glm::dvec3 d, const HorizonSlice& s, double side) {
 
 inline std::vector<float> horizonGather(const std::vector<HorizonLevel>& levels, const HorizonPattern& pattern, const Camera& camera,
                                         const HorizonRanges& ranges, const HorizonPatternOptions& options, std::uint32_t fullHeight,
-                                        bool light, bool uniform) {
+                                        bool light, bool uniform, std::uint32_t turn) {
     constexpr double kHalfPi = 1.5707963267948966;
     const HorizonLevel& base = levels[0];
     const std::size_t plane = std::size_t(base.width) * base.height, open = light ? 4 : 0;
@@ -70,9 +70,10 @@ inline std::vector<float> horizonGather(const std::vector<HorizonLevel>& levels,
             const glm::dvec3 v = perspective ? glm::normalize(camera.eye() - p) : axis;
             std::array<double, 6> sum{};
             for (std::uint32_t i = 0; i < options.directions / options.rows; ++i) {
-                const lw_horizon_slice& slice = pattern.slices[std::size_t(y) % options.rows + i * options.rows];
+                const lw_horizon_slice& slice = pattern.slices[(std::size_t(y) + turn) % options.rows + i * options.rows];
                 const glm::dvec3 line = double(slice.dx) * perI + double(slice.dy) * perJ;
                 const HorizonSlice s = sliceOf(n, v, line, uniform);
+                const double turned = double(slice.rounding) + 0.9 * std::fmod(0.6180339887 * turn, 1.0), rounding = turned < 0.95 ? turned : turned - 0.9;
                 std::array<bool, 32> covered{}, near{};
                 std::array<double, 4> found{};
                 for (int against = 0; against < 2; ++against)
@@ -83,7 +84,8 @@ inline std::vector<float> horizonGather(const std::vector<HorizonLevel>& levels,
                         const double texel = std::ldexp(1.0, step.level);
                         const bool blends = step.level >= 3;
                         const auto shifted = [&](int sixteenth) { return blends ? std::floor((2 * sixteenth - 7) * texel / 16.0) : 0.0; };
-                        const double placeX = x + step.phaseX + shifted(x % 8), placeY = y + step.phaseY + shifted((3 * x + 5 * y) % 8);
+                        const double placeX = x + step.phaseX + shifted((x + 3 * int(turn)) % 8),
+                                     placeY = y + step.phaseY + shifted((3 * x + 5 * (y + int(turn)) + int(turn / 8)) % 8);
                         const int tx = int(std::floor(placeX / texel)) + step.dx, ty = int(std::floor(placeY / texel)) + step.dy;
                         if (tx < 0 || ty < 0 || tx >= int(level.width) || ty >= int(level.height)) continue;
                         if (blends && (placeX + step.dx * texel >= base.width || placeY + step.dy * texel >= base.height)) continue;
@@ -117,7 +119,7 @@ inline std::vector<float> horizonGather(const std::vector<HorizonLevel>& levels,
                         const double front = std::fmin(least, horizon), back = std::fmax(front, std::fmin(angleOf(farthest, s, sign), horizon));
                         const auto border = [&](double angle) {
                             const double sectors = 32.0 * (s.before + sign * measureTo(angle, gamma, uniform)) / s.total;
-                            return int(std::floor(std::fmin(std::fmax(sectors + double(slice.rounding), 0.0), 32.0)));
+                            return int(std::floor(std::fmin(std::fmax(sectors + rounding, 0.0), 32.0)));
                         };
                         const int lo = std::min(border(front), border(back)), hi = std::max(border(front), border(back));
                         for (int b = lo; b < hi; ++b) {
