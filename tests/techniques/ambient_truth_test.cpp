@@ -1,9 +1,9 @@
 // Ambient occlusion and on-screen light of `horizon` and `ao` on real scenes against rays cast through the same scene: at pixels
 // of the picture, cosine-distributed directions, hidden where they meet something within the technique's radius; light from what
 // they meet if the camera sees that point.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstdlib>
 #include <memory>
 #include <string>
 
@@ -134,7 +134,7 @@ std::vector<Truth> truthsOf(const SceneView& view) {
     return truths;
 }
 
-// Of the ambient occlusion.
+// Of bias and mean error: what was measured and a quarter more, so that a change of the pattern passes and a wrong slice does not.
 struct Bounds {
     const char* scene;
     double horizonBias, horizonMean, aoBias, aoMean;
@@ -185,9 +185,11 @@ void check(const Bounds& bounds) {
 }  // namespace
 
 TEST_CASE("ambient occlusion is that of cast rays", "[horizon][ao][rays]") {
-    check(GENERATE(Bounds{"cornell", 1, 1, 1, 1}, Bounds{"rooms", 1, 1, 1, 1}));
+    check(GENERATE(Bounds{"cornell", 0.045, 0.07, 0.1, 0.12}, Bounds{"rooms", 0.03, 0.045, 0.065, 0.075}));
 }
 
+// Needs LIGHTWELL_SCENES: ambient_truth_test "[.scenes]".
 TEST_CASE("ambient occlusion of large scenes is that of cast rays", "[horizon][ao][rays][.scenes]") {
-    check(GENERATE(Bounds{"sponza_crytek", 1, 1, 1, 1}, Bounds{"sibenik", 1, 1, 1, 1}, Bounds{"living_room", 1, 1, 1, 1}));
+    check(GENERATE(Bounds{"sponza_crytek", 0.07, 0.12, 0.14, 0.16}, Bounds{"sibenik", 0.09, 0.11, 0.105, 0.135},
+                   Bounds{"living_room", 0.07, 0.11, 0.14, 0.15}));
 }
