@@ -13,12 +13,12 @@ from program import ROOT, caller, read_options
 
 TIMED_SCENE, TIMED_SIZE = "cornell", "1280x720"
 LIMIT = "directions=40 steps=8 interleave=1"  # not timed: seconds a frame
-SETTINGS = [("horizon", "defaults"), ("horizon", "directions=4 steps=1"), ("horizon", "steps=1"), ("horizon", "directions=16"),
-            ("horizon", "directions=16 steps=4"), ("horizon", "resolution=full"),
+SETTINGS = [("horizon", "defaults"), ("horizon", "directions=8"), ("horizon", "steps=1"), ("horizon", "directions=8 interleave=4"),
+            ("horizon", "interleave=16"), ("horizon", "directions=24"), ("horizon", "steps=4"), ("horizon", "resolution=full"),
             ("horizon", LIMIT),
             ("ao", "defaults"), ("ao", "radius=1 packing=off"), ("ao", "samples=64"), ("ao", "samples=64 radius=1")]
-PASSES = ["mip_pyramid.base", "mip_pyramid.reduce", "horizon_gather.gather", "point_occlusion.gather", "weighted_filter.filter",
-          "joint_bilateral.upsample"]
+PASSES = ["mip_pyramid.base", "mip_pyramid.reduce", "horizon_gather.gather", "point_occlusion.gather", "weighted_filter.columns",
+          "weighted_filter.filter", "joint_bilateral.upsample"]
 
 
 def main():

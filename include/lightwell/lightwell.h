@@ -521,15 +521,18 @@ typedef enum LWAmbientWeighting {
  *  light the view shows. Lengths are shares of the image's height at the pixel's own depth. */
 typedef struct LWHorizonDesc {
     uint32_t structSize;
-    uint32_t directions;     /**< slices: 4, 8, 16, 24, 40 */
+    uint32_t directions;     /**< slices: 4, 8, 16, 24, 40, 48 */
     uint32_t steps;          /**< along each side of a slice, every time that the distance doubles: 1, 2, 4, 8 */
-    uint32_t interleave;     /**< rows of pixels that share out the slices, then a filter over them; 1, 2, 4 */
+    uint32_t interleave;     /**< rows of pixels that share out the slices, then a filter over them; 1, 2, 4, 8, 16; or the most that do so evenly */
     uint32_t filter;         /**< 1: the edge-aware filter over those rows; 0: the raw image */
     LWResolution resolution; /**< HALF: gathered on every second pixel and row, then up-sampled */
     float reach;             /**< how far a pixel looks; above 0 .. 4 */
     float thickness;         /**< of everything along the view: what passes behind it is light; 0 .. 10 */
     float ambientRadius;     /**< what ambient occlusion counts lies nearer; above 0 .. 1e6 */
     LWAmbientWeighting weighting; /**< of ambient occlusion; light is always weighted by the cosine */
+    uint32_t history;        /**< frames in a mean of all three outputs, each with another pattern; 0 .. 64. More than 0 needs
+                                  LWGBuffer::motion where things move */
+    float historyClamp;      /**< as LWRsmDesc's */
 } LWHorizonDesc;
 
 LW_API void lwDefaultHorizon(LWHorizonDesc* desc);
@@ -552,6 +555,9 @@ typedef struct LWAoDesc {
     uint32_t filter;         /**< 1: the edge-aware 4 x 4 blur that the 4 x 4 rotations of the points need */
     LWResolution resolution; /**< HALF: on every second pixel and row, then up-sampled */
     LWAmbientWeighting weighting; /**< how points are spread over directions */
+    uint32_t history;        /**< frames in a mean of all three outputs, each with another pattern; 0 .. 64. More than 0 needs
+                                  LWGBuffer::motion where things move */
+    float historyClamp;      /**< as LWRsmDesc's */
 } LWAoDesc;
 
 LW_API void lwDefaultAo(LWAoDesc* desc);

@@ -96,16 +96,18 @@ LW_FN void fetch(lw_seen* seen, __global const float* p, int plane, int level, i
 
 // Levels from LW_HORIZON_BLEND on: lanes take one of two rows and of up to four columns. first: of the level; column, row:
 // the least that a lane takes, both readable in part only; start: pixel, shifted, of the first lane; y: likewise.
-// columnShift, rowShift: the lanes' own, in eighths of a texel.
+// columnShift, rowShift: the lanes' own, in sixteenths of a texel. Inside is what lies in the image of width x height pixels that
+// the gather runs on: a texel that its border cuts stands for no more than its part in it.
 LW_FN void fetch_blended(lw_seen* seen, __global const float* first, const lw_horizon_step* step, int start, int y,
-                         lanei columnShift, lanei rowShift, int column, int row) {
+                         lanei columnShift, lanei rowShift, int column, int row, int width, int height) {
     const int unit = step->level - LW_HORIZON_BLEND, plane = step->planeStride;
-    const lanei x = ((lanei_iota() + (lanei)start + (columnShift << unit)) >> step->level) + (lanei)(step->dx - column);
-    const mask second = ((((lanei)y + (rowShift << unit)) >> step->level) + (lanei)(step->dy - row)) > (lanei)0;
+    const lanei pixelX = lanei_iota() + (lanei)start + ((columnShift << unit) >> 1), pixelY = (lanei)y + ((rowShift << unit) >> 1);
+    const lanei x = (pixelX >> step->level) + (lanei)(step->dx - column);
+    const mask second = ((pixelY >> step->level) + (lanei)(step->dy - row)) > (lanei)0;
     const mask x1 = x > (lanei)0, x2 = x > (lanei)1, x3 = x > (lanei)2;
     const int rowA = clamp(row, 0, step->rows - 1), rowB = clamp(row + 1, 0, step->rows - 1);
-    const mask inside = or_(and_(second, splat_mask(row + 1 >= 0 && row + 1 < step->rows)),
-                            and_(not_(second), splat_mask(row >= 0 && row < step->rows)));
+    const lanei placeX = pixelX + (lanei)(step->dx << step->level), placeY = pixelY + (lanei)(step->dy << step->level);
+    const mask inside = and_(and_(placeX >= (lanei)0, placeX < (lanei)width), and_(placeY >= (lanei)0, placeY < (lanei)height));
     __global const float* p = first + rowA * step->rowStride + column;
     __global const float* q = first + rowB * step->rowStride + column;
 #define LW_THREE(r, a) select_(select_((real)r[(a) * plane], (real)r[(a) * plane + 1], x1), (real)r[(a) * plane + 2], x2)

@@ -65,18 +65,19 @@ LW_FN void cut(lw_piece* piece, const lw_seen* s, real dx, real dy, real dz, rea
     if (view->eye.w != 0.0f) {
         const real deeper = fma_(dx, (real)view->axis.x, fma_(dy, (real)view->axis.y, dz * view->axis.z));
         const real ratio = fma_(deeper, p->inverseDepth, (real)1.0f);
-        const real m = larger(fma_(-towards, p->inverseDepth, p->slant * facingEye), LW_LEAST_VIEW_COSINE * ratio);
-        const real turn = tilt * ratio, least = LW_EXTENSION * m;
+        const real own = p->slant * facingEye, seenCosine = fma_(-towards, p->inverseDepth, own);
+        const real m = larger(seenCosine, LW_LEAST_VIEW_COSINE * ratio);
+        const real turn = tilt * ratio, least = LW_EXTENSION * m, start = fma_(own, ratio, m - seenCosine);
         scale = m * ratio;
-        const real begin = larger(fma_((real)(step->at - step->begin), turn, m), least);
-        const real end = larger(fma_((real)(step->at - step->end), turn, m), least);
+        const real begin = larger(fma_((real)-step->begin, turn, start), least);
+        const real end = larger(fma_((real)-step->end, turn, start), least);
         beginX = fma_(p->slant, begin - scale, scale * (step->begin * side->along));
         endX = fma_(p->slant, end - scale, scale * (step->end * side->along));
     } else {
         scale = larger(facingEye, (real)LW_LEAST_VIEW_COSINE);
-        const real along = scale * fma_(dx, p->vx, fma_(dy, p->vy, dz * p->vz));
-        beginX = fma_((real)(step->at - step->begin), tilt, along);
-        endX = fma_((real)(step->at - step->end), tilt, along);
+        const real along = fma_(scale - facingEye, fma_(dx, p->vx, fma_(dy, p->vy, dz * p->vz)), towards);
+        beginX = fma_((real)-step->begin, tilt, along);
+        endX = fma_((real)-step->end, tilt, along);
     }
     // Which end is farther from V follows from cotangents alone: both lie at positive distances.
     const mask beginLast = beginX * step->end < endX * step->begin;
@@ -163,20 +164,22 @@ __kernel void horizon_gather_gather(__global const float* pyramid, int4 layout, 
     const mask valid = squared_length(self.nx, self.ny, self.nz) > 0.25f;
     const real zero = (real)0.0f;
     real sumR = zero, sumG = zero, sumB = zero, sumSeen = zero, sumOpen = zero, sumWeight = zero;
-    const int slice0 = y % view.rows;
+    const int slice0 = (y + view.turn) % view.rows;
     const int sliceCount = any_(valid) ? view.slices : 0;
     const lw_receiver p = receiver_of(self, view);
     const float3 across = crossed(view.perI, view.perJ);
     const real crossSection = fabs(fma_(p.vx, (real)across.x, fma_(p.vy, (real)across.y, p.vz * across.z)));
     const lanei at = lanei_iota() + (lanei)x;
-    const lanei columnShift = ((at & (lanei)3) << 1) - (lanei)3;  // lw_horizon_column, lw_horizon_row
-    const lanei rowShift = ((((lanei)0x78 >> (((at + (lanei)y) & (lanei)3) << 1)) & (lanei)3) << 1) - (lanei)3;
+    // lw_horizon_column, lw_horizon_row, and a turn of both
+    const lanei columnShift = (((at + (lanei)(3 * view.turn)) & (lanei)7) << 1) - (lanei)7;
+    const lanei rowShift = (((at * 3 + (lanei)(5 * (y + view.turn) + (view.turn >> 3))) & (lanei)7) << 1) - (lanei)7;
     for (int i = 0; i < sliceCount; ++i) {
         const lw_horizon_slice slice = slices[slice0 + i * view.rows];
         const float lx = slice.dx * view.perI.x + slice.dy * view.perJ.x;
         const float ly = slice.dx * view.perI.y + slice.dy * view.perJ.y;
         const float lz = slice.dx * view.perI.z + slice.dy * view.perJ.z;
         const lw_arc arc = make_arc(p.nx, p.ny, p.nz, p.vx, p.vy, p.vz, lx, ly, lz, crossSection, slice.share);
+        const float turned = slice.rounding + view.rounding, rounding = turned < 0.95f ? turned : turned - 0.9f;
         lw_found found = {zero, zero, zero, zero, (laneu)0u, (laneu)0u};
         for (int against = 0; against < 2; ++against) {
             lw_side side;
@@ -198,14 +201,14 @@ __kernel void horizon_gather_gather(__global const float* pyramid, int4 layout, 
                         continue;
                     fetch(&s, pyramid + step.first + row * step.rowStride + column, step.planeStride, level, phase);
                 } else {
-                    const int most = 3 << (level - LW_HORIZON_BLEND);
+                    const int most = 4 << (level - LW_HORIZON_BLEND);
                     const int row = ((y + step.phaseY - most) >> level) + step.dy, column = ((start - most) >> level) + step.dx;
                     if (row < -1 || row >= step.rows || column >= step.columns ||
                         ((start + LW_WIDTH - 1 + most) >> level) + step.dx < 0)
                         continue;
-                    fetch_blended(&s, pyramid + step.first, &step, start, y + step.phaseY, columnShift, rowShift, column, row);
+                    fetch_blended(&s, pyramid + step.first, &step, start, y + step.phaseY, columnShift, rowShift, column, row, width, height);
                 }
-                look(&found, &s, &p, &arc, &side, &step, &view, slice.rounding);
+                look(&found, &s, &p, &arc, &side, &step, &view, rounding);
             }
         }
         const real weight = arc.weight;

@@ -182,6 +182,20 @@ __kernel void mip_pyramid_quarter(LW_BASE_ARGUMENTS) {
     add_rejected(rejected, counts);
 }
 
+LW_FN void replace_texel(lw_texel* t, const lw_texel* by, mask where) {
+    t->s.px = select_(t->s.px, by->s.px, where);
+    t->s.py = select_(t->s.py, by->s.py, where);
+    t->s.pz = select_(t->s.pz, by->s.pz, where);
+    t->s.nx = select_(t->s.nx, by->s.nx, where);
+    t->s.ny = select_(t->s.ny, by->s.ny, where);
+    t->s.nz = select_(t->s.nz, by->s.nz, where);
+    t->s.valid = or_(and_(t->s.valid, not_(where)), and_(by->s.valid, where));
+    t->r = select_(t->r, by->r, where);
+    t->g = select_(t->g, by->g, where);
+    t->b = select_(t->b, by->b, where);
+    t->depth = select_(t->depth, by->depth, where);
+}
+
 // Child k is kept wherever it lies; where it shows no surface no other counts either.
 LW_FN void keep_sample(lw_texel* child, const int k) {
     const mask valid = child[k].s.valid;
@@ -193,7 +207,7 @@ LW_FN void keep_sample(lw_texel* child, const int k) {
 }
 
 // One work-item = LW_WIDTH texels of a level, from 2 x 2 of the finer one. width, height: the finer level's size.
-// first: which child is first among equals, 0 (top left) or 2 (bottom right). sampled: that child is kept wherever it lies,
+// first: which child is first among equals, round the block from 0 (top left) to 2 (bottom right). sampled: that child is kept wherever it lies,
 // and where it shows no surface neither does the texel.
 __kernel void mip_pyramid_reduce(__global const float* fine, int4 fineLayout, int width, int height, __global float* level,
                                  int4 levelLayout, LwPyramidCamera camera, int first, int sampled) {
@@ -227,9 +241,21 @@ __kernel void mip_pyramid_reduce(__global const float* fine, int4 fineLayout, in
         }
     }
     if (sampled) {
-        if (first) keep_sample(child, 2);
-        else keep_sample(child, 0);
+        // Children beyond the image stand for those at its edge: a block that the edge cuts would else show nothing.
+        if (2 * y + 1 >= height) {
+            child[2] = child[1];
+            child[3] = child[0];
+        }
+        const mask beyond = lanei_iota() * 2 + (lanei)(2 * x + 1) >= (lanei)width;
+        if (any_(beyond)) {
+            replace_texel(&child[1], &child[0], beyond);
+            replace_texel(&child[2], &child[3], beyond);
+        }
+        if (first == 0) keep_sample(child, 0);
+        else if (first == 1) keep_sample(child, 1);
+        else if (first == 2) keep_sample(child, 2);
+        else keep_sample(child, 3);
     }
-    const lw_texel t = first ? merged(child, 2) : merged(child, 0);
+    const lw_texel t = first == 0 ? merged(child, 0) : first == 1 ? merged(child, 1) : first == 2 ? merged(child, 2) : merged(child, 3);
     store_texel(&t, level, levelLayout.x + y * levelLayout.y + x, levelLayout.z);
 }

@@ -10,12 +10,13 @@
 // Sectors of a slice: bits of a word.
 #define LW_HORIZON_SECTORS 32
 
-// On coarse levels the pixels of a 4 x 4 pattern look up texels shifted by -3/8, -1/8, 1/8 or 3/8 of a texel, across and
-// down, each pair of shifts once for every row; the mean over four columns is what interpolation between texels would
-// give. Without it the squares of coarse texels show. LW_HORIZON_BLEND: the first level on which a step of it is a pixel.
+// On coarse levels the pixels of an 8 x 8 pattern look up texels shifted by up to half a texel, in steps of an eighth, across
+// and down, each pair of shifts once, and every shift once in any eight columns of a row: the mean over eight columns is what
+// interpolation between texels would give. Without it the squares of coarse texels show; with steps of quarters they do on
+// surfaces far from what sends. LW_HORIZON_BLEND: the first level on which a step of it is a pixel. Halves of such steps:
 #define LW_HORIZON_BLEND 3
-LW_FN lw_int lw_horizon_column(lw_int x) { return 2 * (x & 3) - 3; }
-LW_FN lw_int lw_horizon_row(lw_int x, lw_int y) { return 2 * ((0x78 >> (2 * ((x + y) & 3))) & 3) - 3; }
+LW_FN lw_int lw_horizon_column(lw_int x) { return 2 * (x & 7) - 7; }
+LW_FN lw_int lw_horizon_row(lw_int x, lw_int y) { return 2 * ((3 * x + 5 * y) & 7) - 7; }
 
 // A line through the pixel, walked to both sides.
 typedef struct {
@@ -29,16 +30,16 @@ typedef struct {
 LW_SIZE_CHECK(lw_horizon_slice, 32);
 
 // Where a slice is looked at: texel ((x + phaseX) >> level) + dx, and the same for rows; from level LW_HORIZON_BLEND on with
-// the pixel's own shift (lw_horizon_column, lw_horizon_row) << (level - 3) added. What it shows stands for the line from
-// `begin` to `end`.
+// the pixel's own shift, (lw_horizon_column, lw_horizon_row) << (level - 3) >> 1, added. What it shows stands for the line
+// from `begin` to `end`.
 typedef struct {
     lw_int dx, dy;
     lw_int level;               // above the one that the gather runs on
     lw_int phaseX, phaseY;      // pixels of that one
-    lw_float begin, at, end;    // distances in pixels of the full image
+    lw_float begin, end;        // distances in pixels of the full image
     lw_int columns, rows;       // of the level
     lw_int first, rowStride, planeStride;  // its layout, in floats
-    lw_int reserved0, reserved1, reserved2;
+    lw_int reserved0, reserved1, reserved2, reserved3;
 } lw_horizon_step;
 LW_SIZE_CHECK(lw_horizon_step, 64);
 
@@ -49,7 +50,8 @@ typedef struct {
     lw_float4 perJ;  // xyz: what one row down adds to a ray; w: the image's height at distance 1 (orthographic: anywhere)
     lw_int slices;   // a row of pixels looks at
     lw_int rows;     // that share out the slices
-    lw_int reserved0, reserved1;
+    lw_int turn;     // of the pattern: which rows take which slices, and which pixels which shifts
+    lw_float rounding;  // added to the slices', in [0, 0.9)
 } lw_horizon_view;
 LW_SIZE_CHECK(lw_horizon_view, 80);
 

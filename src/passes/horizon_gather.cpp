@@ -1,6 +1,7 @@
 #include "passes/horizon_gather.h"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/glm.hpp>
 
 #include "compute/device.h"
@@ -20,7 +21,7 @@ Defines definesOf(const HorizonGatherOptions& options) {
 }
 
 lw_horizon_view viewOf(const Camera& camera, const HorizonRanges& ranges, const HorizonPatternOptions& pattern,
-                       std::uint32_t fullHeight) {
+                       std::uint32_t turn, std::uint32_t fullHeight) {
     const glm::dvec3 i = camera.rays().perI, j = camera.rays().perJ;
     lw_horizon_view view{};
     view.eye = float4(camera.eye().x, camera.eye().y, camera.eye().z, camera.perspective() ? 1.0 : 0.0);
@@ -30,6 +31,9 @@ lw_horizon_view viewOf(const Camera& camera, const HorizonRanges& ranges, const 
     view.perJ = float4(j.x, j.y, j.z, glm::length(j) * fullHeight);
     view.slices = cl_int(pattern.directions / pattern.rows);
     view.rows = cl_int(pattern.rows);
+    // Every pixel takes all rows of slices in turn, and each of the 64 pairs of shifts once.
+    view.turn = cl_int(turn % 64);
+    view.rounding = float(0.9 * std::fmod(0.6180339887 * turn, 1.0));
     return view;
 }
 
@@ -71,11 +75,11 @@ HorizonGather::HorizonGather(Device& device, const HorizonGatherOptions& options
 
 void HorizonGather::recordGather(Executor& executor, const PyramidLevels& pyramid, std::uint32_t fullHeight,
                                  const Camera& camera, const HorizonRanges& ranges, const HorizonTables& tables,
-                                 const Planes& gathered) {
+                                 std::uint32_t turn, const Planes& gathered) {
     executor.run(options_.light ? "horizon_gather.gather" : "horizon_gather.gather_ambient", gather_,
                  itemsOver(gathered.width, gathered.height, gather_), groupOf(gather_), pyramid.level(pyramid.options().firstLevel),
                  cl_int(gathered.width), cl_int(gathered.height), tables.slices(), tables.steps(),
-                 viewOf(camera, ranges, options_.pattern, fullHeight), gathered);
+                 viewOf(camera, ranges, options_.pattern, turn, fullHeight), gathered);
 }
 
 }  // namespace lightwell

@@ -47,9 +47,10 @@ public:
     HorizonGather(Device& device, const HorizonGatherOptions& options);
 
     // Pass "horizon_gather.gather" (".gather_ambient" without light) on level firstLevel of the pyramid of an image
-    // that is fullHeight pixels high. gathered: weighted sums, as WeightedFilter takes them.
+    // that is fullHeight pixels high. turn: of the pattern, another one in every frame of a history. gathered: weighted sums,
+    // as WeightedFilter takes them.
     void recordGather(Executor& executor, const PyramidLevels& pyramid, std::uint32_t fullHeight, const Camera& camera,
-                      const HorizonRanges& ranges, const HorizonTables& tables, const Planes& gathered);
+                      const HorizonRanges& ranges, const HorizonTables& tables, std::uint32_t turn, const Planes& gathered);
 
 private:
     HorizonGatherOptions options_;

@@ -44,7 +44,9 @@ std::vector<Line> linesOf(std::uint32_t directions) {
 
 double fraction(double x) { return x - std::floor(x); }
 
-// Steps of one side: 1, 2, .. up to twice the density pixels apart, then as many again on each coarser level. `every`:
+// Steps of one side: 1, 2, .. up to twice the density pixels apart, then as many again on each coarser level, as long as the
+// stretch that a step stands for begins within reach. (Up to the last step that lies within reach itself: a quarter of the
+// distance, and of the light of rooms, is left out at one step to a doubling.) `every`:
 // pixels of the full image per pixel here.
 void addSteps(HorizonPattern& pattern, const Line& line, int side, std::uint32_t density, double reach, double every) {
     const double length = std::hypot(double(line.x), double(line.y));
@@ -52,7 +54,9 @@ void addSteps(HorizonPattern& pattern, const Line& line, int side, std::uint32_t
     for (int doubling = 0; doubling < LW_HORIZON_LEVELS + kFinerLevels; ++doubling)
         for (int k = doubling == 0 ? 1 : int(density); k <= last; ++k) {
             const double scale = std::ldexp(length, doubling);
-            if (k * scale > reach && !(doubling == 0 && k == 1)) return;
+            // The first step of a doubling follows one of half the width.
+            const double begin = (k - (doubling > 0 && k == int(density) ? 0.25 : 0.5)) * scale;
+            if (begin > reach && !(doubling == 0 && k == 1)) return;
             lw_horizon_step step{};
             step.level = std::max(0, doubling - kFinerLevels);
             const int multiple = side * k << (doubling - step.level);
@@ -62,9 +66,7 @@ void addSteps(HorizonPattern& pattern, const Line& line, int side, std::uint32_t
             const double shift = std::ldexp(2.0 * kPhaseShare, step.level);
             step.phaseX = int(std::lround((fraction(0.7548776662 * n) - 0.5) * shift));
             step.phaseY = int(std::lround((fraction(0.5698402910 * n) - 0.5) * shift));
-            // The first step of a doubling follows one of half the width.
-            step.begin = float((k - (doubling > 0 && k == int(density) ? 0.25 : 0.5)) * scale * every);
-            step.at = float(k * scale * every);
+            step.begin = float(begin * every);
             step.end = float((k + 0.5) * scale * every);
             pattern.steps.push_back(step);
             pattern.levels = std::max(pattern.levels, std::uint32_t(step.level) + 1);
@@ -76,13 +78,17 @@ void addSteps(HorizonPattern& pattern, const Line& line, int side, std::uint32_t
 HorizonPattern horizonPattern(const HorizonPatternOptions& options, double reach, double every) {
     const std::vector<Line> lines = linesOf(options.directions);
     const std::size_t count = lines.size(), rows = options.rows, perRow = count / rows;
-    static constexpr std::size_t kRowOrder[3][4] = {{0}, {0, 1}, {0, 2, 1, 3}};  // neighbours far apart
-    const std::size_t* order = kRowOrder[rows == 4 ? 2 : rows - 1];
+    // Neighbours far apart: bits of the row's number reversed.
+    const auto orderOf = [&](std::size_t row) {
+        std::size_t order = 0;
+        for (std::size_t bit = 1; bit < rows; bit *= 2) order = 2 * order + (row & bit ? 1 : 0);
+        return order;
+    };
     HorizonPattern pattern;
     pattern.slices.resize(count);
     for (std::size_t row = 0; row < rows; ++row)
         for (std::size_t i = 0; i < perRow; ++i) {
-            const std::size_t at = order[row] + i * rows;
+            const std::size_t at = orderOf(row) + i * rows;
             const Line& line = lines[at];
             const double before = at == 0 ? lines.back().angle - kPi : lines[at - 1].angle;
             const double after = at + 1 == count ? lines.front().angle + kPi : lines[at + 1].angle;
@@ -105,7 +111,7 @@ HorizonPattern horizonPattern(const HorizonPatternOptions& options, double reach
 
 std::uint32_t horizonLevels(std::uint32_t density, double reach) {
     int doublings = 1;
-    while (doublings < LW_HORIZON_LEVELS + kFinerLevels && double(density) * std::ldexp(1.0, doublings) <= reach) ++doublings;
+    while (doublings < LW_HORIZON_LEVELS + kFinerLevels && (double(density) - 0.25) * std::ldexp(1.0, doublings) <= reach) ++doublings;
     return std::uint32_t(std::max(1, doublings - kFinerLevels));
 }
 

@@ -9,9 +9,9 @@
 namespace lightwell {
 
 struct HorizonPatternOptions {
-    std::uint32_t directions = 8;  // slices in all: 4, 8, 16, 24 or 40
-    std::uint32_t density = 2;     // steps each time the distance doubles: 1, 2, 4 or 8
-    std::uint32_t rows = 4;        // that share out the slices: 1, 2 or 4
+    std::uint32_t directions = 16;  // slices in all: 4, 8, 16, 24, 40 or 48
+    std::uint32_t density = 2;      // steps each time the distance doubles: 1, 2, 4 or 8
+    std::uint32_t rows = 8;         // that share out the slices: a power of two that divides them
 };
 
 struct HorizonPattern {

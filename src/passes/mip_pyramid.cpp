@@ -25,6 +25,13 @@ Range itemsOver(const Planes& planes, const Kernel& kernel) {
     return {(planes.width + kernel.width() - 1) / kernel.width(), planes.height};
 }
 
+// Opposite corners by turns of the level, so that kept children do not drift; from turn to turn the next one round the block,
+// from another start in every four turns, so that levels take all pairs of children.
+cl_int firstChild(std::uint32_t level, std::uint32_t turn) {
+    const std::uint32_t round = turn / 4, start = (round * (2 * level + 1) + round / 4 * level) % 4;
+    return cl_int(((level % 2 ? 2 : 0) + turn + start) % 4);
+}
+
 std::uint64_t layOut(std::uint32_t width, std::uint32_t height, const PyramidOptions& options, std::vector<Planes>* levels) {
     return layOutLevels(width, height, {options.firstLevel, options.lastLevel}, options.planes(), 16, LW_PYRAMID_BORDER, levels);
 }
@@ -63,7 +70,8 @@ MipPyramid::MipPyramid(Device& device, std::uint32_t extras)
       reduce_(device.programs().kernel(kProgram, "mip_pyramid_reduce", definesOf(extras))) {}
 
 void MipPyramid::record(Executor& executor, const Planes& position, const Planes& normal, const Planes& radiance,
-                        const Planes& receiveMask, const Camera& camera, PyramidLevels& levels, const Buffer& counts) {
+                        const Planes& receiveMask, const Camera& camera, PyramidLevels& levels, const Buffer& counts,
+                        std::uint32_t turn) {
     const PyramidOptions& options = levels.options();
     if (levels.resize(position.width, position.height))
         executor.fill("mip_pyramid.clear", levels.memory(), 0, 0, levels.memory().bytes());
@@ -86,7 +94,7 @@ void MipPyramid::record(Executor& executor, const Planes& position, const Planes
     for (; k < options.lastLevel; ++k) {
         const Planes fine = levels.level(k), coarse = levels.level(k + 1);
         executor.run("mip_pyramid.reduce", reduce_, itemsOver(coarse, reduce_), groupOf(reduce_), fine, cl_int(fine.width),
-                     cl_int(fine.height), coarse, eye, cl_int(k % 2 ? 2 : 0), cl_int(options.sampled));
+                     cl_int(fine.height), coarse, eye, firstChild(k, options.sampled ? turn : 0), cl_int(options.sampled));
     }
 }
 

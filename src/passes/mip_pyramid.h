@@ -73,9 +73,11 @@ public:
     // Passes "mip_pyramid.base" (or ".copy", ".quarter": to the first level) and ".reduce". radiance: 3 planes, or none without
     // kPyramidRadiance; receiveMask: 1 plane, nonzero pixels send nothing (with kPyramidArea), or none.
     // counts[0] grows by the pixels with neither a surface nor a zero normal, counts[1] by surfaces whose radiance
-    // lies outside 0 .. LW_LARGEST_RADIANCE and which therefore send nothing.
+    // lies outside 0 .. LW_LARGEST_RADIANCE and which therefore send nothing. turn: of sampled levels, which keep other children
+    // in another turn, and each of a block's four in any four turns from a multiple of four on.
     void record(Executor& executor, const Planes& position, const Planes& normal, const Planes& radiance,
-                const Planes& receiveMask, const Camera& camera, PyramidLevels& levels, const Buffer& counts);
+                const Planes& receiveMask, const Camera& camera, PyramidLevels& levels, const Buffer& counts,
+                std::uint32_t turn = 0);
 
 private:
     std::uint32_t extras_;

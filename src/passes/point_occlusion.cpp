@@ -27,11 +27,16 @@ double radicalInverse(std::uint32_t i, std::uint32_t base) {
     return result;
 }
 
-// Halton points: elevation, azimuth and distance have a base each, so that no pair of them is ordered alike.
-std::vector<cl_float4> pointsOf(const PointOcclusionOptions& options) {
+double fraction(double x) { return x - std::floor(x); }
+
+// Halton points: elevation, azimuth and distance have a base each, so that no pair of them is ordered alike. In another turn all
+// are shifted, by an additive sequence of three dimensions (Roberts 2018).
+std::vector<cl_float4> pointsOf(const PointOcclusionOptions& options, std::uint32_t turn) {
+    const double shift[3] = {fraction(0.5 + 0.8191725134 * turn), fraction(0.6710436067 * turn), fraction(0.5497004779 * turn)};
     std::vector<cl_float4> points(options.points);
     for (std::uint32_t i = 0; i < options.points; ++i) {
-        const double u = (i + 0.5) / options.points, angle = 2.0 * kPi * radicalInverse(i, 2), v = radicalInverse(i + 1, 3);
+        const double u = (i + shift[0]) / options.points, angle = 2.0 * kPi * (radicalInverse(i, 2) + shift[1]);
+        const double v = fraction(radicalInverse(i + 1, 3) + shift[2]);
         const double z = options.cosine ? std::sqrt(1.0 - u) : 1.0 - u, r = std::sqrt(1.0 - z * z);
         const double distance = options.packed ? kLeastShare + (1.0 - kLeastShare) * v * v : 1.0;
         points[i] = float4(distance * r * std::cos(angle), distance * r * std::sin(angle), distance * z, 0.0);
@@ -81,13 +86,13 @@ PointOcclusion::PointOcclusion(Device& device, const PointOcclusionOptions& opti
       rotations_(device, 2 * kRotations * sizeof(float), "rotations of the hemisphere") {}
 
 void PointOcclusion::record(Executor& executor, const Planes& level, std::uint32_t every, std::uint32_t fullHeight,
-                            const Camera& camera, const Planes& gathered) {
-    if (!isUploaded_) {
-        const auto points = pointsOf(options_);
+                            const Camera& camera, std::uint32_t turn, const Planes& gathered) {
+    if (uploaded_ != turn) {
+        const auto points = pointsOf(options_, turn);
         const auto rotations = rotationsOf();
         executor.writeCopy("point_occlusion.upload", points_, 0, points_.bytes(), points.data());
         executor.writeCopy("point_occlusion.upload", rotations_, 0, rotations_.bytes(), rotations.data());
-        isUploaded_ = true;
+        uploaded_ = turn;
     }
     const Range items{(level.width + gather_.width() - 1) / gather_.width(), level.height};
     executor.run(options_.light ? "point_occlusion.gather" : "point_occlusion.gather_ambient", gather_, items,

@@ -1,6 +1,8 @@
 // Ambient occlusion, and one bounce, from points in each pixel's hemisphere (kernels/point_occlusion).
 #pragma once
 
+#include <optional>
+
 #include "compute/buffer.h"
 #include "compute/executor.h"
 
@@ -22,9 +24,10 @@ public:
     PointOcclusion(Device& device, const PointOcclusionOptions& options);
 
     // Pass "point_occlusion.gather" (".gather_ambient" without light). level: of a pyramid with depth, and radiance
-    // with light; `every` pixels of the full image, which is fullHeight high, make one of its texels a side.
+    // with light; `every` pixels of the full image, which is fullHeight high, make one of its texels a side. turn: another set of
+    // points in every frame of a history.
     void record(Executor& executor, const Planes& level, std::uint32_t every, std::uint32_t fullHeight, const Camera& camera,
-                const Planes& gathered);
+                std::uint32_t turn, const Planes& gathered);
 
     std::uint64_t bytes() const { return points_.bytes() + rotations_.bytes(); }
     static std::uint64_t estimateBytes(const PointOcclusionOptions& options);
@@ -33,7 +36,7 @@ private:
     PointOcclusionOptions options_;
     Kernel& gather_;
     Buffer points_, rotations_;
-    bool isUploaded_ = false;
+    std::optional<std::uint32_t> uploaded_;  // turn of the points on the device
 };
 
 }  // namespace lightwell

@@ -13,13 +13,15 @@ public:
 
     static std::uint32_t planes(bool light) { return light ? 6 : 2; }
 
-    // Pass "weighted_filter.filter" (".filter_ambient" without light). Of the results each may be empty.
+    // Passes "weighted_filter.columns", where patterns differ from row to row, and "weighted_filter.filter" (".columns_ambient",
+    // ".filter_ambient" without light). columns, rows: after which patterns repeat, 1 or even. between: scratch planes as
+    // gathered, read with rows > 1. Of the results each may be empty.
     void record(Executor& executor, const Planes& position, const Planes& normal, std::uint32_t columns, std::uint32_t rows,
-                const Planes& gathered, const Planes& irradiance, const Planes& validity, const Planes& open);
+                const Planes& gathered, const Planes& between, const Planes& irradiance, const Planes& validity, const Planes& open);
 
 private:
     bool light_;
-    Kernel& filter_;
+    Kernel &columns_, &filter_;
 };
 
 }  // namespace lightwell

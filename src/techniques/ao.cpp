@@ -18,6 +18,7 @@ ScreenOptions screenOptions(const LWAoDesc& desc) {
     options.half = desc.resolution == LW_RESOLUTION_HALF;
     options.columns = options.rows = desc.filter ? 4 : 1;
     options.extras = kPyramidDepth;
+    options.history = {desc.history, desc.historyClamp, 2};
     return options;
 }
 
@@ -42,9 +43,12 @@ public:
           ambient_(device, pointOptions(desc, false)) {}
 
     void update(Executor&, const LWFrame& frame) override {
+        const bool forget = frame.reset != 0 || device_.failures() != failures_;
+        failures_ = device_.failures();
+        if (desc_.history) turn_ = forget ? 0 : turn_ + 1;
         unused_ = unusedByScreen(frame);
         states_.purge();
-        states_.each([](ScreenView& state) { state.startFrame(); });
+        states_.each([&](ScreenView& state) { state.startFrame(forget); });
     }
 
     void render(Executor& executor, const std::shared_ptr<View>& view, const LWGBuffer& gbuffer,
@@ -55,16 +59,16 @@ public:
                 fail(LW_ERROR_UNSUPPORTED, "output.", name, ": technique ao with method ssao makes ambientOcclusion only");
         const Camera camera(gbuffer.camera, view->width, view->height, "gbuffer.camera");
         ScreenView& state = states_.get(view, [&] { return std::make_unique<ScreenView>(device_, screenOptions(desc_)); });
-        state.begin(executor, *view, gbuffer, output, camera, passes_);
+        state.begin(executor, *view, gbuffer, output, camera, passes_, turn_);
         const bool light = state.wantsLight();
         const std::uint32_t base = state.levels().options().firstLevel;
         (light ? light_ : ambient_)
-            .record(executor, state.levels().level(base), 1u << base, view->height, camera, state.gathered(light));
+            .record(executor, state.levels().level(base), 1u << base, view->height, camera, turn_, state.gathered(light));
         if (light)
             state.finishLight(executor, passes_, true);
         else
             state.finishAmbient(executor, passes_);
-        state.end(executor);
+        state.end(executor, passes_);
     }
 
     void prewarm(Executor& executor, const std::shared_ptr<View>&) override {
@@ -77,14 +81,14 @@ public:
     Report report() override {
         Report report;
         for (const LWChoice& choice : unused_) report.choose(choice.name, choice.reason);
-        ScreenView::startReport(report);
+        ScreenView::startReport(screenOptions(desc_), report);
         states_.each([&](const ScreenView& state) { state.report(device_, report); });
         return report;
     }
 
     std::vector<DebugView> debugViews(const View* view) override {
         std::vector<DebugView> views;
-        if (const ScreenView* state = states_.find(view)) state->addDebugViews(views);
+        if (const ScreenView* state = states_.find(view)) state->addDebugViews(passes_, views);
         return views;
     }
 
@@ -97,6 +101,8 @@ public:
 private:
     Device& device_;
     LWAoDesc desc_;
+    std::uint64_t failures_ = 0;  // that the device had seen when the last update began
+    std::uint32_t turn_ = 0;      // of the pattern, one a frame while there is a history
     ScreenPasses passes_;
     PointOcclusion light_, ambient_;
     PerView<ScreenView> states_;

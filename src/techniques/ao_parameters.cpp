@@ -3,6 +3,7 @@
 
 #include <cstddef>
 
+#include "techniques/history_parameters.h"
 #include "techniques/parameter_table.h"
 
 namespace lightwell {
@@ -42,7 +43,9 @@ const std::vector<LWParameter>& aoParameters() {
               kResolutionSweep),
         choosing(parameter("weighting", "of the points' directions: by their cosine, or all alike", LW_PARAMETER_ENUM,
                            offsetof(LWAoDesc, weighting), 0, 1, LW_AMBIENT_COSINE),
-                 kWeightingNames)};
+                 kWeightingNames),
+        historyParameter(offsetof(LWAoDesc, history)),
+        historyClampParameter(offsetof(LWAoDesc, historyClamp))};
     return table;
 }
 
@@ -65,4 +68,5 @@ extern "C" void lwDefaultAo(LWAoDesc* desc) {
     desc->filter = 1;
     desc->resolution = LW_RESOLUTION_HALF;
     desc->weighting = LW_AMBIENT_COSINE;
+    desc->historyClamp = lightwell::TemporalHistoryOptions{}.clamp;
 }

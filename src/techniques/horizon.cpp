@@ -1,6 +1,8 @@
 // Frame part, report and registration; the table of parameters is horizon_parameters.cpp's.
 #include "techniques/horizon.h"
 
+#include <numeric>
+
 #include "compute/device.h"
 #include "passes/horizon_gather.h"
 #include "techniques/horizon_parameters.h"
@@ -13,7 +15,10 @@ namespace {
 
 bool isHalf(const LWHorizonDesc& desc) { return desc.resolution == LW_RESOLUTION_HALF; }
 
-HorizonPatternOptions patternOf(const LWHorizonDesc& desc) { return {desc.directions, desc.steps, desc.interleave}; }
+// Each row of pixels takes as many slices as the next.
+std::uint32_t rowsOf(const LWHorizonDesc& desc) { return std::gcd(desc.directions, desc.interleave); }
+
+HorizonPatternOptions patternOf(const LWHorizonDesc& desc) { return {desc.directions, desc.steps, rowsOf(desc)}; }
 
 // Of an image that is so many pixels high; in gathered ones.
 double reachPixels(const LWHorizonDesc& desc, std::uint32_t height) {
@@ -23,8 +28,9 @@ double reachPixels(const LWHorizonDesc& desc, std::uint32_t height) {
 ScreenOptions screenOptions(const LWHorizonDesc& desc, std::uint32_t maxHeight) {
     ScreenOptions options;
     options.half = isHalf(desc);
-    options.rows = desc.filter ? desc.interleave : 1;
-    options.columns = desc.filter ? 4 : 1;  // of the shifts on coarse levels
+    options.rows = desc.filter ? rowsOf(desc) : 1;
+    options.columns = desc.filter ? 8 : 1;  // of the shifts on coarse levels
+    options.history = {desc.history, desc.historyClamp, 2};
     options.levels = horizonLevels(desc.steps, reachPixels(desc, maxHeight));
     return options;
 }
@@ -44,9 +50,12 @@ public:
           ambient_(device, {patternOf(desc), false, desc.weighting == LW_AMBIENT_UNIFORM}) {}
 
     void update(Executor&, const LWFrame& frame) override {
+        const bool forget = frame.reset != 0 || device_.failures() != failures_;
+        failures_ = device_.failures();
+        if (desc_.history) turn_ = forget ? 0 : turn_ + 1;
         unused_ = unusedByScreen(frame);
         states_.purge();
-        states_.each([](HorizonView& state) { state.screen.startFrame(); });
+        states_.each([&](HorizonView& state) { state.screen.startFrame(forget); });
     }
 
     void render(Executor& executor, const std::shared_ptr<View>& view, const LWGBuffer& gbuffer,
@@ -57,12 +66,12 @@ public:
             return std::unique_ptr<HorizonView>(new HorizonView{{device_, screenOptions(desc_, view->maxHeight)}, {}, {}});
         });
         ScreenView& screen = state.screen;
-        screen.begin(executor, *view, gbuffer, output, camera, passes_);
+        screen.begin(executor, *view, gbuffer, output, camera, passes_, turn_);
         HorizonTables& tables = screen.wantsLight() ? state.withLight : state.plain;
         tables.prepare(executor, patternOf(desc_), reachPixels(desc_, view->height), isHalf(desc_) ? 2.0 : 1.0, screen.levels());
         const HorizonRanges ranges = {desc_.thickness, desc_.ambientRadius};
         const auto gather = [&](HorizonGather& pass, bool light) {
-            pass.recordGather(executor, screen.levels(), view->height, camera, ranges, tables, screen.gathered(light));
+            pass.recordGather(executor, screen.levels(), view->height, camera, ranges, tables, turn_, screen.gathered(light));
         };
         // Light is weighted by the cosine; ambient occlusion of the same weighting comes with it.
         const bool together = screen.wantsLight() && desc_.weighting == LW_AMBIENT_COSINE;
@@ -74,7 +83,7 @@ public:
             gather(ambient_, false);
             screen.finishAmbient(executor, passes_);
         }
-        screen.end(executor);
+        screen.end(executor, passes_);
     }
 
     void prewarm(Executor& executor, const std::shared_ptr<View>&) override {
@@ -85,14 +94,15 @@ public:
     Report report() override {
         Report report;
         for (const LWChoice& choice : unused_) report.choose(choice.name, choice.reason);
-        ScreenView::startReport(report);
+        if (rowsOf(desc_) != desc_.interleave) report.choose("interleave", "fewer rows: the most that share out the directions evenly");
+        ScreenView::startReport(screenOptions(desc_, 1), report);
         states_.each([&](const HorizonView& state) { state.screen.report(device_, report); });
         return report;
     }
 
     std::vector<DebugView> debugViews(const View* view) override {
         std::vector<DebugView> views;
-        if (const HorizonView* state = states_.find(view)) state->screen.addDebugViews(views);
+        if (const HorizonView* state = states_.find(view)) state->screen.addDebugViews(passes_, views);
         return views;
     }
 
@@ -107,6 +117,8 @@ public:
 private:
     Device& device_;
     LWHorizonDesc desc_;
+    std::uint64_t failures_ = 0;  // that the device had seen when the last update began
+    std::uint32_t turn_ = 0;      // of the pattern, one a frame while there is a history
     ScreenPasses passes_;
     HorizonGather light_, ambient_;
     PerView<HorizonView> states_;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 
+#include "techniques/history_parameters.h"
 #include "techniques/parameter_table.h"
 
 namespace lightwell {
@@ -10,10 +11,10 @@ namespace {
 
 constexpr const char* kResolutionNames[] = {"full", "half", nullptr};
 constexpr const char* kWeightingNames[] = {"cosine", "uniform", nullptr};
-constexpr double kDirectionValues[] = {4, 8, 16, 24, 40};
+constexpr double kDirectionValues[] = {4, 8, 16, 24, 40, 48};
 constexpr double kStepValues[] = {1, 2, 4, 8};
-constexpr double kInterleaveValues[] = {1, 2, 4};
-constexpr double kDirectionSweep[] = {4, 8, 16};
+constexpr double kInterleaveValues[] = {1, 2, 4, 8, 16};
+constexpr double kDirectionSweep[] = {8, 16, 40};
 constexpr double kStepSweep[] = {1, 2, 4};
 constexpr double kThicknessSweep[] = {0.03, 0.1};
 constexpr double kResolutionSweep[] = {LW_RESOLUTION_FULL, LW_RESOLUTION_HALF};
@@ -23,15 +24,15 @@ constexpr double kResolutionSweep[] = {LW_RESOLUTION_FULL, LW_RESOLUTION_HALF};
 const std::vector<LWParameter>& horizonParameters() {
     static const std::vector<LWParameter> table = {
         swept(allowing(parameter("directions", "slices of the hemisphere: error falls and time grows with them", LW_PARAMETER_UINT,
-                                 offsetof(LWHorizonDesc, directions), 4, 40, 8),
+                                 offsetof(LWHorizonDesc, directions), 4, 48, 16),
                        kDirectionValues),
               kDirectionSweep),
         swept(allowing(parameter("steps", "along each side of a slice whenever the distance doubles: what is thin is missed with few",
                                  LW_PARAMETER_UINT, offsetof(LWHorizonDesc, steps), 1, 8, 2),
                        kStepValues),
               kStepSweep),
-        allowing(parameter("interleave", "rows of pixels that share out the slices: time falls with it, noise at edges grows",
-                           LW_PARAMETER_UINT, offsetof(LWHorizonDesc, interleave), 1, 4, 4),
+        allowing(parameter("interleave", "rows of pixels that share out the slices, or the most rows that do so evenly: time falls with it, noise at edges grows",
+                           LW_PARAMETER_UINT, offsetof(LWHorizonDesc, interleave), 1, 16, 8),
                  kInterleaveValues),
         parameter("filter", "edge-aware filter over the rows that share out the slices", LW_PARAMETER_BOOL,
                   offsetof(LWHorizonDesc, filter), 0, 1, 1),
@@ -48,13 +49,15 @@ const std::vector<LWParameter>& horizonParameters() {
                   offsetof(LWHorizonDesc, ambientRadius), 1e-6, 1e6, 0.2),
         choosing(parameter("weighting", "of ambient occlusion: directions by their cosine, or all alike", LW_PARAMETER_ENUM,
                            offsetof(LWHorizonDesc, weighting), 0, 1, LW_AMBIENT_COSINE),
-                 kWeightingNames)};
+                 kWeightingNames),
+        historyParameter(offsetof(LWHorizonDesc, history)),
+        historyClampParameter(offsetof(LWHorizonDesc, historyClamp))};
     return table;
 }
 
 const std::vector<LWSetting>& horizonSettings() {
     static const std::vector<LWSetting> settings = {
-        {"fast", "directions=4 steps=1"},
+        {"fast", "directions=8"},
         {"near", "reach=0.25"},
         {"fine", "directions=16 steps=4 interleave=1 resolution=full"},
         {"limit", "directions=40 steps=8 interleave=1 resolution=full"}};
@@ -67,13 +70,14 @@ extern "C" void lwDefaultHorizon(LWHorizonDesc* desc) {
     if (!desc) return;
     *desc = LWHorizonDesc{};
     desc->structSize = sizeof *desc;
-    desc->directions = 8;
+    desc->directions = 16;
     desc->steps = 2;
-    desc->interleave = 4;
+    desc->interleave = 8;
     desc->filter = 1;
     desc->resolution = LW_RESOLUTION_HALF;
     desc->reach = 1.0f;
     desc->thickness = 0.03f;
     desc->ambientRadius = 0.2f;
     desc->weighting = LW_AMBIENT_COSINE;
+    desc->historyClamp = lightwell::TemporalHistoryOptions{}.clamp;
 }

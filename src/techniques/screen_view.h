@@ -13,6 +13,7 @@
 #include "inputs/view.h"
 #include "passes/joint_bilateral.h"
 #include "passes/mip_pyramid.h"
+#include "passes/temporal_history.h"
 #include "passes/weighted_filter.h"
 #include "techniques/technique.h"
 
@@ -23,7 +24,9 @@ struct ScreenOptions {
     std::uint32_t columns = 1, rows = 1;  // of the filter's window
     std::uint32_t levels = 1;           // of the pyramid, from the gathered one on
     std::uint32_t extras = 0;           // PyramidPlanes beside radiance
+    TemporalHistoryOptions history;     // of irradiance, validity and ambient occlusion; none with 0 frames
 
+    bool keeps() const { return history.frames > 0; }
     std::uint32_t gathered(std::uint32_t along) const { return half ? JointBilateral::halved(along) : along; }
 };
 
@@ -37,6 +40,12 @@ private:
     MipPyramid withLight_, plain_;
     WeightedFilter filterLight_, filterAmbient_;
     std::optional<JointBilateral> upsampleAll_, upsampleOne_;  // half resolution only
+    std::optional<TemporalHistory> history_;
+};
+
+// What hosts ask of such techniques: 3 planes, 1 and 1.
+struct ScreenPlanes {
+    Planes irradiance, validity, open;
 };
 
 class ScreenView {
@@ -46,38 +55,44 @@ public:
     // Throws what lwRender says of outputs that such a technique cannot make.
     static void check(Device& device, const View& view, const LWOutput& output, const char* technique);
 
-    // Inputs, outputs and the pyramid; what has to be gathered stands below.
+    // Inputs, outputs and the pyramid; what has to be gathered stands below. turn: of the pyramid's samples.
     void begin(Executor& executor, const View& view, const LWGBuffer& gbuffer, const LWOutput& output, const Camera& camera,
-               ScreenPasses& passes);
+               ScreenPasses& passes, std::uint32_t turn);
     bool wantsLight() const { return wantsLight_; }
-    bool wantsAmbient() const { return bool(open_); }
+    bool wantsAmbient() const { return bool(asked_.open); }
     const PyramidLevels& levels() const { return wantsLight_ ? withLight_ : plain_; }
     // Room for the weighted sums of this frame (WeightedFilter::planes).
     Planes gathered(bool light) const;
     // Filters and up-samples them to the host's images; withAmbient: light's sums hold the ambient occlusion asked for.
     void finishLight(Executor& executor, ScreenPasses& passes, bool withAmbient);
     void finishAmbient(Executor& executor, ScreenPasses& passes);
-    void end(Executor& executor);
+    void end(Executor& executor, ScreenPasses& passes);
 
-    void startFrame() { isRendered_ = false; }
+    // Once per update. `forget`: what the view showed before is no history (a cut, lost commands).
+    void startFrame(bool forget);
     void report(Device& device, Report& report) const;
-    static void startReport(Report& report);  // the counts, at 0
-    void addDebugViews(std::vector<DebugView>& views) const;
+    static void startReport(const ScreenOptions& options, Report& report);  // the counts, at 0
+    void addDebugViews(ScreenPasses& passes, std::vector<DebugView>& views) const;
     std::uint64_t bytes() const;
     static std::uint64_t estimateBytes(const ScreenOptions& options, const LWViewDesc& view, bool uploads);
 
 private:
-    void reserve(const View& view);
+    void reserve(Executor& executor, const View& view);
     Planes sized(const PlanarImage& image) const;
+    Planes between(bool light) const;  // scratch of the filter
 
     Device& device_;
     ScreenOptions options_;
     GBufferInput gbuffer_;
     OutputTarget irradianceTarget_, validityTarget_, ambientTarget_;
     PyramidLevels withLight_, plain_;
-    PlanarImage light_, ambient_, filteredLight_, filteredAmbient_;
+    PlanarImage light_, ambient_, filteredLight_, filteredAmbient_, between_;
     Buffer counts_, upsampleCounts_;  // rejected pixels, rejected radiances; rejected pixels once more, fallbacks
-    Planes irradiance_, validity_, open_;
+    ScreenPlanes asked_;  // of the host; may be empty
+    ScreenPlanes made_;   // what a frame alone makes: those, or parts of current_
+    PlanarImage current_, kept_;  // with a history: a frame alone; means that the host has not asked for
+    std::optional<ViewHistory> history_;
+    LWCamera camera_{};
     std::uint32_t width_ = 0, height_ = 0;  // of the gathered image
     bool wantsLight_ = false, isRendered_ = false, hasLight_ = false;
 };

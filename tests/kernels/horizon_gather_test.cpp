@@ -29,6 +29,7 @@ struct Case {
     HorizonPatternOptions pattern;
     HorizonRanges ranges;
     bool light, uniform, orthographic;
+    std::uint32_t turn = 0;
 };
 
 std::vector<float> gathered(KernelRig& rig, DrawnView& drawn, const Case& c, std::vector<float>* twin) {
@@ -53,7 +54,7 @@ std::vector<float> gathered(KernelRig& rig, DrawnView& drawn, const Case& c, std
     const std::uint32_t planes = WeightedFilter::planes(c.light);
     const Guarded out = rig.makePlanes(w, h, planes);
     HorizonGather(rig.device(), {c.pattern, c.light, c.uniform})
-        .recordGather(rig.executor(), levels, h, camera, c.ranges, tables, rig.planes(out, w, h, planes));
+        .recordGather(rig.executor(), levels, h, camera, c.ranges, tables, c.turn, rig.planes(out, w, h, planes));
     rig.device().finish();
     if (twin) {
         std::vector<reference::HorizonLevel> read;
@@ -61,7 +62,7 @@ std::vector<float> gathered(KernelRig& rig, DrawnView& drawn, const Case& c, std
             const Planes level = levels.level(k);
             read.push_back({level.width, level.height, rig.downloadPlanes(level)});
         }
-        *twin = reference::horizonGather(read, horizonPattern(c.pattern, reach, 1.0), camera, c.ranges, c.pattern, h, c.light, c.uniform);
+        *twin = reference::horizonGather(read, horizonPattern(c.pattern, reach, 1.0), camera, c.ranges, c.pattern, h, c.light, c.uniform, c.turn);
     }
     return rig.downloadPlanes(rig.planes(out, w, h, planes));
 }
@@ -72,7 +73,8 @@ TEST_CASE("the gather equals its serial twin", "[horizon_gather]") {
     const auto width = GENERATE(1u, 16u);
     const auto size = testSize(GENERATE(std::make_pair(1u, 1u), std::make_pair(67u, 45u)));
     const Case c = GENERATE(Case{{8, 2, 4}, {0.1, 0.2}, true, false, false}, Case{{16, 4, 1}, {0.0, 1.0}, true, false, true},
-                            Case{{4, 1, 2}, {0.5, 0.1}, false, true, false}, Case{{8, 2, 1}, {0.1, 0.5}, false, false, false});
+                            Case{{4, 1, 2}, {0.5, 0.1}, false, true, false}, Case{{8, 2, 1}, {0.1, 0.5}, false, false, false},
+                            Case{{16, 2, 8}, {0.1, 0.2}, true, false, false, 13});
     CAPTURE(width, size.first, c.pattern.directions, c.light, c.uniform, c.orthographic);
     KernelRig rig(width);
     DrawnView drawn(sphereCorner(), cornerCamera(c.orthographic), size.first, size.second);

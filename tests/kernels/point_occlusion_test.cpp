@@ -39,7 +39,7 @@ std::vector<float> gathered(KernelRig& rig, DrawnView& drawn, const PointOcclusi
     const std::uint32_t planes = WeightedFilter::planes(options.light);
     const Guarded out = rig.makePlanes(w, h, planes);
     PointOcclusion pass(rig.device(), options);
-    pass.record(rig.executor(), levels.level(0), 1, h, camera, rig.planes(out, w, h, planes));
+    pass.record(rig.executor(), levels.level(0), 1, h, camera, 0, rig.planes(out, w, h, planes));
     rig.device().finish();
     return rig.downloadPlanes(rig.planes(out, w, h, planes));
 }

@@ -27,11 +27,11 @@ TEST_CASE("the filter makes means of its own surface", "[weighted_filter]") {
         for (std::size_t a = 0; a < 6; ++a) sums[a * plane + i] = weight * values[a];
     }
     const Guarded s = rig.uploadPlanes(sums, w, h, 6, nan);
-    const Guarded e = rig.makePlanes(w, h, 3), v = rig.makePlanes(w, h, 1), o = rig.makePlanes(w, h, 1);
-    for (const std::uint32_t columns : {1u, 4u}) {
+    const Guarded between = rig.makePlanes(w, h, 6), e = rig.makePlanes(w, h, 3), v = rig.makePlanes(w, h, 1), o = rig.makePlanes(w, h, 1);
+    for (const std::uint32_t columns : {1u, 4u, 8u}) {
         WeightedFilter(rig.device(), true)
             .record(rig.executor(), rig.planes(p, w, h, 3), rig.planes(n, w, h, 3), columns, 4, rig.planes(s, w, h, 6),
-                    rig.planes(e, w, h, 3), rig.planes(v, w, h, 1), rig.planes(o, w, h, 1));
+                    rig.planes(between, w, h, 6), rig.planes(e, w, h, 3), rig.planes(v, w, h, 1), rig.planes(o, w, h, 1));
         rig.device().finish();
         const auto irradiance = rig.downloadPlanes(rig.planes(e, w, h, 3)), validity = rig.downloadPlanes(rig.planes(v, w, h, 1)),
                    open = rig.downloadPlanes(rig.planes(o, w, h, 1));
@@ -59,15 +59,15 @@ TEST_CASE("the filter's window is centred: a ramp stays where it is", "[weighted
     std::vector<float> sums(std::size_t(w) * h * 2, 1.0f);
     for (std::uint32_t y = 0; y < h; ++y)
         for (std::uint32_t x = 0; x < w; ++x) sums[std::size_t(y) * w + x] = 0.01f * float(x) + 0.015f * float(y);
-    const Guarded s = rig.uploadPlanes(sums, w, h, 2, 0.0f), o = rig.makePlanes(w, h, 1);
-    for (const std::uint32_t rows : {1u, 2u, 4u}) {
+    const Guarded s = rig.uploadPlanes(sums, w, h, 2, 0.0f), o = rig.makePlanes(w, h, 1), between = rig.makePlanes(w, h, 2);
+    for (const std::uint32_t rows : {1u, 2u, 4u, 8u}) {
         WeightedFilter(rig.device(), false)
-            .record(rig.executor(), rig.planes(p, w, h, 3), rig.planes(n, w, h, 3), 4, rows, rig.planes(s, w, h, 2), {}, {},
-                    rig.planes(o, w, h, 1));
+            .record(rig.executor(), rig.planes(p, w, h, 3), rig.planes(n, w, h, 3), 8, rows, rig.planes(s, w, h, 2),
+                    rig.planes(between, w, h, 2), {}, {}, rig.planes(o, w, h, 1));
         rig.device().finish();
         const auto open = rig.downloadPlanes(rig.planes(o, w, h, 1));
-        for (std::uint32_t y = 2; y + 2 < h; ++y)
-            for (std::uint32_t x = 2; x + 2 < w; ++x)
+        for (std::uint32_t y = 4; y + 4 < h; ++y)
+            for (std::uint32_t x = 4; x + 4 < w; ++x)
                 REQUIRE(double(open[std::size_t(y) * w + x]) == Approx(double(sums[std::size_t(y) * w + x])).margin(1e-5));
     }
 }

@@ -53,7 +53,7 @@ inline double angleOf(glm::dvec3 d, const HorizonSlice& s, double side) {
 
 inline std::vector<float> horizonGather(const std::vector<HorizonLevel>& levels, const HorizonPattern& pattern, const Camera& camera,
                                         const HorizonRanges& ranges, const HorizonPatternOptions& options, std::uint32_t fullHeight,
-                                        bool light, bool uniform) {
+                                        bool light, bool uniform, std::uint32_t turn) {
     constexpr double kHalfPi = 1.5707963267948966;
     const HorizonLevel& base = levels[0];
     const std::size_t plane = std::size_t(base.width) * base.height, open = light ? 4 : 0;
@@ -70,42 +70,44 @@ inline std::vector<float> horizonGather(const std::vector<HorizonLevel>& levels,
             const glm::dvec3 v = perspective ? glm::normalize(camera.eye() - p) : axis;
             std::array<double, 6> sum{};
             for (std::uint32_t i = 0; i < options.directions / options.rows; ++i) {
-                const lw_horizon_slice& slice = pattern.slices[std::size_t(y) % options.rows + i * options.rows];
+                const lw_horizon_slice& slice = pattern.slices[(std::size_t(y) + turn) % options.rows + i * options.rows];
                 const glm::dvec3 line = double(slice.dx) * perI + double(slice.dy) * perJ;
                 const HorizonSlice s = sliceOf(n, v, line, uniform);
+                const double turned = double(slice.rounding) + 0.9 * std::fmod(0.6180339887 * turn, 1.0), rounding = turned < 0.95 ? turned : turned - 0.9;
                 std::array<bool, 32> covered{}, near{};
                 std::array<double, 4> found{};
                 for (int against = 0; against < 2; ++against)
                     for (int k = 0; k < slice.steps; ++k) {
                         const lw_horizon_step& step = pattern.steps[std::size_t(slice.first[against] + k)];
                         const HorizonLevel& level = levels[std::size_t(step.level)];
-                        // Rows of a 4 x 4 pattern: each shift across and down once.
-                        constexpr double kRows[4] = {-0.375, 0.125, 0.375, -0.125};
-                        const double texel = std::ldexp(1.0, step.level), blend = step.level < 3 ? 0.0 : texel;
-                        const double shiftX = blend * ((x % 4) * 0.25 - 0.375), shiftY = blend * kRows[(x + y) % 4];
-                        const int tx = int(std::floor((x + step.phaseX + shiftX) / texel)) + step.dx;
-                        const int ty = int(std::floor((y + step.phaseY + shiftY) / texel)) + step.dy;
+                        // Shifts of an 8 x 8 pattern, in sixteenths of a texel.
+                        const double texel = std::ldexp(1.0, step.level);
+                        const bool blends = step.level >= 3;
+                        const auto shifted = [&](int sixteenth) { return blends ? std::floor((2 * sixteenth - 7) * texel / 16.0) : 0.0; };
+                        const double placeX = x + step.phaseX + shifted((x + 3 * int(turn)) % 8),
+                                     placeY = y + step.phaseY + shifted((3 * x + 5 * (y + int(turn)) + int(turn / 8)) % 8);
+                        const int tx = int(std::floor(placeX / texel)) + step.dx, ty = int(std::floor(placeY / texel)) + step.dy;
                         if (tx < 0 || ty < 0 || tx >= int(level.width) || ty >= int(level.height)) continue;
+                        if (blends && (placeX + step.dx * texel >= base.width || placeY + step.dy * texel >= base.height)) continue;
                         const glm::dvec3 q = level.get(tx, ty, 0), m = level.get(tx, ty, 3), d = q - p;
                         const double up = glm::dot(d, n), sign = against ? -1.0 : 1.0;
                         if (glm::dot(m, m) < 0.25 || up <= 0.01 * glm::length(d)) continue;
-                        // The plane at q along the line: points on the rays at begin and end.
+                        // The plane of q, met by the rays at begin and end.
                         double least = HUGE_VAL, last = 0.0;
                         glm::dvec3 farthest{0.0};
                         for (const double at : {double(step.begin), double(step.end)}) {
                             glm::dvec3 end;
                             if (perspective) {
                                 const glm::dvec3 ray = (p - camera.eye()) / depth + line * (sign * at);
-                                const double zq = camera.axial(q), m0 = std::fmax(-glm::dot(m, q - camera.eye()) / zq, 0.02);
-                                const double turn = glm::dot(m, line) * sign * (double(step.at) - at);
-                                const double z = zq * m0 / std::fmax(m0 + turn, 0.25 * m0);
+                                const double zq = camera.axial(q), seen = -glm::dot(m, q - camera.eye()) / zq, held = std::fmax(seen, 0.02);
+                                const double z = zq * held / std::fmax(held - seen - glm::dot(m, ray), 0.25 * held);
                                 end = camera.eye() + ray * z - p;
                                 const double angle = angleOf(end, s, sign);
                                 if (angle > last || least == HUGE_VAL) farthest = end + ray * (z * thick);
                                 last = std::fmax(last, angle);
                                 least = std::fmin(least, angle);
                             } else {
-                                const double rise = glm::dot(d, v) + (double(step.at) - at) * sign * glm::dot(m, line) / std::fmax(glm::dot(m, v), 0.02);
+                                const double facing = glm::dot(m, v), rise = glm::dot(d, v) + (glm::dot(m, d - v * glm::dot(d, v)) - at * sign * glm::dot(m, line)) / std::fmax(facing, 0.02);
                                 end = v * rise + line * (sign * at);
                                 const double angle = angleOf(end, s, sign);
                                 if (angle > last || least == HUGE_VAL) farthest = end - v * thick;
@@ -117,7 +119,7 @@ inline std::vector<float> horizonGather(const std::vector<HorizonLevel>& levels,
                         const double front = std::fmin(least, horizon), back = std::fmax(front, std::fmin(angleOf(farthest, s, sign), horizon));
                         const auto border = [&](double angle) {
                             const double sectors = 32.0 * (s.before + sign * measureTo(angle, gamma, uniform)) / s.total;
-                            return int(std::floor(std::fmin(std::fmax(sectors + double(slice.rounding), 0.0), 32.0)));
+                            return int(std::floor(std::fmin(std::fmax(sectors + rounding, 0.0), 32.0)));
                         };
                         const int lo = std::min(border(front), border(back)), hi = std::max(border(front), border(back));
                         for (int b = lo; b < hi; ++b) {
