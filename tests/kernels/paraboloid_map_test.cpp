@@ -224,7 +224,7 @@ TEST_CASE("a map is redrawn when its medoid, its normal or the geometry moved, a
     CHECK(countOf(rig.draw(mesh, clusters), "maps_redrawn") == 0);
 }
 
-TEST_CASE("no triangles, no clusters, more clusters than before", "[paraboloid_map]") {
+TEST_CASE("no triangles, no clusters, more clusters than before", "[paraboloid_map][large]") {
     const auto width = GENERATE(1u, 16u);
     ParaboloidRig rig(width, 64);
     rig.draw(Mesh{}, {});
