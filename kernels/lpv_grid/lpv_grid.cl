@@ -5,7 +5,7 @@
 //
 // Sums are whole numbers of 64 bits, so that nothing depends on the order of additions: a texel's light is rounded to a
 // power of two that the frame's brightest texel and the number of texels choose (LwLpvFit::bits), with which no sum can
-// overflow. Of n texels the error of a sum is at most n / 2 of that unit, 2^-62 n^2 of the brightest one.
+// overflow. Of n texels the unit is at most 2^-60 n of the brightest one, the error of a sum n / 2 units.
 #include "shared/lpv_types.h"
 #include "shared/rsm_types.h"
 #include "shared/vpl_list.h"

@@ -72,7 +72,8 @@ void LpvGrid::record(Executor& executor, const RsmInput& rsms, const LWVpl* auth
     if (texels)
         executor.run("lpv_grid.scan", scanTexels_, gridOver(rsms.rowCount), kListGroup, rsms.texels, rsms.rows,
                      cl_int(rsms.rowCount), state_);
-    if (authoredCount) executor.run("lpv_grid.scan", scanVpls_, runs(authoredCount), kListGroup, authored_, cl_int(authoredCount), state_);
+    if (authoredCount)
+        executor.run("lpv_grid.scan", scanVpls_, runs(authoredCount), kListGroup, authored_, cl_int(authoredCount), state_);
     executor.run("lpv_grid.fit", fit_, {1, 1}, {1, 1}, state_, fitOf(placement, size_, texels + authoredCount), place_);
     if (texels)
         executor.run("lpv_grid.inject", injectTexels_, runs(texels), kListGroup, rsms.texels, cl_int(texels), place_,

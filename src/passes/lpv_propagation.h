@@ -20,7 +20,9 @@ public:
 
     std::uint64_t bytes() const { return grids_[0].bytes() + grids_[1].bytes(); }
     static std::uint64_t gridBytes(std::uint32_t size);
-    static std::uint64_t estimateBytes(std::uint32_t size) { return 2 * gridBytes(size); }
+    static std::uint64_t estimateBytes(std::uint32_t size, std::uint32_t steps) {
+        return (steps < 2 ? steps : 2) * gridBytes(size);
+    }
     // A grid whose borders are empty, as steps want them.
     static Buffer makeGrid(Executor& executor, std::uint32_t size, const char* what);
     // Planes of a grid for a debug view: slices below each other, with the two empty rows between them.

@@ -22,7 +22,7 @@ LpvCells propagated(std::uint32_t width, const LpvCells& cells, std::uint32_t st
     const Guarded injected = rig.upload(cells.laidOut());
     const Buffer& result = pass.record(rig.executor(), injected, steps);
     rig.device().finish();
-    CHECK(pass.bytes() <= LpvPropagation::estimateBytes(std::uint32_t(cells.size)));
+    CHECK(pass.bytes() == LpvPropagation::estimateBytes(std::uint32_t(cells.size), steps));
     return LpvCells::of(result, cells.size);
 }
 

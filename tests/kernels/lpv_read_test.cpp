@@ -63,7 +63,8 @@ std::vector<float> expectedOf(const Pixels& pixels, const LpvCells& cells) {
                     light[b] += w * double(cells.at(4 * c + b, low[0] + (k & 1), low[1] + (k >> 1 & 1), low[2] + (k >> 2)));
             }
             const double pi = 3.14159265358979323846;
-            const double e = std::sqrt(pi) / 2 * light[0] - std::sqrt(pi / 3) * (light[1] * n[0] + light[2] * n[1] + light[3] * n[2]);
+            const double along = light[1] * n[0] + light[2] * n[1] + light[3] * n[2];
+            const double e = std::sqrt(pi) / 2 * light[0] - std::sqrt(pi / 3) * along;
             result[std::size_t(c) * count + i] = float(kCalibration / (kCell * kCell) * std::max(0.0, e));
         }
         result[3 * count + i] = 1.0f;
@@ -84,7 +85,8 @@ TEST_CASE("pixels read what a trilinear sum in double gives them; outside there 
     place.origin = {{float(kOrigin[0]), float(kOrigin[1]), float(kOrigin[2]), float(1.0 / kCell)}};
     place.cell = {{float(kCell), 1.0f, 1.0f, 0.0f}};
     const Guarded placed = rig.upload(std::vector<LwLpvPlace>{place}), counts = rig.upload(std::vector<cl_int>(LpvRead::kCounts));
-    const Guarded position = rig.uploadPlanes(pixels.position, 45, 13, 3, NAN), normal = rig.uploadPlanes(pixels.normal, 45, 13, 3, NAN);
+    const Guarded position = rig.uploadPlanes(pixels.position, 45, 13, 3, NAN);
+    const Guarded normal = rig.uploadPlanes(pixels.normal, 45, 13, 3, NAN);
     const Guarded irradiance = rig.makePlanes(45, 13, 3), validity = rig.makePlanes(45, 13, 1);
     const Planes p = rig.planes(position, 45, 13, 3), n = rig.planes(normal, 45, 13, 3), e = rig.planes(irradiance, 45, 13, 3),
                  v = rig.planes(validity, 45, 13, 1);

@@ -28,43 +28,44 @@ struct LpvTwin {
         c[2] += power * std::sqrt(kPi / 3.0) * y;
         c[3] += power * std::sqrt(kPi / 3.0) * z;
     }
-    // Of a rectangle of sides 2a and 2b whose middle lies straight ahead at distance d, and of a face at right angles to it that
-    // reaches from there to distance e: by the antiderivative of the point-to-rectangle integral.
+    // Solid angle of the rectangle a x b at distance d whose corner lies straight ahead.
     static double corner(double a, double b, double d) { return std::atan(a * b / (d * std::sqrt(a * a + b * b + d * d))); }
     static double frontAngle() { return 4.0 * corner(0.5, 0.5, 1.5); }
-    // A side face: at distance 1/2, one unit wide, from 1/2 to 3/2 along.
+    // A side face: at distance 1/2, one unit wide, reaching from 1/2 to 3/2 along.
     static double sideAngle() { return 2.0 * (corner(0.5, 1.5, 0.5) - corner(0.5, 0.5, 0.5)); }
 
     // What one step makes of this, added to `to`.
-    void stepInto(LpvTwin& to) {
-        const double front = frontAngle() / kPi, side = sideAngle() / kPi, root5 = std::sqrt(5.0);
+    void stepInto(LpvTwin& to) const {
         for (int z = 0; z < nz; ++z)
             for (int y = 0; y < ny; ++y)
                 for (int x = 0; x < nx; ++x)
-                    for (int face = 0; face < 6; ++face) {
-                        const int axis = face / 2, sign = face % 2 ? 1 : -1;
-                        int target[3] = {x, y, z};
-                        target[axis] += sign;
-                        if (sideways) {
-                            target[0] = (target[0] + nx) % nx;
-                            target[1] = (target[1] + ny) % ny;
-                        }
-                        if (target[0] < 0 || target[1] < 0 || target[2] < 0 || target[0] >= nx || target[1] >= ny || target[2] >= nz)
-                            continue;
-                        const std::array<double, 4> from = at(x, y, z);
-                        std::array<double, 4>& into = to.at(target[0], target[1], target[2]);
-                        double e[3] = {0, 0, 0};
-                        e[axis] = sign;
-                        addLobe(into, front * intensity(from, e[0], e[1], e[2]), e[0], e[1], e[2]);
-                        for (int other = 0; other < 3; ++other)
-                            for (int way = -1; way <= 1; way += 2) {
-                                if (other == axis) continue;
-                                double f[3] = {0, 0, 0};
-                                f[other] = way;
-                                const double d[3] = {(2 * e[0] + f[0]) / root5, (2 * e[1] + f[1]) / root5, (2 * e[2] + f[2]) / root5};
-                                addLobe(into, side * intensity(from, d[0], d[1], d[2]), f[0], f[1], f[2]);
-                            }
-                    }
+                    for (int way = 0; way < 6; ++way) send(to, x, y, z, way / 2, way % 2 ? 1 : -1);
+    }
+
+private:
+    // From a cell through the five far faces of its neighbour along `axis`.
+    void send(LpvTwin& to, int x, int y, int z, int axis, int sign) const {
+        const double front = frontAngle() / kPi, side = sideAngle() / kPi, root5 = std::sqrt(5.0);
+        const int sizes[3] = {nx, ny, nz};
+        int target[3] = {x, y, z};
+        target[axis] += sign;
+        for (int a = 0; a < 3; ++a) {
+            if (sideways && a < 2) target[a] = (target[a] + sizes[a]) % sizes[a];
+            if (target[a] < 0 || target[a] >= sizes[a]) return;
+        }
+        const std::array<double, 4>& from = cells[std::size_t((z * ny + y) * nx + x)];
+        std::array<double, 4>& into = to.at(target[0], target[1], target[2]);
+        double e[3] = {0, 0, 0};
+        e[axis] = sign;
+        addLobe(into, front * intensity(from, e[0], e[1], e[2]), e[0], e[1], e[2]);
+        for (int other = 0; other < 3; ++other)
+            for (int way = -1; way <= 1; way += 2) {
+                if (other == axis) continue;
+                double f[3] = {0, 0, 0}, d[3];
+                f[other] = way;
+                for (int a = 0; a < 3; ++a) d[a] = (2 * e[a] + f[a]) / root5;
+                addLobe(into, side * intensity(from, d[0], d[1], d[2]), f[0], f[1], f[2]);
+            }
     }
 };
 

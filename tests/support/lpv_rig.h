@@ -44,7 +44,9 @@ struct LpvCells {
                 for (int y = 0; y < size; ++y)
                     for (int x = 0; x < size; ++x) visit(p, x, y, z);
     }
-    std::size_t place(int plane, int x, int y, int z) const { return std::size_t(plane * lpv_plane(size) + lpv_cell(size, x, y, z)); }
+    std::size_t place(int plane, int x, int y, int z) const {
+        return std::size_t(plane * lpv_plane(size) + lpv_cell(size, x, y, z));
+    }
 };
 
 // Random light in all cells that are at least `margin` from the border.
