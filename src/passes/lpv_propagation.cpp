@@ -13,16 +13,18 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 constexpr std::uint32_t kCalibrationLayers = 4;
 
-// Vectors of a row, in groups of rows: one local size for each size of grid.
-Range groupOf(const Kernel& kernel, std::uint32_t size) {
-    const std::size_t vectors = size / kernel.width();
-    return {vectors, std::max<std::size_t>(64 / (vectors * kernel.width()), 1)};
-}
+// Of a core's own cache, what the slices between the first and the last step of a wave may take: three grids' of a colour.
+// More: they are gone before the next step comes. Less: fewer steps for each way through memory.
+constexpr std::size_t kWaveBytes = 1u << 20;
+constexpr std::uint32_t kLeastWaveSteps = 2, kMostWaveSteps = 16;
 
 }  // namespace
 
-LpvPropagation::LpvPropagation(Device& device, std::uint32_t size)
-    : size_(size), step_(device.programs().kernel("lpv_propagation/lpv_propagation", "lpv_propagation_step")) {}
+LpvPropagation::LpvPropagation(Device& device, std::uint32_t size, std::uint32_t units)
+    : size_(size),
+      units_(units ? units : device.computeUnits()),
+      step_(device.programs().kernel("lpv_propagation/lpv_propagation", "lpv_propagation_step")),
+      wave_(device.programs().kernel("lpv_propagation/lpv_propagation", "lpv_propagation_wave")) {}
 
 std::uint64_t LpvPropagation::gridBytes(std::uint32_t size) {
     return std::uint64_t(LW_LPV_PLANES) * std::uint64_t(lpv_plane(lw_int(size))) * sizeof(float);
@@ -35,15 +37,47 @@ Buffer LpvPropagation::makeGrid(Executor& executor, std::uint32_t size, const ch
 }
 
 const Buffer& LpvPropagation::record(Executor& executor, const Buffer& injected, std::uint32_t steps) {
+    if (steps == 0) return injected;
     for (std::uint32_t i = 0; i < std::min(steps, 2u); ++i)
         if (!grids_[i]) grids_[i] = makeGrid(executor, size_, "propagated light");
-    // Colour by colour: three grids of one stay in a cache that three of all would leave.
-    const std::uint32_t lines = size_ * size_;
-    for (std::uint32_t colour = 0; colour < LW_LPV_COLOURS; ++colour)
-        for (std::uint32_t i = 0; i < steps; ++i)
-            executor.run("lpv_propagation.step", step_, {size_ / step_.width(), lines}, groupOf(step_, size_), injected,
-                         i ? grids_[(i - 1) % 2] : injected, grids_[i % 2], cl_int(size_), cl_int(colour * lines), cl_int(lines));
-    return steps ? grids_[(steps - 1) % 2] : injected;
+    return step_.width() == 1 || steps == 1 ? recordSteps(executor, injected, steps) : recordWaves(executor, injected, steps);
+}
+
+const Buffer& LpvPropagation::recordSteps(Executor& executor, const Buffer& injected, std::uint32_t steps) {
+    const std::size_t vectors = size_ / step_.width();
+    const Range group{vectors, std::min<std::size_t>(size_, std::max<std::size_t>(256 / vectors, 1))};
+    const Buffer* from = &injected;
+    for (std::uint32_t i = 0; i < steps; ++i) {
+        executor.run("lpv_propagation.step", step_, {vectors, std::size_t(LW_LPV_COLOURS) * size_ * size_}, group, injected, *from,
+                     grids_[i % 2], cl_int(size_));
+        from = &grids_[i % 2];
+    }
+    return *from;
+}
+
+const Buffer& LpvPropagation::recordWaves(Executor& executor, const Buffer& injected, std::uint32_t steps) {
+    // Two work-items for each compute unit, and no more parts than keep two slices a step.
+    std::uint32_t parts = 1;
+    while (parts * LW_LPV_COLOURS < 2 * units_ && parts * 8 <= size_) parts *= 2;
+    const std::size_t sliceBytes = std::size_t(LW_LPV_BANDS) * std::size_t(lpv_slice(lw_int(size_))) * sizeof(float);
+    const auto fits = std::uint32_t(kWaveBytes / (3 * sliceBytes));
+    const std::uint32_t most = std::min(std::clamp(fits, kLeastWaveSteps, kMostWaveSteps), size_ / (2 * parts));
+    const Buffer* from = &injected;
+    std::uint32_t left = steps, at = 0;
+    while (left > 0) {
+        const std::uint32_t taken = std::min(left, most);
+        const Buffer &first = grids_[at], &second = grids_[1 - at];
+        const auto wave = [&](std::uint32_t items, int atCuts) {
+            executor.run("lpv_propagation.wave", wave_, {items, 1}, {1, 1}, injected, *from, first, second, cl_int(size_),
+                         cl_int(taken), cl_int(parts), cl_int(atCuts));
+        };
+        wave(LW_LPV_COLOURS * parts, 0);
+        if (parts > 1 && taken > 1) wave(LW_LPV_COLOURS * (parts - 1), 1);
+        if (taken % 2) at = 1 - at;
+        from = &grids_[at];
+        left -= taken;
+    }
+    return *from;
 }
 
 Planes LpvPropagation::debugPlanes(const Buffer& grid, std::uint32_t size) {

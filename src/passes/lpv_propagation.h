@@ -11,11 +11,13 @@ namespace lightwell {
 
 class LpvPropagation {
 public:
-    // size: cells a side, a multiple of 16.
-    LpvPropagation(Device& device, std::uint32_t size);
+    // size: cells a side, a power of two from 16 on. units: compute units that the work is cut up for; 0: the device's. The
+    // result does not depend on it.
+    LpvPropagation(Device& device, std::uint32_t size, std::uint32_t units = 0);
 
-    // Pass "lpv_propagation.step". `injected`: a grid laid out as shared/lpv_types.h has it. Returns the sum of what was injected
-    // and of all that `steps` steps make of it; `injected` itself for none.
+    // Pass "lpv_propagation.wave", or ".step" where work-items hold one cell. `injected`: a grid laid out as
+    // shared/lpv_types.h has it. Returns the sum of what was injected and of all that `steps` steps make of it; `injected` itself
+    // for none.
     const Buffer& record(Executor& executor, const Buffer& injected, std::uint32_t steps);
 
     std::uint64_t bytes() const { return grids_[0].bytes() + grids_[1].bytes(); }
@@ -33,8 +35,11 @@ public:
     static double calibration(std::uint32_t size, std::uint32_t steps);
 
 private:
-    std::uint32_t size_;
-    Kernel& step_;
+    const Buffer& recordSteps(Executor& executor, const Buffer& injected, std::uint32_t steps);
+    const Buffer& recordWaves(Executor& executor, const Buffer& injected, std::uint32_t steps);
+
+    std::uint32_t size_, units_;
+    Kernel &step_, &wave_;
     Buffer grids_[2];
 };
 

@@ -16,9 +16,9 @@ namespace {
 // Sums of some ten thousand floats, each rounded.
 constexpr double kConserved = 1e-5;
 
-LpvCells propagated(std::uint32_t width, const LpvCells& cells, std::uint32_t steps) {
+LpvCells propagated(std::uint32_t width, const LpvCells& cells, std::uint32_t steps, std::uint32_t units = 0) {
     KernelRig rig(width);
-    LpvPropagation pass(rig.device(), std::uint32_t(cells.size));
+    LpvPropagation pass(rig.device(), std::uint32_t(cells.size), units);
     const Guarded injected = rig.upload(cells.laidOut());
     const Buffer& result = pass.record(rig.executor(), injected, steps);
     rig.device().finish();
@@ -92,6 +92,19 @@ TEST_CASE("steps are those of faces one by one, to the border, at both widths", 
     CHECK(disagreement(wide.values, expected.values) == "");
     CHECK(bitDifference(propagated(1, cells, steps).values, wide.values) == "");
     CHECK(bitDifference(propagated(16, cells, 0).values, cells.values) == "");
+}
+
+// At width 1 step by step through the whole grid; else several in one wave, in as many parts as there is work for.
+TEST_CASE("steps in waves are the same to the bit, whatever the parts and their number", "[lpv_propagation]") {
+    const int size = GENERATE(16, 32);
+    const LpvCells cells = randomLight(size, 0);
+    for (const std::uint32_t steps : {1u, 2u, 3u, 7u, 16u, 33u}) {
+        const LpvCells one = propagated(1, cells, steps);
+        for (const std::uint32_t units : {1u, 2u, 7u, 64u}) {
+            CAPTURE(size, steps, units);
+            CHECK(bitDifference(propagated(16, cells, steps, units).values, one.values) == "");
+        }
+    }
 }
 
 TEST_CASE("a step keeps all light, and 0.36864 of its direction", "[lpv_propagation]") {
