@@ -35,12 +35,12 @@ LW_FN real split(real g, int size, lanei* lower) {
 }
 
 // The corner (cell and its seven neighbours towards +) of one pixel.
-LW_FN float16 interpolate(__global const float* corner, int size, float x, float y, float z) {
-    const int dy = LPV_CELL_FLOATS * size, dz = dy * size;
+LW_FN float16 interpolate(__global const float16* corner, int size, float x, float y, float z) {
+    const int dz = size * size;
     float16 light = (float16)(0.0f);
-    for (int k = 0; k < 8; ++k) {
+    _Pragma("unroll") for (int k = 0; k < 8; ++k) {
         const float w = ((k & 1) ? x : 1.0f - x) * ((k & 2) ? y : 1.0f - y) * ((k & 4) ? z : 1.0f - z);
-        light += w * vload16(0, corner + ((k & 1) ? LPV_CELL_FLOATS : 0) + ((k & 2) ? dy : 0) + ((k & 4) ? dz : 0));
+        light += w * corner[((k & 1) ? 1 : 0) + ((k & 2) ? size : 0) + ((k & 4) ? dz : 0)];
     }
     return light;
 }
@@ -50,7 +50,7 @@ LW_FN float16 interpolate(__global const float* corner, int size, float x, float
 // neither surface nor background; counts[1]: whose light was brought down; counts[2]: surfaces that the grid does not have.
 __kernel void lpv_read_gather(__global const float* position, int4 positionLayout, __global const float* normal,
                             int4 normalLayout, int width, int height, __global const LwLpvPlace* grid, int size,
-                            __global const float* cells, float calibration, int hasIrradiance, int hasValidity,
+                            __global const float16* cells, float calibration, int hasIrradiance, int hasValidity,
                             __global float* irradiance, int4 irradianceLayout, __global float* validity, int4 validityLayout,
                             __global int* counts) {
     const int x = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);
@@ -88,7 +88,7 @@ __kernel void lpv_read_gather(__global const float* position, int4 positionLayou
     store(s.nz, nz, 0);
     store((iz * size + iy) * size + ix, corner, 0);
     for (int l = 0; l < LW_WIDTH; ++l) {
-        const float16 v = interpolate(cells + LPV_CELL_FLOATS * corner[l], size, px[l], py[l], pz[l]);
+        const float16 v = interpolate(cells + corner[l], size, px[l], py[l], pz[l]);
         const float4 e = v.s0123 * LPV_LOBE0 - (v.s4567 * nx[l] + v.s89ab * ny[l] + v.scdef * nz[l]) * LPV_LOBE1;
         light[0][l] = e.x;
         light[1][l] = e.y;
