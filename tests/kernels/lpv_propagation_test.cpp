@@ -95,7 +95,7 @@ TEST_CASE("steps are those of faces one by one, to the border, at both widths", 
 }
 
 // At width 1 step by step through the whole grid; else several in one wave, in as many parts as there is work for.
-TEST_CASE("steps in waves are the same to the bit, whatever the parts and their number", "[lpv_propagation]") {
+TEST_CASE("steps in waves are the same to the bit, whatever the parts and their number", "[lpv_propagation][large]") {
     const int size = GENERATE(16, 32);
     const LpvCells cells = randomLight(size, 0);
     for (const std::uint32_t steps : {1u, 2u, 3u, 7u, 16u, 33u}) {
@@ -145,6 +145,9 @@ TEST_CASE("a plane's light spreads with the square root of the steps", "[lpv_pro
     CHECK(many.facing[8] == Approx(2.0).margin(0.05));
     CHECK(many.facing[16] == Approx(1.7).margin(0.05));
     CHECK(many.facing[32] == Approx(1.1).margin(0.05));
+    // What the plane itself, whose cell is the lowest, reads of its own light: the truth is nothing.
+    CHECK(PlaneLight(32, 16).away[0] * LpvPropagation::calibration(32, 16) == Approx(1.34).margin(0.005));
+    CHECK(PlaneLight(32, 64).away[0] * LpvPropagation::calibration(32, 64) == Approx(0.94).margin(0.005));
     const PlaneLight middle(64, 128);
     CHECK(middle.away[8] / middle.facing[8] == Approx(0.94).margin(0.005));
 }
