@@ -263,9 +263,12 @@ TEST_CASE("nothing is compiled after lwPrewarm, memory is as estimated", "[lpv]"
     std::uint64_t estimate = 0;
     const LWFrame frame = frameOf(lights, &box, vpls);
     REQUIRE(lwEstimateFrameMemory(device, "lpv", &desc, &size, &frame, &estimate) == LW_SUCCESS);
-    // The estimate is of images that have to be unpacked; these are used in place.
-    const std::uint64_t unpacked = (3 + 3 + 3 + 1) * sizeof(float) * 48 * kHeight;
-    CHECK(technique.stats().deviceBytes + unpacked == estimate);
+    // The estimate is of images that have to be unpacked; these are used in place, or copied as they are.
+    const std::uint64_t unpacked = (3 + 3 + 3 + 1) * sizeof(float) * 48 * kHeight, held = technique.stats().deviceBytes;
+    if (device.info().hostUnifiedMemory)
+        CHECK(held + unpacked == estimate);
+    else
+        CHECK(held <= estimate);
 }
 
 TEST_CASE("lpv refuses what it cannot do, and says what", "[lpv]") {
