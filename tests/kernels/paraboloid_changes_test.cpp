@@ -84,6 +84,24 @@ TEST_CASE("a map is redrawn for what changes in its sight alone", "[paraboloid_m
     CHECK(change(rooms({9.0, 0.3, 0.5})) == 2);
 }
 
+// Small enough for simulated devices.
+TEST_CASE("a map is redrawn for what comes before what it saw, not behind", "[paraboloid_map]") {
+    const std::vector<lw_cluster> clusters = {kLeftAndRight[0]};
+    ParaboloidRig rig(16, 64);
+    Mesh mesh;
+    mesh.addQuad({2, -50, -50}, {0, 100, 0}, {0, 0, 100});
+    mesh.add({3, 1, 1}, {3, 1.5, 1}, {3, 1, 1.5});
+    mesh.add({9, 1, 1}, {1, 60, 1}, {9, 60, 1});  // keeps the bounding box
+    rig.draw(mesh, clusters);
+    mesh.vertices[9 * 2] = 3.5f;
+    ++mesh.version;
+    CHECK(redrawn(rig.draw(mesh, clusters)) == 0);
+    mesh.vertices[9 * 2] = 1.5f;
+    ++mesh.version;
+    CHECK(redrawn(rig.draw(mesh, clusters)) == 1);
+    checkLikeNew(rig, 16, mesh, clusters);
+}
+
 TEST_CASE("maps kept over random changes are those of a new pass, bit for bit", "[paraboloid_map][large]") {
     const auto width = GENERATE(1u, 16u);
     Fuzz fuzz{std::mt19937(4)};

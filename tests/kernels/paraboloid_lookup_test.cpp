@@ -107,7 +107,7 @@ TEST_CASE("frames are orthonormal around every normal", "[paraboloid_lookup]") {
     }
 }
 
-TEST_CASE("a room with a screen: lit before it, dark behind it", "[paraboloid_lookup]") {
+TEST_CASE("a room with a screen: lit before it, dark behind it", "[paraboloid_lookup][large]") {
     const auto width = GENERATE(1u, 16u);
     const auto size = GENERATE(64u, 256u);
     if (size > 64 && testSize({256, 256}).first < 256) return;  // a slow driver
