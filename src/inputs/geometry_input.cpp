@@ -188,10 +188,12 @@ void GeometryInput::import(Executor& executor, const LWGeometry* geometry) {
     const std::vector<TriangleBox> changed = changedBoxes(drawn_, drawn);
     if (!changed.empty() || isForgotten_) {
         const TriangleTree tree = growTree(drawn);
-        upload(executor, drawn, tree.order, tree.nodes, isForgotten_ ? std::vector<float>() : boxesAround(changed));
+        // Where about all is new, boxes around it cost the host a quarter of what the tree does, and would be everywhere.
+        const bool isKnown = !isForgotten_ && changed.size() <= drawn.size();
+        upload(executor, drawn, tree.order, tree.nodes, isKnown ? boxesAround(changed) : std::vector<float>());
         triangleCount = std::uint32_t(drawn.size());
         diagonal = drawn.empty() ? 0.0f : float(bounds.diagonal());
-        revision += isForgotten_ ? 2 : 1;
+        revision += isKnown ? 1 : 2;
         isForgotten_ = false;
         hostIndices.clear();
         for (const std::uint32_t t : tree.order) hostIndices.push_back(drawn[t].host);
