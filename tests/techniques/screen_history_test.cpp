@@ -49,6 +49,9 @@ double distance(const std::vector<float>& a, const std::vector<float>& b) {
 }
 
 // Frames of `kept` near `truth`, more than `alone` is, and stay there.
+// From frame 192 on: the bounds' measure of the noise takes some 128 frames to settle. horizon, windows of 64 frames from 0 on, against
+// frames 64 to 640: with bounds -0.5, -0.2, 0.0 %, then within 0.09 %; without (history_clamp=0) -0.2 %, then within 0.05 %, first
+// to last. Nothing goes on drifting.
 // noise: of a mean over 128 frames of patterns that never come again, as a share.
 void checkStatic(LWDevice device, TestTechnique& kept, const ScreenResult& alone, const ScreenResult& truth, double noise) {
     DrawnView drawn = litView();
@@ -60,7 +63,7 @@ void checkStatic(LWDevice device, TestTechnique& kept, const ScreenResult& alone
         result = renderScreen(kept, view, device, drawn.gbuffer);
         if (f < 64) continue;
         worst = std::max(worst, distance(result.irradiance, truth.irradiance));
-        if (f < 192) first += meanOf(result.irradiance) / 128.0;
+        if (f >= 192 && f < 320) first += meanOf(result.irradiance) / 128.0;
         if (f >= 372) last += meanOf(result.irradiance) / 128.0;
     }
     CAPTURE(error, worst, first, last);
@@ -89,7 +92,7 @@ TEST_CASE("with a history horizon nears all slices at once, and stays there for 
     DrawnView drawn = litView();
     const auto single = renderScreen(device, "horizon", &alone, drawn), truth = renderScreen(device, "horizon", &all, drawn);
     TestTechnique technique(device, "horizon", &kept);
-    checkStatic(device, technique, single, truth, 3e-3);
+    checkStatic(device, technique, single, truth, 1e-3);
 }
 
 TEST_CASE("with a history ao nears many points, and stays there for 500 frames", "[ao][history]") {
@@ -103,6 +106,8 @@ TEST_CASE("with a history ao nears many points, and stays there for 500 frames",
     DrawnView drawn = litView();
     const auto single = renderScreen(device, "ao", &alone, drawn), truth = renderScreen(device, "ao", &all, drawn);
     TestTechnique technique(device, "ao", &kept);
+    // Without bounds the mean is linear and cannot drift: what is left is the noise of light that few points find. Ten windows
+    // of 64 frames differ from their mean by 0.3 % (standard deviation) in no order, and so do halves of 200 frames.
     checkStatic(device, technique, single, truth, 1e-2);
 }
 

@@ -239,3 +239,28 @@ TEST_CASE("with a history, too, lwPrewarm builds all and the memory is what was 
     CHECK(single.stats().deviceBytes <= estimate);
     CHECK(single.stats().deviceBytes > estimate / 2);
 }
+
+TEST_CASE("a source view keeps its own history when another before it is gone", "[screen_space][history]") {
+    TestDevice device(16);
+    LWScreenSpaceDesc desc = keeping(16);
+    desc.cameras = 1;
+    // Of one size, and from elsewhere, so that the one's picture is no history of the other's.
+    CornerPicture own(61, 40), second(64, 40);
+    Picture first(64, 40, 0.3, {0.4, 0.5, 1.9}, litFloor(0.3));
+    TestView a(device, 64, 40), b(device, 64, 40);
+    const auto run = [&](bool withFirst) {
+        TestTechnique technique(device, desc);
+        TestView view(device, 61, 40);
+        Result result;
+        for (int f = 0; f < 5; ++f) {
+            std::vector<LWSourceView> sources = {{b, &second.gbuffer}};
+            if (withFirst && f < 4) sources.insert(sources.begin(), {a, &first.gbuffer});
+            result = render(technique, view, own.gbuffer, device, sources);
+        }
+        CHECK(technique.count("history_new") == 0);
+        return result;
+    };
+    const Result left = run(true), alone = run(false);
+    CHECK(left.irradiance == alone.irradiance);
+    CHECK(left.validity == alone.validity);
+}
