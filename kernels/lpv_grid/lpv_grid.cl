@@ -23,9 +23,7 @@ LW_FN uint key_of(float v) {
 }
 LW_FN float of_key(uint key) { return as_float(key & 0x80000000u ? key ^ 0x80000000u : ~key); }
 
-LW_FN void raise(__global uint* to, uint value) {
-    if (value > *to) atomic_max(to, value);
-}
+LW_FN void raise(__global uint* to, uint value) { atomic_max(to, value); }
 
 // One work-item = one row of an RSM: bounds of its surfaces, lit or not, and its largest flux.
 __kernel void lpv_grid_scan_texels(__global const float* texels, int4 layout, __global const int4* rows, int rowCount,
@@ -65,16 +63,24 @@ __kernel void lpv_grid_scan_texels(__global const float* texels, int4 layout, __
 // One work-item = LPV_RUN VPLs, with flux or not.
 __kernel void lpv_grid_scan_vpls(__global const lw_vpl* vpls, int count, __global uint* state) {
     const int first = lw_list_index() * LPV_RUN, last = min(first + LPV_RUN, count);
+    float largest = 0.0f;
+    float low[3] = {FLT_MAX, FLT_MAX, FLT_MAX}, high[3] = {-FLT_MAX, -FLT_MAX, -FLT_MAX};
     for (int i = first; i < last; ++i) {
         const lw_vpl vpl = vpls[i];
         const float flux = fmax(fmax(vpl.flux.x, vpl.flux.y), vpl.flux.z);
         if (!(flux > 0.0f)) continue;
-        raise(state + LW_LPV_LARGEST, as_uint(flux));
+        largest = fmax(largest, flux);
         const float p[3] = {vpl.positionArea.x, vpl.positionArea.y, vpl.positionArea.z};
         for (int axis = 0; axis < 3; ++axis) {
-            raise(state + LW_LPV_LOW + axis, key_of(-p[axis]));
-            raise(state + LW_LPV_HIGH + axis, key_of(p[axis]));
+            low[axis] = fmin(low[axis], p[axis]);
+            high[axis] = fmax(high[axis], p[axis]);
         }
+    }
+    if (!(largest > 0.0f)) return;
+    raise(state + LW_LPV_LARGEST, as_uint(largest));
+    for (int axis = 0; axis < 3; ++axis) {
+        raise(state + LW_LPV_LOW + axis, key_of(-low[axis]));
+        raise(state + LW_LPV_HIGH + axis, key_of(high[axis]));
     }
 }
 
