@@ -119,7 +119,7 @@ TEST_CASE("outputs of one picture may be rendered one after another under a hist
 
 TEST_CASE("sizes of a few pixels, and motion vectors that are no numbers, leave numbers and the memory that was said", "[horizon][ao][history]") {
     const auto setting = GENERATE(Setting("horizon", 4), Setting("ao", 4), Setting("screen_space", 4));
-    const std::uint32_t width = GENERATE(1u, 4u, 8u, 16u);
+    const std::uint32_t width = GENERATE(1u, 16u);
     TestDevice device(width);
     CAPTURE(setting.name, width);
     const std::vector<std::pair<std::uint32_t, std::uint32_t>> sizes = {{1, 1}, {3, 5}, {61, 1}, {1, 47}, {17, 33}, {64, 48}, {3, 5}};
