@@ -36,14 +36,7 @@ TEST_CASE("a sampled texel is one pixel of its block, background too", "[mip_pyr
     KernelRig rig(width);
     const auto [w, h] = testSize(std::make_pair(147u, 45u));
     const PinholeCamera camera{{0, 0, 0}, 0.5, w, h};
-    PyramidScene scene(w, h);
-    const Image noise = reference::randomImage(w, h, 9);
-    for (std::uint32_t y = 0; y < h; ++y)
-        for (std::uint32_t x = 0; x < w; ++x) {
-            if (noise.get(x, y).y < 0.3) continue;
-            scene.position.set(x, y, camera.ray(x + 0.5, y + 0.5) * (2.0 + noise.get(x, y).x));
-            scene.normal.set(x, y, {0, 0, 1});
-        }
+    const PyramidScene scene = grainyScene(camera, w, h);
     PyramidOptions options{0, 0, 5};
     options.sampled = true;
     const PyramidRead read = build(rig, scene, camera, options);
@@ -75,15 +68,7 @@ TEST_CASE("a sampled level keeps the same child of every block, cut ones too, an
     KernelRig rig(width);
     const auto [w, h] = size;
     const PinholeCamera camera{{0, 0, 0}, 0.5, w, h};
-    PyramidScene scene(w, h);
-    const Image noise = reference::randomImage(w, h, 9);
-    for (std::uint32_t y = 0; y < h; ++y)
-        for (std::uint32_t x = 0; x < w; ++x) {
-            if (noise.get(x, y).y < 0.3) continue;
-            scene.position.set(x, y, camera.ray(x + 0.5, y + 0.5) * (2.0 + noise.get(x, y).x));
-            scene.normal.set(x, y, {0, 0, 1});
-            scene.radiance.set(x, y, {2, 3, 4});
-        }
+    const PyramidScene scene = grainyScene(camera, w, h);
     PyramidOptions options{kPyramidRadiance, first, 6};
     options.sampled = true;
     for (const std::uint32_t round : {0u, 52u}) {

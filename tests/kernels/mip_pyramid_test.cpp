@@ -137,14 +137,7 @@ TEST_CASE("a texel is the nearest pixel of exactly its own block", "[mip_pyramid
     KernelRig rig(16);
     const auto [w, h] = testSize(std::make_pair(150u, 45u));
     const PinholeCamera camera{{0, 0, 0}, 0.5, w, h};
-    PyramidScene scene(w, h);
-    const Image noise = reference::randomImage(w, h, 9);
-    for (std::uint32_t y = 0; y < h; ++y)
-        for (std::uint32_t x = 0; x < w; ++x) {
-            if (noise.get(x, y).y < 0.3) continue;
-            scene.position.set(x, y, camera.ray(x + 0.5, y + 0.5) * (2.0 + noise.get(x, y).x));
-            scene.normal.set(x, y, {0, 0, 1});
-        }
+    const PyramidScene scene = grainyScene(camera, w, h);
     const PyramidRead read = build(rig, scene, camera, {kPyramidDepth, 1, 5});
     for (std::uint32_t k = 1; k <= 5; ++k)
         for (std::uint32_t y = 0; y < PyramidLevels::sizeAt(h, k); ++y)

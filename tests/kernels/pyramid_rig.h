@@ -24,6 +24,20 @@ struct PyramidScene {
     PyramidScene(std::uint32_t w, std::uint32_t h) : position(w, h), normal(w, h), radiance(w, h), mask(std::size_t(w) * h) {}
 };
 
+// Ground whose depths all differ, and 30 % of background.
+inline PyramidScene grainyScene(const PinholeCamera& camera, std::uint32_t w, std::uint32_t h) {
+    PyramidScene scene(w, h);
+    const Image noise = reference::randomImage(w, h, 9);
+    for (std::uint32_t y = 0; y < h; ++y)
+        for (std::uint32_t x = 0; x < w; ++x) {
+            if (noise.get(x, y).y < 0.3) continue;
+            scene.position.set(x, y, camera.ray(x + 0.5, y + 0.5) * (2.0 + noise.get(x, y).x));
+            scene.normal.set(x, y, {0, 0, 1});
+            scene.radiance.set(x, y, {2, 3, 4});
+        }
+    return scene;
+}
+
 // What a pyramid holds, packed, by level.
 struct PyramidRead {
     std::vector<Image> position, normal, radiance;

@@ -59,11 +59,11 @@ TEST_CASE("with a history a still view nears the light of many seeds and does no
     TestView view(device, 96, 60);
     TestTechnique kept(device, keeping(32));
     const std::vector<float> truth = manySeeds(device, picture);
-    const double alone = rootMeanSquare(render(device, keeping(0), picture).irradiance, truth);
+    const double alone = difference(render(device, keeping(0), picture).irradiance, truth);
     double worst = 0.0, first = 0.0, last = 0.0, seenFirst = 0.0, seenLast = 0.0;
     for (int f = 0; f < 500; ++f) {
         const Result result = frameOf(kept, view, picture.gbuffer, device);
-        if (f >= 64) worst = std::max(worst, rootMeanSquare(result.irradiance, truth));
+        if (f >= 64) worst = std::max(worst, difference(result.irradiance, truth));
         if (f >= 64 && f < 164) {
             first += meanOf(result.irradiance) / 100.0;
             seenFirst += meanOf(result.validity) / 100.0;
