@@ -16,3 +16,12 @@ foreach(suite IN LISTS suites)
   math(EXPR limit "3 * ${budget_${suite}}")
   set_tests_properties(${suite} PROPERTIES TIMEOUT ${limit})
 endforeach()
+
+# CTest runs two suites at once, of which one at most computes on the device under test: kernels use all cores there, and
+# seconds should mean something. Suites of the simulator and of other drivers, of packages and documents run beside it.
+foreach(suite IN LISTS suites)
+  get_test_property(${suite} LABELS labels)
+  if(NOT "${labels}" MATCHES "oclgrind|rusticl" AND NOT suite MATCHES "^(docs|reference_docs|symbols|package|charts|stability_charts|shipped_scenes)_test$")
+    set_tests_properties(${suite} PROPERTIES RESOURCE_LOCK device)
+  endif()
+endforeach()

@@ -82,8 +82,8 @@ step build cmake --build "$build" --parallel "$(nproc)" || stop
 # --- test -------------------------------------------------------------------------------------------
 lightwell_say "device: $LIGHTWELL_DEVICE; testing"
 results=$log/ctest.txt
-# One suite at a time: kernels and path tracer use all cores, and the seconds should mean something.
-(cd "$build" && ctest --output-on-failure --no-label-summary --no-tests=error "$@" </dev/null 2>&1) | tee "$results"
+# Two suites at once, of which one at most computes on the device (tests/budgets.cmake).
+(cd "$build" && ctest --parallel 2 --output-on-failure --no-label-summary --no-tests=error "$@" </dev/null 2>&1) | tee "$results"
 ctest_status=${PIPESTATUS[0]}
 
 # --- table ------------------------------------------------------------------------------------------
