@@ -13,10 +13,15 @@
 typedef struct { real even, odd; } lw_pair;
 
 LW_FN lw_pair load_pair(__global const float* image, int row, int x, int rowEnd) {
-    const real a = load(image, row + x);
-    const real b = x + LW_WIDTH < rowEnd ? load(image, row + x + LW_WIDTH) : (real)0.0f;
+    const real a = load_whole(image + row + x);
+    const real b = x + LW_WIDTH < rowEnd ? load_whole(image + row + x + LW_WIDTH) : (real)0.0f;
     const lw_pair pair = {even_(a, b), odd_(a, b)};
     return pair;
+}
+
+LW_FN void store_pair(__global float* plane, int at, int hasSecond, real even, real odd) {
+    store(zip_lo_(even, odd), plane, at);
+    if (hasSecond) store(zip_hi_(even, odd), plane, at + LW_WIDTH);
 }
 
 LW_FN lw_surface surface_of(const lw_pair* p, const lw_pair* n, int odd) {
@@ -72,65 +77,119 @@ __kernel void joint_bilateral_downsample(__global const float* position, int4 po
     store(select_(zero, s.nz, s.valid), halfNormal, no + 2 * halfNormalLayout.z);
 }
 
+// The half-resolution images: surfaces that down-sampling made, and the light on them.
+typedef struct {
+    __global const float *position, *normal, *light;
+    int4 positionLayout, normalLayout, lightLayout;
+    int width, height;
+} lw_coarse;
+
+typedef struct { real px, py, pz, nx, ny, nz, light[LW_CHANNELS]; mask valid; } lw_sample;
+
+// The samples i columns beside LW_WIDTH blocks, of row hy. `inside`, a constant: all of them exist, so that every load is contiguous.
+LW_FN void load_sample(lw_sample* q, const lw_coarse* coarse, int hx, int i, int hy, const int inside) {
+#define LW_TAP(image, layout, a)                                                                                    \
+    (inside ? load_whole(image + layout.x + (a) * layout.z + hy * layout.y + hx + i)                                \
+            : load_shifted(image, layout.x + (a) * layout.z + hy * layout.y, hx, i, coarse->width))
+    q->px = LW_TAP(coarse->position, coarse->positionLayout, 0);
+    q->py = LW_TAP(coarse->position, coarse->positionLayout, 1);
+    q->pz = LW_TAP(coarse->position, coarse->positionLayout, 2);
+    q->nx = LW_TAP(coarse->normal, coarse->normalLayout, 0);  // unit or zero: down-sampling saw to it
+    q->ny = LW_TAP(coarse->normal, coarse->normalLayout, 1);
+    q->nz = LW_TAP(coarse->normal, coarse->normalLayout, 2);
+    LW_UNROLL for (int a = 0; a < LW_CHANNELS; ++a) q->light[a] = LW_TAP(coarse->light, coarse->lightLayout, a);
+#undef LW_TAP
+    q->valid = fma_(q->nx, q->nx, fma_(q->ny, q->ny, q->nz * q->nz)) > 0.5f;
+    if (!inside) {
+        const lanei column = lanei_iota() + (lanei)(hx + i);
+        q->valid = and_(q->valid, and_(column >= (lanei)0, column < (lanei)coarse->width));
+    }
+}
+
 typedef struct { real light[LW_CHANNELS], weight; } lw_sum;
 
 LW_FN void accumulate(lw_sum* sum, real w, const real* light) {
-    for (int a = 0; a < LW_CHANNELS; ++a) sum->light[a] = fma_(w, light[a], sum->light[a]);
+    LW_UNROLL for (int a = 0; a < LW_CHANNELS; ++a) sum->light[a] = fma_(w, light[a], sum->light[a]);
     sum->weight += w;
 }
 
-// Light from one sample to `s`: by the edge test; and, for pixels that no sample passes it for, by
-// likeness of the normals alone, so that such a pixel is lit like its neighbourhood and not black.
-LW_FN void add_sample(lw_sum* sum, lw_sum* rest, const lw_surface s, const lw_surface q, real tent, const real* light) {
-    const real t = select_((real)0.0f, tent, q.valid);
-    accumulate(sum, t * edge_weight(edges_of(s, (real)1.0f), q.px, q.py, q.pz, q.nx, q.ny, q.nz), light);
-    const real likeness = fmax(fma_(q.nx, s.nx, fma_(q.ny, s.ny, q.nz * s.nz)), (real)0.0f) + 1e-3f;
-    accumulate(rest, t * likeness, light);
+// What a sample counts for `s`: by the edge test; or by likeness of the normals alone.
+LW_FN real sample_weight(const lw_surface s, const lw_sample* q, int byLikeness) {
+    if (byLikeness) return fmax(fma_(q->nx, s.nx, fma_(q->ny, s.ny, q->nz * s.nz)), (real)0.0f) + 1e-3f;
+    return edge_weight(edges_of(s, (real)1.0f), q->px, q->py, q->pz, q->nx, q->ny, q->nz);
 }
 
-// Where a row of the half-resolution images begins, and the distances between planes.
-typedef struct { int position, normal, irradiance, positionPlane, normalPlane, irradiancePlane; } lw_half_row;
-
-// The samples left of, in and right of LW_WIDTH blocks, of one half-resolution row. `inside`, a constant:
-// all of them exist, so that every tap is contiguous.
-LW_FN void add_half_row(lw_sum* evenSum, lw_sum* oddSum, lw_sum* evenRest, lw_sum* oddRest, const lw_surface even,
-                        const lw_surface odd, __global const float* halfPosition, __global const float* halfNormal,
-                        __global const float* halfIrradiance, const lw_half_row row, int hx, int halfWidth, float rowTent,
-                        const int inside) {
-#define LW_TAP(image, at) (inside ? load(image, (at) + hx + i) : load_shifted(image, (at), hx, i, halfWidth))
-    for (int i = -1; i <= 1; ++i) {
-        lw_surface q;
-        q.px = LW_TAP(halfPosition, row.position);
-        q.py = LW_TAP(halfPosition, row.position + row.positionPlane);
-        q.pz = LW_TAP(halfPosition, row.position + 2 * row.positionPlane);
-        q.nx = LW_TAP(halfNormal, row.normal);  // unit or zero: down-sampling saw to it
-        q.ny = LW_TAP(halfNormal, row.normal + row.normalPlane);
-        q.nz = LW_TAP(halfNormal, row.normal + 2 * row.normalPlane);
-        q.valid = fma_(q.nx, q.nx, fma_(q.ny, q.ny, q.nz * q.nz)) > 0.5f;
-        if (!inside) {
-            const lanei column = lanei_iota() + (lanei)(hx + i);
-            q.valid = and_(q.valid, and_(column >= (lanei)0, column < (lanei)halfWidth));
-        }
-        real light[LW_CHANNELS];
-        for (int a = 0; a < LW_CHANNELS; ++a) light[a] = LW_TAP(halfIrradiance, row.irradiance + a * row.irradiancePlane);
-        add_sample(evenSum, evenRest, even, q, (real)(rowTent * (i == 0 ? 1.0f : 1.0f / 3.0f)), light);
-        if (i >= 0) add_sample(oddSum, oddRest, odd, q, (real)(rowTent * (2.0f / 3.0f)), light);
+// Adds a sample, i columns and j rows from a block, to its even (or odd) columns in two rows of pixels, by a tent over three pixels: a
+// sample stands two pixels from the next, so that an even pixel sees three of them at distances 2, 0, 2 and an odd one two at
+// distances 1, 1; rows alike, of which the second sees none above.
+LW_FN void add_sample(lw_sum* sum, const lw_surface* s, const lw_coarse* coarse, int hx, int i, int hy, int j, const int odd,
+                      const int inside, int byLikeness) {
+    if (hy + j < 0 || hy + j >= coarse->height) return;
+    lw_sample q;
+    load_sample(&q, coarse, hx, i, hy + j, inside);
+    const float columnTent = odd ? 2.0f / 3.0f : i == 0 ? 1.0f : 1.0f / 3.0f;
+    LW_UNROLL for (int k = 0; k < 2; ++k) {
+        if (k == 1 && j < 0) continue;
+        const float rowTent = 1.0f - (float)abs(2 * j - k) * (1.0f / 3.0f);
+        const real tent = select_((real)0.0f, (real)(rowTent * columnTent), q.valid);
+        accumulate(&sum[k], tent * sample_weight(s[k], &q, byLikeness), q.light);
     }
-#undef LW_TAP
 }
 
-// Of one plane the even and odd pixels, weighted sums made means.
-LW_FN void store_mean(__global float* plane, int at, int hasSecond, const lw_sum* even, const lw_sum* evenRest, const lw_sum* odd,
-                      const lw_sum* oddRest, int a, mask evenLost, mask oddLost, real evenScale, real oddScale, mask evenValid,
-                      mask oddValid) {
-    const real zero = (real)0.0f;
-    const real e = select_(zero, select_(even->light[a], evenRest->light[a], evenLost) * evenScale, evenValid);
-    const real o = select_(zero, select_(odd->light[a], oddRest->light[a], oddLost) * oddScale, oddValid);
-    store(zip_lo_(e, o), plane, at);
-    if (hasSecond) store(zip_hi_(e, o), plane, at + LW_WIDTH);
+LW_FN void clear_sums(lw_sum* sum) {
+    LW_UNROLL for (int k = 0; k < 2; ++k) {
+        LW_UNROLL for (int a = 0; a < LW_CHANNELS; ++a) sum[k].light[a] = (real)0.0f;
+        sum[k].weight = (real)0.0f;
+    }
 }
 
-// One work-item = 2 * LW_WIDTH pixels of one row: the even ones and the odd ones of LW_WIDTH blocks.
+// Sums of all samples around the even (or odd) columns, all of which exist: every load is a plain one.
+LW_FN void sum_inside(lw_sum* sum, const lw_surface* s, const lw_coarse* coarse, int hx, int hy, const int odd) {
+    clear_sums(sum);
+    LW_UNROLL for (int j = -1; j <= 1; ++j)
+        LW_UNROLL for (int i = odd ? 0 : -1; i <= 1; ++i) add_sample(sum, s, coarse, hx, i, hy, j, odd, 1, 0);
+}
+
+// The same beside borders, and by likeness: rare, so that code matters more.
+LW_FN void sum_any(lw_sum* sum, const lw_surface* s, const lw_coarse* coarse, int hx, int hy, const int odd, int byLikeness) {
+    clear_sums(sum);
+    for (int j = -1; j <= 1; ++j)
+        for (int i = odd ? 0 : -1; i <= 1; ++i) add_sample(sum, s, coarse, hx, i, hy, j, odd, 0, byLikeness);
+}
+
+// The light of the even (or odd) columns of two rows of pixels, and how many of those that exist have no sample on their own
+// surface, or are neither surface nor background. `odd`: a constant.
+LW_FN void light_columns(real out[2][LW_CHANNELS][2], int* lostPixels, int* badPixels, lw_pair p[2][3], lw_pair n[2][3],
+                         const lw_coarse* coarse, int hx, int hy, int width, int rows, const int odd) {
+    lw_surface s[2];
+    lw_sum sum[2];
+    mask lost[2];
+    LW_UNROLL for (int k = 0; k < 2; ++k) s[k] = surface_of(p[k], n[k], odd);
+    if (shift_inside(hx, -1, coarse->width) && shift_inside(hx, 1, coarse->width))
+        sum_inside(sum, s, coarse, hx, hy, odd);
+    else
+        sum_any(sum, s, coarse, hx, hy, odd, 0);
+    // A weight this far below a sample's own tent comes from rounding at the edge tests' borders. Such pixels, for which no
+    // sample passes the test, are lit like their neighbourhood and not black.
+    LW_UNROLL for (int k = 0; k < 2; ++k) lost[k] = and_(s[k].valid, not_(sum[k].weight > 1e-4f));
+    if (any_(or_(lost[0], lost[1]))) {
+        lw_sum rest[2];
+        sum_any(rest, s, coarse, hx, hy, odd, 1);
+        LW_UNROLL for (int k = 0; k < 2; ++k) {
+            sum[k].weight = select_(sum[k].weight, rest[k].weight, lost[k]);
+            LW_UNROLL for (int a = 0; a < LW_CHANNELS; ++a) sum[k].light[a] = select_(sum[k].light[a], rest[k].light[a], lost[k]);
+        }
+    }
+    const mask exists = lanei_iota() * 2 + (lanei)(2 * hx + odd) < (lanei)width;
+    LW_UNROLL for (int k = 0; k < 2; ++k) {
+        const real scale = 1.0f / sum[k].weight;
+        LW_UNROLL for (int a = 0; a < LW_CHANNELS; ++a) out[k][a][odd] = select_((real)0.0f, sum[k].light[a] * scale, s[k].valid);
+        const mask lostHere = and_(lost[k], exists), badHere = and_(s[k].rejected, exists);
+        if (k < rows && any_(or_(lostHere, badHere))) *lostPixels += count_(lostHere), *badPixels += count_(badHere);
+    }
+}
+
+// One work-item = 2 * LW_WIDTH pixels of two rows: the even and the odd columns of LW_WIDTH blocks.
 // half*: 3 planes each of the half-resolution image, the light LW_CHANNELS; with 5, `fourth` and `fifth` take the
 // scalars, and any of the three may be null. counts[0]: pixels that are
 // neither surface nor background; counts[1]: pixels lit without edge test.
@@ -144,63 +203,42 @@ __kernel void joint_bilateral_upsample(__global const float* position, int4 posi
                                        __global float* fourth, int4 fourthLayout, __global float* fifth, int4 fifthLayout,
 #endif
                                        __global int* counts) {
-    const int hx = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);
-    const int x = 2 * hx;
+    const int hx = (int)get_global_id(0) * LW_WIDTH, hy = (int)get_global_id(1);
+    const int x = 2 * hx, y = 2 * hy;
     if (x >= width || y >= height) return;
-    const int rowEnd = (width + 15) & ~15;
-    const int halfWidth = (width + 1) / 2, halfHeight = (height + 1) / 2;
+    const int rowEnd = (width + 15) & ~15, rows = min(2, height - y);
+    const lw_coarse coarse = {halfPosition, halfNormal, halfIrradiance, halfPositionLayout, halfNormalLayout, halfIrradianceLayout,
+                          (width + 1) / 2, (height + 1) / 2};
 
-    lw_pair p[3], n[3];
-    for (int a = 0; a < 3; ++a) {
-        p[a] = load_pair(position, positionLayout.x + a * positionLayout.z + y * positionLayout.y, x, rowEnd);
-        n[a] = load_pair(normal, normalLayout.x + a * normalLayout.z + y * normalLayout.y, x, rowEnd);
-    }
-    const lw_surface even = surface_of(p, n, 0), odd = surface_of(p, n, 1);
+    lw_pair p[2][3], n[2][3];
+    LW_UNROLL for (int k = 0; k < 2; ++k)
+        LW_UNROLL for (int a = 0; a < 3; ++a) {
+            const int row = min(y + k, height - 1);
+            p[k][a] = load_pair(position, positionLayout.x + a * positionLayout.z + row * positionLayout.y, x, rowEnd);
+            n[k][a] = load_pair(normal, normalLayout.x + a * normalLayout.z + row * normalLayout.y, x, rowEnd);
+            // What the next work-item reads: without, it waits for memory first.
+            LW_UNROLL for (int next = 2; next < 4; ++next) {
+                will_load(position + positionLayout.x + a * positionLayout.z + row * positionLayout.y + x + next * LW_WIDTH);
+                will_load(normal + normalLayout.x + a * normalLayout.z + row * normalLayout.y + x + next * LW_WIDTH);
+            }
+        }
 
-    lw_sum none;
-    for (int a = 0; a < LW_CHANNELS; ++a) none.light[a] = (real)0.0f;
-    none.weight = (real)0.0f;
-    lw_sum evenSum = none, oddSum = none, evenRest = none, oddRest = none;
-    // A tent over three pixels: a sample stands two pixels from the next, so that an even pixel sees
-    // three of them at distances 2, 0, 2 and an odd one two at distances 1, 1.
-    const int oddRow = y & 1;
-    const int inside = shift_inside(hx, -1, halfWidth) && shift_inside(hx, 1, halfWidth);
-    for (int j = oddRow ? 0 : -1; j <= 1; ++j) {
-        const int hy = y / 2 + j;
-        if (hy < 0 || hy >= halfHeight) continue;
-        const float rowTent = 1.0f - (float)abs(2 * j - oddRow) * (1.0f / 3.0f);
-        const lw_half_row row = {halfPositionLayout.x + hy * halfPositionLayout.y,
-                                 halfNormalLayout.x + hy * halfNormalLayout.y,
-                                 halfIrradianceLayout.x + hy * halfIrradianceLayout.y,
-                                 halfPositionLayout.z, halfNormalLayout.z, halfIrradianceLayout.z};
-        if (inside)
-            add_half_row(&evenSum, &oddSum, &evenRest, &oddRest, even, odd, halfPosition, halfNormal, halfIrradiance, row,
-                         hx, halfWidth, rowTent, 1);
-        else
-            add_half_row(&evenSum, &oddSum, &evenRest, &oddRest, even, odd, halfPosition, halfNormal, halfIrradiance, row,
-                         hx, halfWidth, rowTent, 0);
-    }
+    real out[2][LW_CHANNELS][2];
+    int lost = 0, bad = 0;
+    light_columns(out, &lost, &bad, p, n, &coarse, hx, hy, width, rows, 0);
+    light_columns(out, &lost, &bad, p, n, &coarse, hx, hy, width, rows, 1);
+    if (lost) atomic_add(counts + 1, lost);
+    if (bad) atomic_add(counts, bad);
 
-    // A weight this far below a sample's own tent comes from rounding at the edge tests' borders.
-    const mask evenLost = and_(even.valid, not_(evenSum.weight > 1e-4f));
-    const mask oddLost = and_(odd.valid, not_(oddSum.weight > 1e-4f));
-    const real evenScale = 1.0f / select_(evenSum.weight, evenRest.weight, evenLost);
-    const real oddScale = 1.0f / select_(oddSum.weight, oddRest.weight, oddLost);
-    const int hasSecond = x + LW_WIDTH < rowEnd;
-#define LW_STORE_MEAN(plane, at, a)                                                                                   \
-    store_mean(plane, at, hasSecond, &evenSum, &evenRest, &oddSum, &oddRest, a, evenLost, oddLost, evenScale, oddScale, \
-               even.valid, odd.valid)
+    for (int k = 0; k < rows; ++k) {
+#define LW_STORE(plane, at, a) store_pair(plane, at, x + LW_WIDTH < rowEnd, out[k][a][0], out[k][a][1])
 #if LW_CHANNELS == 5
-    if (fourth) LW_STORE_MEAN(fourth, fourthLayout.x + y * fourthLayout.y + x, 3);
-    if (fifth) LW_STORE_MEAN(fifth, fifthLayout.x + y * fifthLayout.y + x, 4);
-    if (irradiance)
+        if (fourth) LW_STORE(fourth, fourthLayout.x + (y + k) * fourthLayout.y + x, 3);
+        if (fifth) LW_STORE(fifth, fifthLayout.x + (y + k) * fifthLayout.y + x, 4);
+        if (irradiance)
 #endif
-        for (int a = 0; a < min(LW_CHANNELS, 3); ++a)
-            LW_STORE_MEAN(irradiance, irradianceLayout.x + y * irradianceLayout.y + x + a * irradianceLayout.z, a);
-#undef LW_STORE_MEAN
-    const lanei at = lanei_iota() * 2 + (lanei)x;
-    const mask lostEven = and_(evenLost, at < (lanei)width), lostOdd = and_(oddLost, at + 1 < (lanei)width);
-    if (any_(or_(lostEven, lostOdd))) atomic_add(counts + 1, count_(lostEven) + count_(lostOdd));
-    const mask badEven = and_(even.rejected, at < (lanei)width), badOdd = and_(odd.rejected, at + 1 < (lanei)width);
-    if (any_(or_(badEven, badOdd))) atomic_add(counts, count_(badEven) + count_(badOdd));
+            LW_UNROLL for (int a = 0; a < (LW_CHANNELS < 3 ? LW_CHANNELS : 3); ++a)
+                LW_STORE(irradiance, irradianceLayout.x + a * irradianceLayout.z + (y + k) * irradianceLayout.y + x, a);
+#undef LW_STORE
+    }
 }

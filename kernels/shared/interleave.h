@@ -16,7 +16,6 @@
 #else
 #define LW_STAGES 3
 #endif
-#define LW_UNROLL _Pragma("unroll")
 
 // Consecutive pixels v[0..n) become v[j] = the pixels congruent to j modulo LW_INTERLEAVE. Seen as a
 // string of bits (vector index, lane), each stage rotates a pixel's place by one bit.

@@ -34,7 +34,7 @@ void JointBilateral::recordDownsample(Executor& executor, const Planes& position
 void JointBilateral::recordUpsample(Executor& executor, const Planes& position, const Planes& normal,
                                     const Planes& halfPosition, const Planes& halfNormal,
                                     const Planes& halfIrradiance, const Planes& irradiance, const Buffer& counts) {
-    executor.run("joint_bilateral.upsample", upsample_, itemsOver(position.width, position.height, upsample_),
+    executor.run("joint_bilateral.upsample", upsample_, itemsOver(position.width, halved(position.height), upsample_),
                  groupOf(upsample_), position, normal, cl_int(position.width), cl_int(position.height), halfPosition,
                  halfNormal, halfIrradiance, irradiance, counts);
 }
@@ -43,7 +43,7 @@ void JointBilateral::recordUpsampleAll(Executor& executor, const Planes& positio
                                        const Planes& halfPosition, const Planes& halfNormal, const Planes& halfLight,
                                        const Planes& irradiance, const Planes& fourth, const Planes& fifth,
                                        const Buffer& counts) {
-    executor.run("joint_bilateral.upsample", upsample_, itemsOver(position.width, position.height, upsample_),
+    executor.run("joint_bilateral.upsample", upsample_, itemsOver(position.width, halved(position.height), upsample_),
                  groupOf(upsample_), position, normal, cl_int(position.width), cl_int(position.height), halfPosition,
                  halfNormal, halfLight, irradiance, fourth, fifth, counts);
 }
