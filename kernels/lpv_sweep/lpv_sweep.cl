@@ -133,20 +133,18 @@ __kernel void lpv_sweep_march(__global const float* sources, __global const floa
             }
 }
 
-// One work-item = LW_WIDTH cells of one order: what its groups, one axis' or the other two's, bring to the cells' sides.
+// One work-item = LW_WIDTH cells of one side, colour and order: what that order's groups, one axis' or the other two's, bring there.
 __kernel void lpv_sweep_combine(__global const float* parts, int size, __global float* sides) {
-    const int cells = size * size * size, at = (int)get_global_id(0) * LW_WIDTH, order = (int)get_global_id(1);
-    if (at >= cells || order >= LW_SWEEP_ORDERS) return;
+    const int cells = size * size * size, at = (int)get_global_id(0) * LW_WIDTH, plane = (int)get_global_id(1);
+    if (at >= cells || plane >= LW_SWEEP_ORDERS * LW_SWEEP_SIDES * LW_SWEEP_COLOURS) return;
+    const int order = plane / (LW_SWEEP_SIDES * LW_SWEEP_COLOURS), side = plane / LW_SWEEP_COLOURS % LW_SWEEP_SIDES;
+    const int axis = side / 2, positive = side & 1;  // of the light that the side meets
+    const int part = LW_SWEEP_COLOURS * axis + plane % LW_SWEEP_COLOURS;
     const int first = order == 0 ? 8 : 0, last = order == 0 ? LW_SWEEP_GROUPS : 8;
-    for (int side = 0; side < LW_SWEEP_SIDES; ++side)
-        for (int c = 0; c < LW_SWEEP_COLOURS; ++c) {
-            const int axis = side / 2, positive = side & 1;  // of the light that the side meets
-            real sum = (real)0.0f;
-            for (int group = first; group < last; ++group)
-                if ((group >> axis & 1) == positive)
-                    sum += load(parts, (group * LW_SWEEP_PARTS + LW_SWEEP_COLOURS * axis + c) * cells + at);
-            store(sum, sides, ((order * LW_SWEEP_SIDES + side) * LW_SWEEP_COLOURS + c) * cells + at);
-        }
+    real sum = (real)0.0f;
+    for (int group = first; group < last; ++group)
+        if ((group >> axis & 1) == positive) sum += load_whole(parts + (group * LW_SWEEP_PARTS + part) * cells + at);
+    store(sum, sides, plane * cells + at);
 }
 
 // How open a cell is to readers at least: where all eight cells around a point are closed they still have their light to show.

@@ -10,46 +10,48 @@
 #include "shared/vpl_list.h"
 #include "shared/whole_sums.h"
 
+// The light of one cell; bits of the normals that have some.
 typedef struct {
-    long sums[9];
-    int cell, bins[3];
+    long sums[LW_SWEEP_SOURCES];
+    int cell;
+    uint bits;
 } sweep_lights;
 
 LW_FN void end_lights(sweep_lights* run, __global uint* sums, __global uint* marks) {
-    if (run->cell < 0) return;
+    if (run->bits) atomic_or(marks + run->cell, run->bits);
     __global uint* to = sums + 2 * LW_SWEEP_SOURCES * run->cell;
-    uint bits = 0u;
-    for (int k = 0; k < 3; ++k)
-        for (int c = 0; c < 3; ++c) {
-            if (run->sums[3 * k + c]) bits |= 1u << run->bins[k];
-            add_long(to + 2 * (LW_SWEEP_COLOURS * run->bins[k] + c), run->sums[3 * k + c]);
-            run->sums[3 * k + c] = 0;
+    while (run->bits) {
+        const int k = LW_SWEEP_COLOURS * take_lowest(&run->bits);
+        for (int c = 0; c < LW_SWEEP_COLOURS; ++c) {
+            add_long(to + 2 * (k + c), run->sums[k + c]);
+            run->sums[k + c] = 0;
         }
-    if (bits) atomic_or(marks + run->cell, bits);
+    }
 }
 
-LW_FN sweep_lights no_lights(void) {
-    sweep_lights run;
-    for (int i = 0; i < 9; ++i) run.sums[i] = 0;
-    for (int k = 0; k < 3; ++k) run.bins[k] = 0;
-    run.cell = -1;
-    return run;
+LW_FN void no_lights(sweep_lights* run) {
+    for (int i = 0; i < LW_SWEEP_SOURCES; ++i) run->sums[i] = 0;
+    run->cell = -1;
+    run->bits = 0u;
 }
 
 // 1 where no cell takes it.
 LW_FN int add_light(sweep_lights* run, const LwLpvPlace place, int cell, const float* flux, float nx, float ny, float nz,
                     __global uint* sums, __global uint* marks) {
-    const sweep_normal n = normal_of(nx, ny, nz);
-    if (cell != run->cell || n.bins[0] != run->bins[0] || n.bins[1] != run->bins[1] || n.bins[2] != run->bins[2]) {
+    if (cell != run->cell) {
         end_lights(run, sums, marks);
         run->cell = cell;
-        for (int k = 0; k < 3; ++k) run->bins[k] = n.bins[k];
     }
     if (cell < 0) return 1;
+    const sweep_normal n = normal_of(nx, ny, nz);
     // All of the flux, no more: the shares' sum is 1 to 1.128.
     const float scale = 1.0f / (n.shares[0] + n.shares[1] + n.shares[2]);
-    for (int k = 0; k < 3; ++k)
-        for (int c = 0; c < 3; ++c) run->sums[3 * k + c] += whole(flux[c] * (n.shares[k] * scale), place);
+    for (int k = 0; k < 3; ++k) {
+        if (!(n.shares[k] > 0.0f)) continue;
+        run->bits |= 1u << n.bins[k];
+        long* to = run->sums + LW_SWEEP_COLOURS * n.bins[k];
+        for (int c = 0; c < LW_SWEEP_COLOURS; ++c) to[c] += whole(flux[c] * (n.shares[k] * scale), place);
+    }
     return 0;
 }
 
@@ -60,7 +62,8 @@ __kernel void lpv_sweep_inject_texels(__global const float* texels, int4 layout,
     const LwLpvPlace place = *grid;
     __global uint* marks = sums + sweep_light_marks(size);
     __global const float* base = texels + layout.x;
-    sweep_lights run = no_lights();
+    sweep_lights run;
+    no_lights(&run);
     int missed = 0;
     for (int i = first; i < last; ++i) {
         __global const float* p = base + i;
@@ -81,7 +84,8 @@ __kernel void lpv_sweep_inject_vpls(__global const lw_vpl* vpls, int count, __gl
     const int first = lw_list_index() * LW_SWEEP_RUN, last = min(first + LW_SWEEP_RUN, count);
     const LwLpvPlace place = *grid;
     __global uint* marks = sums + sweep_light_marks(size);
-    sweep_lights run = no_lights();
+    sweep_lights run;
+    no_lights(&run);
     int missed = 0;
     for (int i = first; i < last; ++i) {
         const lw_vpl vpl = vpls[i];
@@ -119,13 +123,14 @@ __kernel void lpv_sweep_unit(__global const LwLpvPlace* grid, __global const uin
 
 // One work-item = LW_SWEEP_RUN surfels: what they send of what arrives at them.
 __kernel void lpv_sweep_relight(__global const float* surfels, int stride, int count, __global const LwLpvPlace* grid, int size,
-                                __global const float4* cells, __global uint* sums) {
+                                __global const float16* cells, __global uint* sums) {
     const int first = lw_list_index() * LW_SWEEP_RUN, last = min(first + LW_SWEEP_RUN, count);
     const LwLpvPlace place = *grid;
     const float inverse = place.origin.w, most = LW_SWEEP_MOST_AREA * place.cell.x * place.cell.x;
     if (!(inverse > 0.0f)) return;
     __global uint* marks = sums + sweep_light_marks(size);
-    sweep_lights run = no_lights();
+    sweep_lights run;
+    no_lights(&run);
     for (int i = first; i < last; ++i) {
         __global const float* p = surfels + i;
         const float radius = p[LW_SURFEL_RADIUS * stride];

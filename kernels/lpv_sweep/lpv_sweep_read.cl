@@ -10,7 +10,7 @@
 // neither surface nor background; counts[1]: whose light was brought down; counts[2]: surfaces that the grid does not have.
 __kernel void lpv_sweep_gather(__global const float* position, int4 positionLayout, __global const float* normal,
                                int4 normalLayout, int width, int height, __global const LwLpvPlace* grid, int size,
-                               __global const float4* cells, int hasIrradiance, int hasValidity, __global float* irradiance,
+                               __global const float16* cells, int hasIrradiance, int hasValidity, __global float* irradiance,
                                int4 irradianceLayout, __global float* validity, int4 validityLayout, __global int* counts) {
     const int x = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);
     if (x >= width || y >= height) return;

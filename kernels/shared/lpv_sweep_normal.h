@@ -3,6 +3,7 @@
 #define LW_LPV_SWEEP_NORMAL_H
 
 #include "lpv_sweep_types.h"
+#include "wide.h"
 
 // Lights or surfels of a work-item, which adds up those of one cell and normal before it touches memory that others write as well.
 #define LW_SWEEP_RUN 64

@@ -38,8 +38,9 @@
 #define LW_SWEEP_STOP (LW_SWEEP_SEND + LW_SWEEP_NORMALS)
 #define LW_SWEEP_DIRECTION (LW_SWEEP_STOP + LW_SWEEP_SHEETS)
 
-// Floats of a cell as pixels read it: red, green, blue of each side and how open the cell is, light multiplied by that.
-#define LW_SWEEP_CELL (4 * LW_SWEEP_SIDES)
+// Floats of a cell as pixels read it: red, green, blue of each side and how open the cell is, light multiplied by that; rounded up
+// so that vectors are aligned.
+#define LW_SWEEP_CELL 32
 
 // Cells lie in memory twice: lanes along x (rows along y, slices along z), and lanes along y (rows along x, slices along z), for
 // directions whose dominant axis is x. Numbers of cells to the next row and plane of a sweep: along z size and size^2, in the first

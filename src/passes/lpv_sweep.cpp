@@ -149,7 +149,7 @@ void LpvSweep::recordBounce(Executor& executor) {
     const bool isFirst = bounce_ == 0;
     executor.fill("lpv_sweep.clear", largest_, 0, 0, largest_.bytes());
     const std::size_t vectors = std::size_t(cellsOf(options_)) / combine_.width();
-    executor.run("lpv_sweep.combine", combine_, {vectors, LW_SWEEP_ORDERS}, {16, 1}, parts_, cl_int(size), sides_);
+    executor.run("lpv_sweep.combine", combine_, {vectors, LW_SWEEP_ORDERS * LW_SWEEP_SIDES * LW_SWEEP_COLOURS}, {64, 1}, parts_, cl_int(size), sides_);
     executor.run("lpv_sweep.pack", pack_, {size, size * size}, kCellGroup, sides_, sheets_, cl_int(size), cl_int(isFirst ? 0 : 1),
                  isFirst ? totalCells_ : bounceCells_, totalCells_, largest_);
     nextGroup_ = 0;

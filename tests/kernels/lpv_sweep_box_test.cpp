@@ -67,7 +67,7 @@ double sweepBox(const Box& box, std::uint32_t size, std::uint32_t directions) {
 }  // namespace
 
 // The figures of a prototype in double are 0.03, 0.14, 0.12 for 16 cells a side, 0.03, 0.18, 0.09 for 32.
-TEST_CASE("sweeps light the ceilings of three boxes as polygons do", "[lpv_sweep]") {
+TEST_CASE("sweeps light the ceilings of three boxes as polygons do", "[lpv_sweep][large]") {
     const Box floor{0, 64, 0, 64, 0}, patch{28, 36, 28, 36, 0}, wall{8, 24, 24, 40, 16}, across{24, 40, 24, 40, 16};
     CHECK(sweepBox(floor, 16, 384) < 0.03);
     CHECK(sweepBox(patch, 16, 384) < 0.14);

@@ -118,7 +118,7 @@ TEST_CASE("what arrives is what sums in double say, at both widths", "[lpv_sweep
     CHECK(worst < 1e-5 * most);
 }
 
-TEST_CASE("lights may come in any order, and directions over many frames: the same bits", "[lpv_sweep]") {
+TEST_CASE("lights may come in any order, and directions over many frames: the same bits", "[lpv_sweep][large]") {
     Scattered scene(500, 200);
     SweepRig rig(16, optionsOf(48));
     rig.sweep(scene.lights, scene.discs);
@@ -143,7 +143,7 @@ TEST_CASE("lights may come in any order, and directions over many frames: the sa
     CHECK(spread.pass.bytes() == LpvSweep::estimateBytes(optionsOf(48, kSize, bounces, frames)));
 }
 
-TEST_CASE("every plane that light crosses has all of it, until it leaves at a side", "[lpv_sweep]") {
+TEST_CASE("every plane that light crosses has all of it, until it leaves at a side", "[lpv_sweep][large]") {
     const std::uint32_t count = 384;
     SweepRig rig(16, optionsOf(count));
     const Vec normal = reference::unit({1, 1, 0});
@@ -172,7 +172,7 @@ TEST_CASE("every plane that light crosses has all of it, until it leaves at a si
     }
 }
 
-TEST_CASE("a closed wall stops all light, and is dark and lit where it should be", "[lpv_sweep]") {
+TEST_CASE("a closed wall stops all light, and is dark and lit where it should be", "[lpv_sweep][large]") {
     SweepRig rig(16, optionsOf(384));
     std::vector<lw_vpl> lights;
     std::vector<Disc> wall;
@@ -191,7 +191,7 @@ TEST_CASE("a closed wall stops all light, and is dark and lit where it should be
     for (const double e : dark) CHECK(e < 5e-6);
 }
 
-TEST_CASE("a lit plane does not light itself", "[lpv_sweep]") {
+TEST_CASE("a lit plane does not light itself", "[lpv_sweep][large]") {
     SweepRig rig(16, optionsOf(384));
     const double place = GENERATE(4.0, 4.4, 4.8);
     std::vector<lw_vpl> lights;
@@ -206,7 +206,7 @@ TEST_CASE("a lit plane does not light itself", "[lpv_sweep]") {
 }
 
 // A closed furnace of exitance 1 and albedo rho: each bounce brings rho times the one before, everywhere.
-TEST_CASE("bounces in a closed furnace are a geometric series", "[lpv_sweep]") {
+TEST_CASE("bounces in a closed furnace are a geometric series", "[lpv_sweep][large]") {
     std::vector<lw_vpl> lights;
     std::vector<Disc> discs;
     const double low = 2.0, side = 12.0;
