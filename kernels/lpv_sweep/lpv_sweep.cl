@@ -12,7 +12,7 @@
 // which each lets through u = 1 - alpha: in all t u / (1 - (1 - t) u). This is 1 - c for
 //   u = (1 - c) / (1 - c + x),  x = sum A |n.d| / (s^2 |d_a|)  (= c t),
 // and for few surfels it is the usual 1 - x. Plain u = 1 - x lets (1 - t) / (2 - t) of the light through a closed
-// wall: half of it along the wall, an eighth of even light in all.
+// wall: half of what goes along it.
 //
 // One work-item does all planes of a group of directions, whose signs are the same: so every cell's sum over them stays in
 // registers, and groups' sums are added up in one order. A plane is overwritten in place, from the far end to the near.
