@@ -581,7 +581,7 @@ typedef struct LWLpvDesc {
     int32_t transport;   /**< LWLpvTransport */
     uint32_t directions; /**< of sweeps: 24, 48, 96, 216, 384, 864, 1536 */
     uint32_t bounces;    /**< of sweeps: 1 .. 8, from the second on by what the triangles or surfels send on */
-    uint32_t frames;     /**< that each bounce of a sweep is spread over: 1, 2, 3, 4, 6, 8, 12, 24; the last result shows meanwhile */
+    uint32_t frames;     /**< that each bounce of a sweep is spread over: 1, 2, 4, 6, 8, 12, 24; the last result shows meanwhile */
 } LWLpvDesc;
 
 LW_API void lwDefaultLpv(LWLpvDesc* desc);

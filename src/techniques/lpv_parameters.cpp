@@ -13,7 +13,7 @@ constexpr double kSizeSweep[] = {16, 32, 64};
 constexpr double kStepSweep[] = {0, 8, 16, 32};
 constexpr const char* kTransports[] = {"propagate", "sweep", nullptr};
 constexpr double kDirectionValues[] = {24, 48, 96, 216, 384, 864, 1536};
-constexpr double kFrameValues[] = {1, 2, 3, 4, 6, 8, 12, 24};
+constexpr double kFrameValues[] = {1, 2, 4, 6, 8, 12, 24};
 
 LWParameter centre(const char* name, std::size_t axis) {
     return parameter(name, "of the grid; with an extent only", LW_PARAMETER_FLOAT,
