@@ -562,6 +562,12 @@ typedef struct LWAoDesc {
 
 LW_API void lwDefaultAo(LWAoDesc* desc);
 
+typedef enum LWLpvTransport {
+    LW_LPV_TRANSPORT_PROPAGATE = 0, /**< from cell to cell, as light propagation volumes do: short range, nothing blocks */
+    LW_LPV_TRANSPORT_SWEEP = 1      /**< straight through the grid in a fixed set of directions, stopped by LWGeometry's triangles,
+                                         else its surfels, else the RSMs' texels; `size` at most 64 */
+} LWLpvTransport;
+
 /** Technique "lpv": the light of RSMs and authored VPLs spread through a cubic grid of cells, as two bands of spherical
  *  harmonics, step by step (light propagation volumes). Pixels outside of the grid have validity 0. */
 typedef struct LWLpvDesc {
@@ -572,6 +578,10 @@ typedef struct LWLpvDesc {
                            VPLs and the vertices of the frame's triangles. A fitted grid stays from frame to frame as long as
                            they lie in it and fill three quarters of it; LWFrame::reset fits anew */
     float center[3];  /**< of the grid where `extent` is above 0 */
+    int32_t transport;   /**< LWLpvTransport */
+    uint32_t directions; /**< of sweeps: 24, 48, 96, 216, 384, 864, 1536 */
+    uint32_t bounces;    /**< of sweeps: 1 .. 8, from the second on by what the triangles or surfels send on */
+    uint32_t frames;     /**< that each bounce of a sweep is spread over: 1, 2, 4, 6, 8, 12, 24; the last result shows meanwhile */
 } LWLpvDesc;
 
 LW_API void lwDefaultLpv(LWLpvDesc* desc);

@@ -6,9 +6,11 @@
 // Sums are whole numbers of 64 bits, so that nothing depends on the order of additions: a texel's light is cut to
 // multiples of a power of two that the frame's brightest texel and the number of texels choose (LwLpvFit::bits), with which no
 // sum can overflow. Of n texels the unit is at most 2^-60 n of the brightest one, the error of a sum n units.
+#include "shared/lpv_cells.h"
 #include "shared/lpv_types.h"
 #include "shared/rsm_types.h"
 #include "shared/vpl_list.h"
+#include "shared/whole_sums.h"
 #include "shared/wide.h"
 
 #define LPV_LOBE0_PI 0.2820947918f  // LOBE0 / pi
@@ -150,27 +152,6 @@ __kernel void lpv_grid_fit(__global const uint* state, LwLpvFit fit, __global Lw
     *place = to;
 }
 
-// The cell of a light, or -1.
-LW_FN int cell_of(const LwLpvPlace place, int size, float px, float py, float pz, float nx, float ny, float nz) {
-    const float inverse = place.origin.w, most = (float)size;
-    const float x = (px - place.origin.x) * inverse + 0.5f * nx, y = (py - place.origin.y) * inverse + 0.5f * ny,
-                z = (pz - place.origin.z) * inverse + 0.5f * nz;
-    if (!(inverse > 0.0f && x >= 0.0f && x < most && y >= 0.0f && y < most && z >= 0.0f && z < most)) return -1;
-    return ((int)z * size + (int)y) * size + (int)x;
-}
-
-// Towards zero: rounding to the nearest takes PoCL a hundred times as long.
-LW_FN long whole(float light, const LwLpvPlace place) { return (long)(light * place.cell.y * place.cell.z); }
-
-// Adds to 64 bits in two halves: what overflows the lower one is seen by the one addition that makes it so.
-LW_FN void add_long(__global uint* to, long value) {
-    if (value == 0) return;
-    const uint low = (uint)((ulong)value & 0xffffffffu);
-    const uint before = atomic_add(to, low);
-    const uint high = (uint)((ulong)value >> 32) + (before + low < before ? 1u : 0u);
-    if (high) atomic_add(to + 1, high);
-}
-
 // Sums of one cell's lights; of cell -1 what lies outside.
 typedef struct {
     long sums[LW_LPV_PLANES];
@@ -225,7 +206,7 @@ __kernel void lpv_grid_inject_texels(__global const float* texels, int4 layout, 
         if (!(fmax(fmax(flux[0], flux[1]), flux[2]) > 0.0f)) continue;
         const float nx = p[LW_RSM_NORMAL * stride], ny = p[(LW_RSM_NORMAL + 1) * stride], nz = p[(LW_RSM_NORMAL + 2) * stride];
         const int cell = cell_of(place, size, p[LW_RSM_POSITION * stride], p[(LW_RSM_POSITION + 1) * stride],
-                                 p[(LW_RSM_POSITION + 2) * stride], nx, ny, nz);
+                                 p[(LW_RSM_POSITION + 2) * stride], nx, ny, nz, 0.5f);
         outside += add_light(&run, place, cell, flux, nx, ny, nz, sums);
     }
     end_run(&run, sums);
@@ -246,7 +227,7 @@ __kernel void lpv_grid_inject_vpls(__global const lw_vpl* vpls, int count, __glo
         // Hosts' normals may be 2 % off unit length.
         const float scale = rsqrt(vpl.normal.x * vpl.normal.x + vpl.normal.y * vpl.normal.y + vpl.normal.z * vpl.normal.z);
         const float nx = vpl.normal.x * scale, ny = vpl.normal.y * scale, nz = vpl.normal.z * scale;
-        const int cell = cell_of(place, size, vpl.positionArea.x, vpl.positionArea.y, vpl.positionArea.z, nx, ny, nz);
+        const int cell = cell_of(place, size, vpl.positionArea.x, vpl.positionArea.y, vpl.positionArea.z, nx, ny, nz, 0.5f);
         outside += add_light(&run, place, cell, flux, nx, ny, nz, sums);
     }
     end_run(&run, sums);
@@ -261,7 +242,6 @@ __kernel void lpv_grid_resolve(__global const uint* sums, __global const LwLpvPl
     __global const uint* from = sums + 2 * LW_LPV_PLANES * (line * size + x);
     const int at = lpv_cell(size, x, line % size, line / size), plane = lpv_plane(size);
     for (int c = 0; c < LW_LPV_PLANES; ++c) {
-        const long value = (long)((ulong)from[2 * c + 1] << 32 | (ulong)from[2 * c]);
-        to[c * plane + at] = convert_float(value) * first * second;
+        to[c * plane + at] = convert_float(long_at(from + 2 * c)) * first * second;
     }
 }

@@ -26,6 +26,9 @@ cl_int bitsFor(std::uint64_t lights) {
     return bits;
 }
 
+std::uint64_t texelsOf(const RsmInput& rsms) { return rsms.texels ? rsms.texels.width : 0; }
+Range runsOf(std::uint64_t count) { return gridOver(std::size_t((count + kRun - 1) / kRun)); }
+
 LwLpvFit fitOf(const LpvPlacement& placement, std::uint32_t size, std::uint64_t lights) {
     const auto at = [](const float* p, float w) { return cl_float4{{p[0], p[1], p[2], w}}; };
     LwLpvFit fit{};
@@ -50,36 +53,36 @@ LpvGrid::LpvGrid(Device& device, std::uint32_t size)
       injectVpls_(device.programs().kernel(kProgram, "lpv_grid_inject_vpls")),
       resolve_(device.programs().kernel(kProgram, "lpv_grid_resolve")) {}
 
-void LpvGrid::reserve(Executor& executor, std::uint32_t authoredCount) {
+void LpvGrid::recordPlace(Executor& executor, const RsmInput& rsms, const LWVpl* authored, std::uint32_t authoredCount,
+                          const LpvPlacement& placement) {
+    static_assert(sizeof(LWVpl) == sizeof(lw_vpl), "LWVpl is uploaded as it is");
     authored_.reserve(device_, std::max(authoredCount, 1u) * sizeof(lw_vpl), "frame.vpls");
     state_.reserve(device_, LW_LPV_STATE * sizeof(cl_uint), "bounds of the light");
-    sums_.reserve(device_, sumBytes(size_), "sums of injected light");
-    if (!injected_) injected_ = LpvPropagation::makeGrid(executor, size_, "injected light");
-    if (place_) return;
-    place_ = Buffer(device_, sizeof(LwLpvPlace), "place of the grid");
-    executor.fill("lpv_grid.clear", place_, 0, 0, place_.bytes());
-}
-
-void LpvGrid::record(Executor& executor, const RsmInput& rsms, const LWVpl* authored, std::uint32_t authoredCount,
-                     const LpvPlacement& placement) {
-    reserve(executor, authoredCount);
-    static_assert(sizeof(LWVpl) == sizeof(lw_vpl), "LWVpl is uploaded as it is");
+    if (!place_) {
+        place_ = Buffer(device_, sizeof(LwLpvPlace), "place of the grid");
+        executor.fill("lpv_grid.clear", place_, 0, 0, place_.bytes());
+    }
     if (authoredCount) executor.writeCopy("lpv_grid.upload", authored_, 0, authoredCount * sizeof(lw_vpl), authored);
     executor.fill("lpv_grid.clear", state_, 0, 0, state_.bytes());
-    executor.fill("lpv_grid.clear", sums_, 0, 0, sums_.bytes());
-    const std::uint64_t texels = rsms.texels ? rsms.texels.width : 0;
-    const auto runs = [](std::uint64_t count) { return gridOver(std::size_t((count + kRun - 1) / kRun)); };
+    const std::uint64_t texels = texelsOf(rsms);
     if (texels)
         executor.run("lpv_grid.scan", scanTexels_, gridOver(rsms.rowCount), kListGroup, rsms.texels, rsms.rows,
                      cl_int(rsms.rowCount), state_);
     if (authoredCount)
-        executor.run("lpv_grid.scan", scanVpls_, runs(authoredCount), kListGroup, authored_, cl_int(authoredCount), state_);
+        executor.run("lpv_grid.scan", scanVpls_, runsOf(authoredCount), kListGroup, authored_, cl_int(authoredCount), state_);
     executor.run("lpv_grid.fit", fit_, {1, 1}, {1, 1}, state_, fitOf(placement, size_, texels + authoredCount), place_);
+}
+
+void LpvGrid::recordInject(Executor& executor, const RsmInput& rsms, std::uint32_t authoredCount) {
+    sums_.reserve(device_, sumBytes(size_), "sums of injected light");
+    if (!injected_) injected_ = LpvPropagation::makeGrid(executor, size_, "injected light");
+    executor.fill("lpv_grid.clear", sums_, 0, 0, sums_.bytes());
+    const std::uint64_t texels = texelsOf(rsms);
     if (texels)
-        executor.run("lpv_grid.inject", injectTexels_, runs(texels), kListGroup, rsms.texels, cl_int(texels), place_,
+        executor.run("lpv_grid.inject", injectTexels_, runsOf(texels), kListGroup, rsms.texels, cl_int(texels), place_,
                      cl_int(size_), sums_, state_);
     if (authoredCount)
-        executor.run("lpv_grid.inject", injectVpls_, runs(authoredCount), kListGroup, authored_, cl_int(authoredCount), place_,
+        executor.run("lpv_grid.inject", injectVpls_, runsOf(authoredCount), kListGroup, authored_, cl_int(authoredCount), place_,
                      cl_int(size_), sums_, state_);
     executor.run("lpv_grid.resolve", resolve_, {size_, std::size_t(size_) * size_}, kCellGroup, sums_, place_, cl_int(size_),
                  injected_);
@@ -90,8 +93,11 @@ std::uint64_t LpvGrid::bytes() const {
 }
 
 std::uint64_t LpvGrid::estimateBytes(std::uint32_t size, std::uint32_t authoredCount) {
-    return LW_LPV_STATE * sizeof(cl_uint) + sizeof(LwLpvPlace) + sumBytes(size) + LpvPropagation::gridBytes(size) +
-           std::max(authoredCount, 1u) * sizeof(lw_vpl);
+    return estimatePlaceBytes(authoredCount) + sumBytes(size) + LpvPropagation::gridBytes(size);
+}
+
+std::uint64_t LpvGrid::estimatePlaceBytes(std::uint32_t authoredCount) {
+    return LW_LPV_STATE * sizeof(cl_uint) + sizeof(LwLpvPlace) + std::max(authoredCount, 1u) * sizeof(lw_vpl);
 }
 
 }  // namespace lightwell

@@ -26,17 +26,24 @@ public:
     // Passes "lpv_grid.*". `authored` is read before the call returns. A fitted grid stays as long as the box still fits and
     // is no smaller than three quarters of the grid's inside; then it moves by whole cells, or gets another size.
     void record(Executor& executor, const RsmInput& rsms, const LWVpl* authored, std::uint32_t authoredCount,
-                const LpvPlacement& placement);
+                const LpvPlacement& placement) {
+        recordPlace(executor, rsms, authored, authoredCount, placement);
+        recordInject(executor, rsms, authoredCount);
+    }
+    // Its two halves; the second one where cells shall hold spherical harmonics.
+    void recordPlace(Executor& executor, const RsmInput& rsms, const LWVpl* authored, std::uint32_t authoredCount,
+                     const LpvPlacement& placement);
+    void recordInject(Executor& executor, const RsmInput& rsms, std::uint32_t authoredCount);
 
     const Buffer& injected() const { return injected_; }  // a grid of LpvPropagation's
     const Buffer& place() const { return place_; }        // LwLpvPlace
     const Buffer& state() const { return state_; }        // LW_LPV_OUTSIDE: lights that no cell took
+    const Buffer& authored() const { return authored_; }  // the last frame's VPLs, as lw_vpl
     std::uint64_t bytes() const;
     static std::uint64_t estimateBytes(std::uint32_t size, std::uint32_t authoredCount);
+    static std::uint64_t estimatePlaceBytes(std::uint32_t authoredCount);  // of recordPlace alone
 
 private:
-    void reserve(Executor& executor, std::uint32_t authoredCount);
-
     Device& device_;
     std::uint32_t size_;
     Kernel &scanTexels_, &scanVpls_, &fit_, &injectTexels_, &injectVpls_, &resolve_;

@@ -15,6 +15,7 @@
 #include "passes/lpv_read.h"
 #include "shared/input_limits.h"
 #include "techniques/lpv_parameters.h"
+#include "techniques/lpv_sweep_volume.h"
 #include "techniques/prewarm.h"
 #include "techniques/technique_entry.h"
 
@@ -63,11 +64,13 @@ private:
     float low_[3] = {}, high_[3] = {};
 };
 
-std::vector<LWChoice> unusedInputs(const LWFrame& frame, bool fitted) {
+bool sweeps(const LWLpvDesc& desc) { return desc.transport == LW_LPV_TRANSPORT_SWEEP; }
+
+std::vector<LWChoice> unusedInputs(const LWFrame& frame, bool fitted, bool blocks) {
     constexpr const char* kReason = "not used: technique lpv takes light from RSMs and authored VPLs only";
     std::vector<LWChoice> unused;
     if (frame.sourceViewCount) unused.push_back({"frame.sourceViews", kReason});
-    if (frame.geometry)
+    if (frame.geometry && !blocks)
         unused.push_back({"frame.geometry", fitted && frame.geometry->triangleCount
                                                 ? "triangles: the grid reaches around them; nothing blocks light"
                                                 : "not used: nothing blocks light"});
@@ -106,6 +109,7 @@ public:
           calibration_(LpvPropagation::calibration(desc.size, stepsOf(desc))),
           failures_(device.failures()) {
         volume_.emplace(device, desc.size);
+        if (sweeps(desc)) sweep_.emplace(device, desc);
         for (int a = 0; a < 3; ++a) placement_.centre[a] = desc.center[a];
         placement_.extent = desc.extent;
     }
@@ -113,15 +117,19 @@ public:
     void update(Executor& executor, const LWFrame& frame) override {
         const bool failed = device_.failures() != failures_;
         box_.look(frame.geometry);
+        if (sweep_) sweep_->check(frame);
         rsms_.import(executor, frame);
         failures_ = device_.failures();
-        if (failed) volume_.emplace(device_, desc_.size);  // what its memory holds is not known
+        if (failed) {  // what their memory holds is not known
+            volume_.emplace(device_, desc_.size);
+            if (sweep_) sweep_.emplace(device_, desc_);
+        }
         box_.putInto(placement_);
         placement_.refit = frame.reset != 0 || failed;
-        volume_->grid.record(executor, rsms_, frame.vpls, frame.vplCount, placement_);
-        propagated_ = &volume_->propagation.record(executor, volume_->grid.injected(), stepsOf(desc_));
-        volume_->read.recordPack(executor, *propagated_);
-        unused_ = unusedInputs(frame, desc_.extent == 0.0f);
+        if (sweep_)
+            recordSweep(executor, frame);
+        else
+            recordSteps(executor, frame);
         states_.purge();
         states_.each([](LpvView& state) { state.isRendered = false; });
     }
@@ -134,8 +142,12 @@ public:
         executor.fill("lpv_read.counts", state.counts, 0, 0, kCountBytes);
         const Planes irradiance = state.irradiance.begin(executor, *view, output.irradiance, 3, "output.irradiance");
         const Planes validity = state.validity.begin(executor, *view, output.validity, 1, "output.validity");
-        volume_->read.recordGather(executor, state.gbuffer.position, state.gbuffer.normal, volume_->grid.place(), calibration_,
-                                   irradiance, validity, state.counts);
+        if (sweep_)
+            sweep_->sweep().recordGather(executor, state.gbuffer.position, state.gbuffer.normal, irradiance, validity,
+                                         state.counts);
+        else
+            volume_->read.recordGather(executor, state.gbuffer.position, state.gbuffer.normal, volume_->grid.place(), calibration_,
+                                       irradiance, validity, state.counts);
         state.irradiance.end(executor);
         state.validity.end(executor);
         state.isRendered = true;
@@ -144,9 +156,16 @@ public:
     void prewarm(Executor& executor, const std::shared_ptr<View>&) override {
         LWLpvDesc desc = desc_;
         desc.steps = std::min(stepsOf(desc), 2u);
-        LpvTechnique twin(device_, desc);
-        twin.prewarmVpls(executor);
-        exerciseTechnique(executor, twin);
+        if (sweep_) {  // the same kernels, in less memory
+            desc.size = 16;
+            desc.directions = 24;
+        }
+        for (int hidden = 0; hidden < (sweep_ ? LpvSweepVolume::kSources : 1); ++hidden) {
+            LpvTechnique twin(device_, desc);
+            if (twin.sweep_) twin.sweep_->hide(hidden);
+            twin.prewarmVpls(executor);
+            exerciseTechnique(executor, twin);
+        }
     }
 
     Report report() override;
@@ -154,6 +173,18 @@ public:
     std::uint64_t bytes() const override;
 
 private:
+    void recordSteps(Executor& executor, const LWFrame& frame) {
+        volume_->grid.record(executor, rsms_, frame.vpls, frame.vplCount, placement_);
+        propagated_ = &volume_->propagation.record(executor, volume_->grid.injected(), stepsOf(desc_));
+        volume_->read.recordPack(executor, *propagated_);
+        unused_ = unusedInputs(frame, desc_.extent == 0.0f, false);
+    }
+    void recordSweep(Executor& executor, const LWFrame& frame) {
+        volume_->grid.recordPlace(executor, rsms_, frame.vpls, frame.vplCount, placement_);
+        sweep_->record(executor, frame, rsms_, volume_->grid, placement_.refit);
+        unused_ = unusedInputs(frame, desc_.extent == 0.0f, true);
+        for (const LWChoice& choice : sweep_->choices(frame)) unused_.push_back(choice);
+    }
     // A frame of VPLs, which exerciseTechnique's have none of.
     void prewarmVpls(Executor& executor) {
         LWVpl vpl{};
@@ -173,6 +204,7 @@ private:
     LpvPlacement placement_;
     RsmInput rsms_;
     std::optional<Volume> volume_;
+    std::optional<LpvSweepVolume> sweep_;  // with transport=sweep; of `volume_` only the grid's place is used then
     const Buffer* propagated_ = nullptr;
     PerView<LpvView> states_;
     std::vector<LWChoice> unused_;  // of the last update
@@ -182,9 +214,13 @@ Report LpvTechnique::report() {
     Report report;
     rsms_.report(report);
     for (const LWChoice& choice : unused_) report.choose(choice.name, choice.reason);
-    report.counts.push_back({"steps", stepsOf(desc_)});
+    if (sweep_)
+        sweep_->report(report);
+    else
+        report.counts.push_back({"steps", stepsOf(desc_)});
     for (const char* name : {"lights_outside", "rejected_pixels", "saturated_pixels", "pixels_outside"})
         report.counts.push_back({name, 0});
+    if (sweep_ && sweep_->sweep().outside()) report.read(device_, "lights_outside", sweep_->sweep().outside(), 0);
     if (propagated_) report.read(device_, "lights_outside", volume_->grid.state(), LW_LPV_OUTSIDE * sizeof(cl_uint));
     states_.each([&](const LpvView& state) {
         if (!state.isRendered) return;
@@ -214,7 +250,7 @@ std::vector<DebugView> LpvTechnique::debugViews(const View* view) {
 }
 
 std::uint64_t LpvTechnique::bytes() const {
-    std::uint64_t total = rsms_.bytes() + volume_->bytes();
+    std::uint64_t total = rsms_.bytes() + volume_->bytes() + (sweep_ ? sweep_->bytes() : 0);
     states_.each([&](const LpvView& state) {
         total += state.gbuffer.bytes() + state.irradiance.bytes() + state.validity.bytes() + state.counts.bytes();
     });
@@ -225,8 +261,13 @@ std::uint64_t LpvTechnique::bytes() const {
 
 std::uint64_t estimateBytes(const void* desc, const LWViewDesc& view, const FrameShape& shape) {
     const LWLpvDesc& lpv = *static_cast<const LWLpvDesc*>(desc);
-    return RsmInput::estimateBytes(shape) + LpvGrid::estimateBytes(lpv.size, shape.vplCount) +
-           LpvPropagation::estimateBytes(lpv.size, stepsOf(lpv)) + LpvRead::estimateBytes(lpv.size) +
+    std::uint64_t volume = 0;
+    if (sweeps(lpv))
+        volume = LpvGrid::estimatePlaceBytes(shape.vplCount) + LpvSweepVolume::estimateBytes(lpv, shape);
+    else
+        volume = LpvGrid::estimateBytes(lpv.size, shape.vplCount) + LpvPropagation::estimateBytes(lpv.size, stepsOf(lpv)) +
+                 LpvRead::estimateBytes(lpv.size);
+    return RsmInput::estimateBytes(shape) + volume +
            GBufferInput::estimateBytes(view, 0, shape.uploads) + OutputTarget::estimateBytes(view, 3, shape.uploads) +
            OutputTarget::estimateBytes(view, 1, shape.uploads) + kCountBytes;
 }

@@ -11,6 +11,9 @@ namespace {
 constexpr double kSizeValues[] = {16, 32, 64, 128};
 constexpr double kSizeSweep[] = {16, 32, 64};
 constexpr double kStepSweep[] = {0, 8, 16, 32};
+constexpr const char* kTransports[] = {"propagate", "sweep", nullptr};
+constexpr double kDirectionValues[] = {24, 48, 96, 216, 384, 864, 1536};
+constexpr double kFrameValues[] = {1, 2, 4, 6, 8, 12, 24};
 
 LWParameter centre(const char* name, std::size_t axis) {
     return parameter(name, "of the grid; with an extent only", LW_PARAMETER_FLOAT,
@@ -34,12 +37,27 @@ const std::vector<LWParameter>& lpvParameters() {
               kStepSweep),
         parameter("extent", "length of the grid's sides, in units of length; 0: fitted to what the lights and the triangles reach",
                   LW_PARAMETER_FLOAT, offsetof(LWLpvDesc, extent), 0, 1e9, 0),
-        centre("center_x", 0), centre("center_y", 1), centre("center_z", 2)};
+        centre("center_x", 0), centre("center_y", 1), centre("center_z", 2),
+        choosing(parameter("transport",
+                           "propagate: from cell to cell; sweep: straight, in a fixed set of directions, stopped by surfaces, to 64 cells "
+                           "a side",
+                           LW_PARAMETER_ENUM, offsetof(LWLpvDesc, transport), 0, 1, 0),
+                 kTransports),
+        allowing(parameter("directions",
+                           "of sweeps: few make beams of small lights, 6 (size / 4)^2 and more do not; time grows with their number",
+                           LW_PARAMETER_UINT, offsetof(LWLpvDesc, directions), 24, 1536, 384),
+                 kDirectionValues),
+        parameter("bounces", "of sweeps: light that surfels or triangles send on again; each takes a sweep", LW_PARAMETER_UINT,
+                  offsetof(LWLpvDesc, bounces), 1, 8, 1),
+        allowing(parameter("frames",
+                           "that the directions of a bounce's sweep are spread over: less time a frame, and light as many frames late",
+                           LW_PARAMETER_UINT, offsetof(LWLpvDesc, frames), 1, 24, 1),
+                 kFrameValues)};
     return table;
 }
 
 const std::vector<LWSetting>& lpvSettings() {
-    static const std::vector<LWSetting> settings = {{"fast", "size=16 steps=16"}, {"fine", "size=64 steps=32"}};
+    static const std::vector<LWSetting> settings = {{"fast", "size=16 steps=16"}, {"fine", "size=64 steps=32"}, {"sweep", "transport=sweep size=16"}};
     return settings;
 }
 
@@ -50,4 +68,7 @@ extern "C" void lwDefaultLpv(LWLpvDesc* desc) {
     *desc = LWLpvDesc{};
     desc->structSize = sizeof *desc;
     desc->size = 32;
+    desc->transport = LW_LPV_TRANSPORT_PROPAGATE;
+    desc->directions = 384;
+    desc->bounces = desc->frames = 1;
 }

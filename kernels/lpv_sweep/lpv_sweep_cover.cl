@@ -1,0 +1,116 @@
+// What surfaces cover of the cells of a sweep's grid: area goes into the cell half a cell behind its surface, so that neither
+// what the surface sends, half a cell in front of it, nor what arrives there is stopped by it. Sums are whole numbers of 64
+// bits: the same bits in any order.
+#include "shared/lpv_cells.h"
+#include "shared/lpv_sweep_normal.h"
+#include "shared/lpv_types.h"
+#include "shared/rsm_types.h"
+#include "shared/surfel_types.h"
+#include "shared/vpl_list.h"
+#include "shared/whole_sums.h"
+
+typedef struct {
+    long sums[4];  // of the three sheets, and what they cover
+    int cell, sheets[3];
+} sweep_areas;
+
+LW_FN void end_areas(sweep_areas* run, __global uint* sums, __global uint* marks) {
+    if (run->cell < 0) return;
+    __global uint* to = sums + 2 * LW_SWEEP_BLOCKS * run->cell;
+    uint bits = 0u;
+    for (int k = 0; k < 3; ++k) {
+        if (run->sums[k]) bits |= 1u << run->sheets[k];
+        add_long(to + 2 * run->sheets[k], run->sums[k]);
+    }
+    if (bits) atomic_or(marks + run->cell, bits);
+    add_long(to + 2 * LW_SWEEP_COVER, run->sums[3]);
+    for (int k = 0; k < 4; ++k) run->sums[k] = 0;
+}
+
+LW_FN sweep_areas no_areas(void) {
+    sweep_areas run;
+    for (int k = 0; k < 4; ++k) run.sums[k] = 0;
+    for (int k = 0; k < 3; ++k) run.sheets[k] = 0;
+    run.cell = -1;
+    return run;
+}
+
+LW_FN float largest_coordinate(float nx, float ny, float nz) { return fmax(fmax(fabs(nx), fabs(ny)), fabs(nz)); }
+
+LW_FN void add_area(sweep_areas* run, const LwLpvPlace place, int size, float area, float px, float py, float pz, float nx,
+                    float ny, float nz, __global uint* sums, __global uint* marks) {
+    const int cell = cell_of(place, size, px, py, pz, nx, ny, nz, -0.5f);
+    const sweep_normal n = normal_of(nx, ny, nz);
+    int sheets[3];
+    for (int k = 0; k < 3; ++k) sheets[k] = min(n.bins[k], LW_SWEEP_NORMALS - 1 - n.bins[k]);
+    if (cell != run->cell || sheets[0] != run->sheets[0] || sheets[1] != run->sheets[1] || sheets[2] != run->sheets[2]) {
+        end_areas(run, sums, marks);
+        run->cell = cell;
+        for (int k = 0; k < 3; ++k) run->sheets[k] = sheets[k];
+    }
+    if (cell < 0) return;
+    // In sides of a cell. The shares as they are: a plane across a cell shall close it, and what is too much lies along the plane.
+    const float full = fmin(area * place.origin.w * place.origin.w, LW_SWEEP_MOST_AREA) * (float)(1 << LW_SWEEP_AREA_BITS);
+    for (int k = 0; k < 3; ++k) run->sums[k] += (long)(full * n.shares[k]);
+    run->sums[3] += (long)(full * largest_coordinate(nx, ny, nz));
+}
+
+// One work-item in all: is what covers the cells still right? anew: 1 where the host knows that it is not.
+__kernel void lpv_sweep_begin(__global const LwLpvPlace* grid, uint low, uint high, int anew, __global LwSweepCover* state) {
+    if (get_global_id(0) != 0) return;
+    const LwLpvPlace place = *grid;
+    const float4 last = state->origin;
+    const int same = place.origin.x == last.x && place.origin.y == last.y && place.origin.z == last.z && place.origin.w == last.w &&
+                     state->revision[0] == low && state->revision[1] == high;
+    state->stale = anew || !same;
+    state->origin = place.origin;
+    state->revision[0] = low;
+    state->revision[1] = high;
+}
+
+// Empties the sums of area and their marks where they are stale. One work-item = 16 words.
+__kernel void lpv_sweep_clear(__global uint16* sums, int count, __global const LwSweepCover* state) {
+    const int i = lw_list_index();
+    if (i < count && state->stale) sums[i] = (uint16)(0u);
+}
+
+// One work-item = LW_SWEEP_RUN texels of all maps, lit or not. scale: of their areas.
+__kernel void lpv_sweep_cover_texels(__global const float* texels, int4 layout, int count, __global const LwLpvPlace* grid,
+                                     int size, float scale, __global const LwSweepCover* state,
+                                     __global uint* sums) {
+    if (!state->stale) return;
+    const int first = lw_list_index() * LW_SWEEP_RUN, last = min(first + LW_SWEEP_RUN, count), stride = layout.z;
+    const LwLpvPlace place = *grid;
+    __global uint* marks = sums + sweep_area_marks(size);
+    __global const float* base = texels + layout.x;
+    sweep_areas run = no_areas();
+    for (int i = first; i < last; ++i) {
+        __global const float* p = base + i;
+        const float nx = p[LW_RSM_NORMAL * stride], ny = p[(LW_RSM_NORMAL + 1) * stride], nz = p[(LW_RSM_NORMAL + 2) * stride];
+        const float area = scale * p[LW_RSM_AREA * stride];
+        if (!(nx * nx + ny * ny + nz * nz > 0.0f && area > 0.0f)) continue;
+        add_area(&run, place, size, area, p[LW_RSM_POSITION * stride], p[(LW_RSM_POSITION + 1) * stride],
+                 p[(LW_RSM_POSITION + 2) * stride], nx, ny, nz, sums, marks);
+    }
+    end_areas(&run, sums, marks);
+}
+
+// One work-item = LW_SWEEP_RUN surfels. scale: of their areas.
+__kernel void lpv_sweep_cover_surfels(__global const float* surfels, int stride, int count, __global const LwLpvPlace* grid,
+                                      int size, float scale, __global const LwSweepCover* state,
+                                      __global uint* sums) {
+    if (!state->stale) return;
+    const int first = lw_list_index() * LW_SWEEP_RUN, last = min(first + LW_SWEEP_RUN, count);
+    const LwLpvPlace place = *grid;
+    __global uint* marks = sums + sweep_area_marks(size);
+    sweep_areas run = no_areas();
+    for (int i = first; i < last; ++i) {
+        __global const float* p = surfels + i;
+        const float radius = p[LW_SURFEL_RADIUS * stride];
+        if (!(radius > 0.0f)) continue;
+        add_area(&run, place, size, scale * M_PI_F * radius * radius, p[LW_SURFEL_POSITION * stride],
+                 p[(LW_SURFEL_POSITION + 1) * stride], p[(LW_SURFEL_POSITION + 2) * stride], p[LW_SURFEL_NORMAL * stride],
+                 p[(LW_SURFEL_NORMAL + 1) * stride], p[(LW_SURFEL_NORMAL + 2) * stride], sums, marks);
+    }
+    end_areas(&run, sums, marks);
+}

@@ -1,0 +1,90 @@
+#include "techniques/lpv_sweep_volume.h"
+
+#include "compute/device.h"
+#include "compute/error.h"
+
+namespace lightwell {
+namespace {
+
+// Surfels that triangles are drawn as, for each cell of a face of the grid: what covers a cell is then known to some percent. Fewer: walls of a cell's size leak; more: time, when triangles change.
+constexpr std::uint32_t kSurfelsPerSide = 256;
+// Of sampled surfels' areas, so that the chance of the draw leaves no holes in a wall. More: half covered cells are closed.
+constexpr float kSampledArea = 1.25f;
+
+std::uint32_t sampledCount(const LWLpvDesc& desc) { return kSurfelsPerSide * desc.size * desc.size; }
+
+LpvSweepOptions optionsOf(const LWLpvDesc& desc) {
+    LpvSweepOptions options;
+    options.size = desc.size;
+    options.directions = desc.directions;
+    options.bounces = desc.bounces;
+    options.frames = desc.frames;
+    return options;
+}
+
+const LWLpvDesc& checked(const LWLpvDesc& desc) {
+    if (desc.size > LpvSweep::kLargestSize)
+        fail(LW_ERROR_INVALID_ARGUMENT, "desc.size: expected at most ", LpvSweep::kLargestSize, " with transport=sweep, got ",
+             desc.size);
+    return desc;
+}
+
+}  // namespace
+
+LpvSweepVolume::LpvSweepVolume(Device& device, const LWLpvDesc& desc)
+    : device_(device), desc_(checked(desc)), sampling_(device), sweep_(device, optionsOf(desc)) {}
+
+void LpvSweepVolume::check(const LWFrame& frame) const {
+    const Source source = sourceOf(frame);
+    if (source == Source::triangles) triangles_.check(frame.geometry);
+    if (source == Source::surfels) SurfelInput::check(device_, frame.geometry);
+}
+
+void LpvSweepVolume::record(Executor& executor, const LWFrame& frame, const RsmInput& rsms, const LpvGrid& grid, bool restart) {
+    const Source source = sourceOf(frame);
+    if (source != source_) restart = true;  // revisions count within a source
+    source_ = source;
+    SurfelSet set;
+    if (source == Source::triangles) {
+        triangles_.import(executor, frame.geometry);
+        sampling_.record(executor, triangles_, sampledCount(desc_));
+        set = sampling_.surfels();
+    } else if (source == Source::surfels) {
+        surfels_.import(executor, frame.geometry);
+        set = surfels_.surfels();
+    }
+    sweep_.record(executor, {rsms, grid.authored(), frame.vplCount, grid.place(), set,
+                             source == Source::triangles ? kSampledArea : 1.0f, restart});
+}
+
+std::vector<LWChoice> LpvSweepVolume::choices(const LWFrame& frame) const {
+    std::vector<LWChoice> choices = {
+        {"blockers", source_ == Source::triangles ? "triangles, sampled to surfels by area"
+                     : source_ == Source::surfels ? "the host's surfels"
+                                                  : "the texels of all RSMs: what no light sees blocks nothing"}};
+    if (source_ == Source::none && desc_.bounces > 1)
+        choices.push_back({"bounces", "one: without triangles and surfels there is nothing to send light on"});
+    if (source_ == Source::triangles && frame.geometry->surfelCount)
+        choices.push_back({"frame.geometry.surfels", "not used: the triangles are"});
+    return choices;
+}
+
+void LpvSweepVolume::report(Report& report) const {
+    if (source_ == Source::triangles) {
+        triangles_.report(report);
+        report.counts.push_back({"surfels", sampling_.surfels().count});
+    } else if (source_ == Source::surfels) {
+        surfels_.report(report);
+    }
+}
+
+std::uint64_t LpvSweepVolume::estimateBytes(const LWLpvDesc& desc, const FrameShape& shape) {
+    std::uint64_t total = LpvSweep::estimateBytes(optionsOf(desc));
+    const Source source = sourceOf(shape.surfels, shape.triangles);
+    if (source == Source::triangles)
+        total += GeometryInput::estimateBytes(shape.triangles) + SurfelSampling::estimateBytes(shape.triangles, sampledCount(desc));
+    if (source == Source::surfels) total += SurfelInput::estimateBytes(shape.surfels, shape.uploads);
+    return total;
+}
+
+}  // namespace lightwell

@@ -1,0 +1,174 @@
+// Technique lpv with transport=sweep through the C API.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "support/lit_room.h"
+#include "support/packed_light.h"
+#include "support/scoped_api.h"
+
+using namespace lightwell::test;
+using Catch::Matchers::Contains;
+using lightwell::reference::Vec;
+
+namespace {
+
+constexpr std::uint32_t kWidth = 45, kHeight = 16;
+
+double evenProfile(double, double) { return 1.0; }
+
+LWLpvDesc sweepOf(std::uint32_t size) {
+    LWLpvDesc desc;
+    lwDefaultLpv(&desc);
+    desc.size = size;
+    desc.transport = LW_LPV_TRANSPORT_SWEEP;
+    desc.directions = 96;
+    return desc;
+}
+
+// The room's floor and back wall, and if asked for a plate half way up, as the host's triangles.
+struct Room {
+    std::vector<float> vertices;
+    LWGeometry geometry{};
+    explicit Room(bool plate) {
+        quad({-0.5, 0, 0}, {0, 0, 1}, {1, 0, 0});
+        quad({-0.5, 0, 0}, {1, 0, 0}, {0, 1, 0});
+        if (plate) quad({-0.5, 0.5, 0}, {1, 0, 0}, {0, 0, 1});
+        geometry.structSize = sizeof geometry;
+        geometry.vertices = vertices.data();
+        geometry.vertexCount = std::uint32_t(vertices.size() / 3);
+        geometry.triangleCount = geometry.vertexCount / 3;
+    }
+    void quad(Vec p, Vec u, Vec v) {
+        for (const Vec corner : {p, p + u, p + u + v, p, p + u + v, p + v})
+            for (const double x : {corner.x, corner.y, corner.z}) vertices.push_back(float(x));
+    }
+};
+
+LWFrame frameOf(const std::vector<LWLight>& lights, const LWGeometry* geometry) {
+    LWFrame frame{};
+    frame.structSize = sizeof frame;
+    frame.lights = lights.data();
+    frame.lightCount = std::uint32_t(lights.size());
+    frame.geometry = geometry;
+    return frame;
+}
+
+std::vector<float> render(TestTechnique& technique, LWDevice device, const TestView& view, const LWGBuffer& gbuffer) {
+    PlanarPixels irradiance(view.width(), view.height(), 3);
+    LWOutput output{};
+    output.structSize = sizeof output;
+    output.irradiance = irradiance.image();
+    const LWStatus status = lwRender(technique, view, &gbuffer, &output);
+    INFO(lastError(device));
+    REQUIRE(status == LW_SUCCESS);
+    REQUIRE(lwFinish(device) == LW_SUCCESS);
+    return irradiance.packed();
+}
+
+std::vector<float> render(LWDevice device, const LWLpvDesc& desc, const LWFrame& frame, const WallAndCeiling& scene) {
+    TestTechnique technique(device, "lpv", &desc);
+    TestView view(device, kWidth, kHeight);
+    technique.update(frame);
+    return render(technique, device, view, scene.gbuffer);
+}
+
+}  // namespace
+
+TEST_CASE("a sweep lights the ceiling as a polygon does, and a plate between stops it", "[lpv]") {
+    TestDevice device(16);
+    LitFloor floor(96, evenProfile);
+    WallAndCeiling scene(kWidth, kHeight);
+    const std::vector<LWLight> lights = {floor.light};
+    const Room open(false), closed(true);
+    LWLpvDesc desc = sweepOf(32);
+    desc.directions = 384;
+    const auto lit = render(device, desc, frameOf(lights, &open.geometry), scene),
+               dark = render(device, desc, frameOf(lights, &closed.geometry), scene);
+    double squared = 0.0, truths = 0.0, shadow = 0.0;
+    for (std::uint32_t y = kHeight / 2; y < kHeight; ++y)
+        for (std::uint32_t x = 1; x < kWidth; ++x) {
+            const double truth = polygonIrradiance({{-0.5, 0, 0}, {-0.5, 0, 1}, {0.5, 0, 1}, {0.5, 0, 0}}, scene.position.get(x, y),
+                                                   {0, -1, 0}, 1.0);
+            const double found = double(lit[y * kWidth + x]);
+            squared += (found - truth) * (found - truth);
+            truths += truth * truth;
+            shadow += double(dark[y * kWidth + x]) / (kWidth * kHeight / 2);
+        }
+    CHECK(std::sqrt(squared / truths) < 0.05);
+    // The floor's edges lie open around the plate's by a cell.
+    CHECK(shadow < 0.01);
+}
+
+TEST_CASE("sweeps: same input, same bits, over runs, widths and frames that share one out", "[lpv]") {
+    LitFloor floor(64, evenProfile);
+    WallAndCeiling scene(kWidth, kHeight);
+    const Room room(true);
+    const std::vector<LWLight> lights = {floor.light};
+    LWLpvDesc desc = sweepOf(16);
+    desc.bounces = 2;
+    TestDevice wide(16), scalar(1);
+    const auto first = render(wide, desc, frameOf(lights, &room.geometry), scene);
+    CHECK(meanOf(first) > 0.0);
+    for (int run = 0; run < 5; ++run) CHECK(render(wide, desc, frameOf(lights, &room.geometry), scene) == first);
+    CHECK(render(scalar, desc, frameOf(lights, &room.geometry), scene) == first);
+    desc.frames = 4;
+    TestTechnique technique(wide, "lpv", &desc);
+    TestView view(wide, kWidth, kHeight);
+    technique.update(frameOf({}, &room.geometry));
+    technique.update(frameOf(lights, &room.geometry));
+    for (int frame = 1; frame < 8; ++frame) {
+        CHECK(meanOf(render(technique, wide, view, scene.gbuffer)) == 0.0);
+        technique.update(frameOf(lights, &room.geometry));
+    }
+    CHECK(render(technique, wide, view, scene.gbuffer) == first);
+    LWFrame cut = frameOf({}, &room.geometry);
+    cut.reset = 1;
+    technique.update(cut);
+    CHECK(meanOf(render(technique, wide, view, scene.gbuffer)) == 0.0);
+}
+
+TEST_CASE("sweeps compile nothing after lwPrewarm, and take the memory that was estimated", "[lpv]") {
+    TestDevice device(16);
+    LitFloor floor(32, evenProfile);
+    WallAndCeiling scene(kWidth, kHeight);
+    const Room room(false);
+    LWLpvDesc desc = sweepOf(16);
+    desc.bounces = 2;
+    desc.frames = 2;
+    TestTechnique technique(device, "lpv", &desc);
+    TestView view(device, kWidth, kHeight);
+    REQUIRE(lwPrewarm(technique, view) == LW_SUCCESS);
+    const LWDeviceInfo before = device.info();
+    const std::vector<LWLight> lights = {floor.light};
+    technique.update(frameOf(lights, &room.geometry));
+    render(technique, device, view, scene.gbuffer);
+    LWViewDesc size{};
+    size.structSize = sizeof size;
+    size.maxWidth = kWidth;
+    size.maxHeight = kHeight;
+    std::uint64_t estimate = 0;
+    const LWFrame frame = frameOf(lights, &room.geometry);
+    REQUIRE(lwEstimateFrameMemory(device, "lpv", &desc, &size, &frame, &estimate) == LW_SUCCESS);
+    CHECK(technique.stats().deviceBytes <= estimate);
+    CHECK(technique.stats().deviceBytes > estimate / 2);
+    technique.update(frameOf(lights, nullptr));
+    render(technique, device, view, scene.gbuffer);
+    CHECK(device.info().programsBuilt == before.programsBuilt);
+    CHECK(device.info().kernelsSpecialised == before.kernelsSpecialised);
+}
+
+TEST_CASE("sweeps refuse what they cannot do, and say what", "[lpv]") {
+    TestDevice device(16);
+    LWTechnique none = nullptr;
+    LWLpvDesc desc = sweepOf(128);
+    CHECK(lwCreateLpv(device, &desc, &none) == LW_ERROR_INVALID_ARGUMENT);
+    CHECK_THAT(lastError(device), Contains("size") && Contains("64") && Contains("128"));
+    desc = sweepOf(16);
+    desc.directions = 25;
+    CHECK(lwCreateLpv(device, &desc, &none) == LW_ERROR_INVALID_ARGUMENT);
+    CHECK_THAT(lastError(device), Contains("directions") && Contains("25"));
+    desc = sweepOf(16);
+    desc.frames = 5;
+    CHECK(lwCreateLpv(device, &desc, &none) == LW_ERROR_INVALID_ARGUMENT);
+    CHECK_THAT(lastError(device), Contains("frames") && Contains("5"));
+}
