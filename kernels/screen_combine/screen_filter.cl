@@ -5,6 +5,9 @@
 #ifndef LW_INTERLEAVE
 #define LW_INTERLEAVE 4  // 2, 4
 #endif
+#ifndef LW_PLANNED
+#define LW_PLANNED 0  // 1: the plan of the frame has the number of samples
+#endif
 #include "shared/wide.h"
 #include "screen_combine.h"
 
@@ -13,10 +16,18 @@
 LW_FN float window_weight(int i) { return i == -LW_REACH || i == LW_REACH ? 0.5f : 1.0f; }
 
 // One work-item = LW_WIDTH texels of one row. light -> filtered: LW_LIGHT_PLANES planes. texels: the level of the
-// pyramid, whose rows have columns without a surface either side. alike: all patterns are, and nothing is to be filtered.
+// pyramid, whose rows have columns without a surface either side. alike: all patterns are, and nothing is to be filtered; with a
+// plan, the sum of those numbers of samples of which they are. plan: by level, how many those are.
 __kernel void screen_combine_filter(__global const float* texels, int4 texelLayout, int width, int height, int alike,
                                     __global const float* light, int4 lightLayout, __global float* filtered,
-                                    int4 filteredLayout) {
+                                    int4 filteredLayout
+#if LW_PLANNED
+                                    , __global const int* plan, int level
+#endif
+) {
+#if LW_PLANNED
+    alike = plan[level] == 0 || (alike & plan[level]) != 0;
+#endif
     const int x = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);
     if (x >= width || y >= height) return;
     lw_lit_row row;

@@ -44,13 +44,15 @@ public:
     // The pyramid must have exactly radiance and area beside position and normal.
     static constexpr std::uint32_t kExtras = kPyramidRadiance | kPyramidArea;
 
-    ScreenGather(Device& device, std::uint32_t interleave);  // 1, 2 or 4
+    // interleave: 1, 2 or 4. planned: every gather has a plan, or else none has.
+    ScreenGather(Device& device, std::uint32_t interleave, bool planned = false);
 
     // Pass "screen_gather.deal": level k in the layout that the gather reads.
     void recordDeal(Executor& executor, const PyramidLevels& pyramid, const ScreenLevels& levels, std::uint32_t k);
     // Pass "screen_gather.level1" for the first level, and so on: light of level k; `samples`: interleave^2 patterns of sampleCount.
+    // plan: of ScreenPlan, which has how many of them are taken; behind the patterns stand those of half as many, and so on.
     void recordGather(Executor& executor, const ScreenLevels& levels, std::uint32_t k, const Buffer& samples,
-                      std::uint32_t sampleCount, bool bounded, const Planes& light);
+                      std::uint32_t sampleCount, bool bounded, const Planes& light, const Buffer* plan = nullptr);
 
 private:
     std::uint32_t interleave_;

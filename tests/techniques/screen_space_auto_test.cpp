@@ -1,0 +1,167 @@
+// Technique screen_space with an error target: what it leaves out, what that does to the picture, what it says of it.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <string>
+
+#include "support/corner_picture.h"
+
+using namespace lightwell::test;
+
+namespace {
+
+constexpr std::uint32_t kWidth = 320, kHeight = 180;
+
+LWScreenSpaceDesc autoDesc(float error, std::uint32_t samples = 256, LWStart start = LW_START_HALF) {
+    LWScreenSpaceDesc desc = descOf(start, 5, samples);
+    desc.autoError = error;
+    return desc;
+}
+
+// A part of the floor is lit: from all of it to a patch.
+std::vector<Quad> litPart(double share, double light = 1.0) {
+    std::vector<Quad> quads = litFloor(0.0);
+    // A hair above the floor, so that it is the nearer one.
+    quads.push_back({{-share, 1e-4, 0.3 * (1.0 - share)}, {2.0 * share, 0, 0}, {0, 0, share}, {0, 1, 0}, {light, light, light}});
+    return quads;
+}
+
+double nrmse(const std::vector<float>& a, const std::vector<float>& b) {
+    double square = 0.0, mean = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        square += std::pow(double(a[i]) - double(b[i]), 2.0);
+        mean += double(b[i]);
+    }
+    return std::sqrt(square * double(a.size())) / mean;
+}
+
+std::string reasonOf(TestTechnique& technique, const char* name) {
+    const LWStats stats = technique.stats();
+    for (std::uint32_t i = 0; i < stats.choiceCount; ++i)
+        if (std::string(stats.choices[i].name) == name) return stats.choices[i].reason;
+    return "";
+}
+
+}  // namespace
+
+TEST_CASE("without an error target no samples are chosen", "[screen_space_auto]") {
+    TestDevice device(16);
+    const LWScreenSpaceDesc desc = autoDesc(0.0f);
+    CornerPicture picture(96, 64);
+    TestTechnique technique(device, "screen_space", &desc);
+    TestView view(device, 96, 64);
+    render(technique, view, picture.gbuffer, device);
+    CHECK(reasonOf(technique, "samples_used").empty());
+}
+
+TEST_CASE("a target that nothing meets leaves the bits as they are", "[screen_space_auto]") {
+    TestDevice device(GENERATE(1u, 16u));
+    CornerPicture picture(97, 61);
+    const Result full = render(device, autoDesc(0.0f, 64), picture), same = render(device, autoDesc(1e-7f, 64), picture);
+    CHECK(same.irradiance == full.irradiance);
+    CHECK(same.validity == full.validity);
+}
+
+TEST_CASE("the picture is within the target of that with the most samples", "[screen_space_auto]") {
+    TestDevice device(16);
+    const double share = GENERATE(0.15, 0.4, 1.0);
+    const LWStart start = GENERATE(LW_START_HALF, LW_START_QUARTER);
+    Picture picture(kWidth, kHeight, 0.45, kEye, litPart(share));
+    TestView view(device, kWidth, kHeight);
+    const Result full = render(device, autoDesc(0.0f, 256, start), picture);
+    std::uint64_t before = 256;
+    for (const float error : {0.02f, 0.05f, 0.1f, 0.2f, 0.4f}) {
+        const LWScreenSpaceDesc desc = autoDesc(error, 256, start);
+        TestTechnique technique(device, "screen_space", &desc);
+        const Result first = render(technique, view, picture.gbuffer, device);
+        const std::uint64_t used = technique.count("samples_used"), levels = technique.count("levels_used");
+        const double off = nrmse(first.irradiance, full.irradiance);
+        CAPTURE(share, start, error, used, levels, off);
+        WARN("share " << share << " start " << start << " error " << error << " used " << used << " levels " << levels << " off " << off);
+        CHECK(off <= double(error));
+        CHECK(used <= before);
+        before = used;
+        for (int i = 0; i < 3; ++i) CHECK(render(technique, view, picture.gbuffer, device).irradiance == first.irradiance);
+    }
+    CHECK(before < 256);
+}
+
+TEST_CASE("a dark picture and an empty one take the least", "[screen_space_auto]") {
+    TestDevice device(GENERATE(1u, 16u));
+    const LWScreenSpaceDesc desc = autoDesc(0.1f);
+    TestView view(device, 96, 64);
+    for (const bool isEmpty : {false, true}) {
+        Picture picture(96, 64, 0.45, kEye, isEmpty ? std::vector<Quad>{} : litFloor(0.0));
+        TestTechnique technique(device, "screen_space", &desc);
+        const Result result = render(technique, view, picture.gbuffer, device);
+        CHECK(technique.count("samples_used") <= 32);
+        CHECK(reasonOf(technique, "samples_used").find("nothing is lit") != std::string::npos);
+        CHECK(meanOf(result.irradiance) == 0.0);
+        if (isEmpty) CHECK(technique.count("levels_used") == 0);
+    }
+}
+
+TEST_CASE("the unit of radiance changes no choice", "[screen_space_auto]") {
+    TestDevice device(16);
+    const LWScreenSpaceDesc desc = autoDesc(0.1f);
+    TestView view(device, kWidth, kHeight);
+    std::uint64_t used[2] = {0, 0};
+    for (const double light : {1.0, 1e-24, 1e24}) {
+        Picture picture(kWidth, kHeight, 0.45, kEye, litPart(0.4, light));
+        TestTechnique technique(device, "screen_space", &desc);
+        render(technique, view, picture.gbuffer, device);
+        if (!used[0]) {
+            used[0] = technique.count("samples_used");
+            used[1] = technique.count("levels_used");
+        }
+        CAPTURE(light);
+        CHECK(technique.count("samples_used") == used[0]);
+        CHECK(technique.count("levels_used") == used[1]);
+    }
+}
+
+TEST_CASE("light that grows slowly changes samples and levels rarely", "[screen_space_auto]") {
+    TestDevice device(16);
+    const LWScreenSpaceDesc desc = autoDesc(0.1f);
+    TestTechnique technique(device, "screen_space", &desc);
+    TestView view(device, kWidth, kHeight);
+    std::uint64_t last[2] = {0, 0};
+    int changes[2] = {0, 0};
+    for (int i = 0; i < 50; ++i) {
+        Picture picture(kWidth, kHeight, 0.45, kEye, litPart(0.1 + 0.9 * i / 49.0));
+        render(technique, view, picture.gbuffer, device);
+        const std::uint64_t now[] = {technique.count("samples_used"), technique.count("levels_used")};
+        for (int k = 0; k < 2; ++k) {
+            if (i > 0) changes[k] += now[k] != last[k];
+            last[k] = now[k];
+        }
+    }
+    CAPTURE(changes[0], changes[1]);
+    CHECK(changes[0] <= 3);
+    CHECK(changes[1] <= 3);
+}
+
+TEST_CASE("an error target takes no more memory than estimated, and compiles nothing late", "[screen_space_auto]") {
+    TestDevice device(16);
+    LWScreenSpaceDesc desc = autoDesc(0.1f);
+    desc.history = 8;
+    CornerPicture picture(96, 64);
+    TestView view(device, 96, 64);
+    TestTechnique technique(device, "screen_space", &desc);
+    REQUIRE(lwPrewarm(technique, view) == LW_SUCCESS);
+    const LWDeviceInfo before = device.info();
+    render(technique, view, picture.gbuffer, device);
+    CHECK(device.info().programsBuilt == before.programsBuilt);
+    CHECK(device.info().kernelsSpecialised == before.kernelsSpecialised);
+    LWViewDesc viewDesc{};
+    viewDesc.structSize = sizeof viewDesc;
+    viewDesc.maxWidth = 96;
+    viewDesc.maxHeight = 64;
+    std::uint64_t estimate = 0;
+    REQUIRE(lwEstimateMemory(device, "screen_space", &desc, &viewDesc, 0, &estimate) == LW_SUCCESS);
+    CHECK(technique.stats().deviceBytes <= estimate);
+    desc.autoError = -1.0f;
+    LWTechnique none = nullptr;
+    CHECK(lwCreateScreenSpace(device, &desc, &none) == LW_ERROR_INVALID_ARGUMENT);
+    CHECK(lastError(device).find("auto_error") != std::string::npos);
+}
