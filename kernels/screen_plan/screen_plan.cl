@@ -11,6 +11,8 @@
 #include "shared/surface.h"
 #include "shared/wide.h"
 
+#define LW_UNROLL _Pragma("unroll")
+
 // Radiance below which a picture is dark: its inverse is no number that float has.
 #define LW_DARK_RADIANCE 1e-30f
 
