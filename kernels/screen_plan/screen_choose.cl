@@ -8,6 +8,9 @@
 // A new choice is made for this share of the target and stays while it meets the whole of it and no other would be cheaper: light that moves
 // slowly does not switch to and fro.
 #define LW_SCREEN_ROOM 0.8f
+// Of a picture's error, what the receivers see on a coarse level: where surfaces meet, light is nearer than its texels. Measured in drawn corners:
+// 0.54 and more. Larger: the target is missed there.
+#define LW_SCREEN_SEEN 0.55f
 // Of the squared error that independent samples would have, what is left by the even spread of the patterns: measured, see
 // docs/techniques/screen_space.md. Larger: more samples than the target needs; smaller: it is missed by noise.
 #define LW_SCREEN_NOISE 0.3f
@@ -47,7 +50,8 @@ LW_FN void choose(const lw_screen_errors* e, int samples, int halvings, float ta
         int step = -1;
         for (int k = 0; k < LW_LEVELS; ++k, texels *= 0.25f) {
             const int before = choice[k];
-            if (before == LW_SCREEN_CHOICES - 1) continue;
+            // The first level's light is that of few pixels, which the receivers may all miss: it is never left out.
+            if (before == LW_SCREEN_CHOICES - 1 || (k == 0 && before == halvings)) continue;
             choice[k] = next_choice(before, halvings);
             const float saved = (samples_of(before, samples) - samples_of(choice[k], samples)) * texels;
             const float after = error2_of(e, choice), gain = saved / (fmax(after - now, 0.0f) + 1e-12f);
@@ -69,7 +73,7 @@ LW_FN float probed_at(__global const float* probed, int k, int plane, int r) {
 
 // Means over the receivers, and roots of mean squares, relative to the mean of all light.
 LW_FN void errors_of_level(lw_screen_errors* e, __global const float* probed, int k, LwScreenRings rings, int samples, int patterns,
-                           float perLight) {
+                           int whole, float perLight) {
     float lost2[LW_SCREEN_CHOICES] = {0.0f}, share2 = 0.0f, spread = 0.0f;
     for (int r = 0; r < LW_PROBES; ++r) {
         const float light = probed_at(probed, k, LW_PROBED_LIGHT, r) * perLight, share = probed_at(probed, k, LW_PROBED_SHARE, r);
@@ -85,25 +89,26 @@ LW_FN void errors_of_level(lw_screen_errors* e, __global const float* probed, in
     for (int c = 0; c < LW_SCREEN_CHOICES; ++c) {
         e->lost[k][c] = sqrt(lost2[c] * each);
         const int count = c > LW_SCREEN_HALVINGS ? 0 : samples >> c;
-        // Rings of no more texels than samples are taken whole; the most has no error, being what the others are held against.
-        e->noise[k][c] = c == 0 || count == 0 || rings.texels[k] <= (float)count ? 0.0f : LW_SCREEN_NOISE * spread * each / (float)(count * patterns);
+        // Rings that are taken whole have no noise; the most has no error, being what the others are held against.
+        e->noise[k][c] = c == 0 || count == 0 || (whole & count) ? 0.0f : LW_SCREEN_NOISE * spread * each / (float)(count * patterns);
     }
     // Without a level its share of the hemisphere is gone, too, of which validity is made.
     e->lost[k][LW_SCREEN_CHOICES - 1] = fmax(e->lost[k][LW_SCREEN_CHOICES - 1], sqrt(share2 * each));
 }
 
 // One work-item. samples: the most; halvings: of them that there are; patterns: texels with patterns of their own, whose mean the filter
-// takes.
-__kernel void screen_plan_choose(__global const float* probed, LwScreenRings rings, int samples, int halvings, int patterns, float target,
-                                 int restart, __global int* plan) {
+// takes; wholeDisc, wholeRing: sum of the numbers of samples with which the first level's disc and the others' rings are taken whole.
+__kernel void screen_plan_choose(__global const float* probed, LwScreenRings rings, int samples, int halvings, int patterns, int wholeDisc,
+                                 int wholeRing, float target, int restart, __global int* plan) {
     if (get_global_id(0) != 0) return;
     float light = 0.0f;
     for (int k = 0; k < LW_LEVELS; ++k)
         for (int r = 0; r < LW_PROBES; ++r) light += probed_at(probed, k, LW_PROBED_LIGHT, r);
     const float perLight = light > 0.0f ? (float)LW_PROBES / light : 0.0f;
     lw_screen_errors errors;
-    for (int k = 0; k < LW_LEVELS; ++k) errors_of_level(&errors, probed, k, rings, samples, patterns, perLight);
+    for (int k = 0; k < LW_LEVELS; ++k) errors_of_level(&errors, probed, k, rings, samples, patterns, k == 0 ? wholeDisc : wholeRing, perLight);
     int chosen[LW_LEVELS], before[LW_LEVELS];
+    target *= LW_SCREEN_SEEN;
     const float room = LW_SCREEN_ROOM * target;
     choose(&errors, samples, halvings, room * room, chosen);
     if (!restart) {

@@ -25,8 +25,8 @@
 #define LW_SCREEN_WHY_DARK 2    // nothing is lit
 
 // Receivers that are asked, evenly over the picture; columns a multiple of every LW_WIDTH.
-#define LW_PROBE_COLUMNS 16
-#define LW_PROBE_ROWS 8
+#define LW_PROBE_COLUMNS 32
+#define LW_PROBE_ROWS 16
 #define LW_PROBES (LW_PROBE_COLUMNS * LW_PROBE_ROWS)
 
 // What a level brings to a receiver, each a plane of LW_PROBES floats: light with the most samples, what each halving takes of it

@@ -70,7 +70,8 @@ ScreenPlan::ScreenPlan(Device& device)
       brightest_(device, kRowBytes, "brightest texels"),
       probed_(device, kProbedBytes, "light of a few receivers") {}
 
-void ScreenPlan::record(Executor& executor, ScreenPlanPass& pass, const PyramidLevels& pyramid, double radius) {
+void ScreenPlan::record(Executor& executor, ScreenPlanPass& pass, const PyramidLevels& pyramid, double radius, std::uint32_t wholeDisc,
+                        std::uint32_t wholeRing) {
     constexpr float kBound = 0.25f / float(kPi);
     const ScreenPlanOptions& options = pass.options_;
     const LevelRange range{pyramid.options().firstLevel, pyramid.options().firstLevel + options.levels - 1};
@@ -84,7 +85,8 @@ void ScreenPlan::record(Executor& executor, ScreenPlanPass& pass, const PyramidL
     executor.run("screen_plan.probe", pass.probe_, {LW_PROBE_COLUMNS / pass.probe_.width(), LW_PROBE_ROWS}, {1, 1}, level, width, height,
                  step, brightest_, cl_int(options.samples), options.bounded ? kBound : 0.0f, rings, probed_);
     executor.run("screen_plan.choose", pass.choose_, {1, 1}, {1, 1}, probed_, rings, cl_int(options.samples),
-                 cl_int(ScreenPlanPass::halvings(options.samples)), cl_int(options.interleave * options.interleave), options.error,
+                 cl_int(ScreenPlanPass::halvings(options.samples)), cl_int(options.interleave * options.interleave), cl_int(wholeDisc),
+                 cl_int(wholeRing), options.error,
                  cl_int(isKnown_ ? 0 : 1), plan_);
     isKnown_ = true;
 }

@@ -37,8 +37,10 @@ public:
     explicit ScreenPlan(Device& device);
 
     // Passes "screen_plan.rows", ".probe", ".choose". pyramid: planes of senders, from the first level that is gathered on; radius: of
-    // a level's ring in its texels.
-    void record(Executor& executor, ScreenPlanPass& pass, const PyramidLevels& pyramid, double radius);
+    // a level's ring in its texels; wholeDisc, wholeRing: sum of the numbers of samples with which the first level's disc and the
+    // others' rings are taken whole.
+    void record(Executor& executor, ScreenPlanPass& pass, const PyramidLevels& pyramid, double radius, std::uint32_t wholeDisc,
+                std::uint32_t wholeRing);
     // Nothing is known of the frame before.
     void forget() { isKnown_ = false; }
     const Buffer& plan() const { return plan_; }  // int: samples of each level, 0 for none

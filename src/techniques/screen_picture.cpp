@@ -102,7 +102,7 @@ void ScreenPicture::light(Executor& executor, ScreenSpacePasses& passes, const V
     levels_.resize(executor, view.width, view.height);
     passes.pyramid.record(executor, gbuffer_.position, gbuffer_.normal, gbuffer_.directRadiance, gbuffer_.receiveMask, camera_,
                           pyramid_, counts_);
-    if (plan_) plan_->record(executor, *passes.plan, pyramid_, options_.radiusAt(view.height));
+    if (plan_) plan_->record(executor, *passes.plan, pyramid_, options_.radiusAt(view.height), alike_[0], alike_[1]);
     gatherLevels(executor, passes);
     if (history_) keep(executor, passes, view, gbuffer.camera);
 }

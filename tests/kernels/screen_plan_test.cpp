@@ -93,7 +93,7 @@ TEST_CASE("what receivers are told equals its serial twin", "[screen_plan]") {
     ScreenCorner corner(rig, size.first, size.second, 4);
     ScreenPlanPass pass(rig.device(), optionsOf(0.1f, 64, levels, bounded));
     ScreenPlan plan(rig.device());
-    plan.record(rig.executor(), pass, corner.pyramid, kRadius);
+    plan.record(rig.executor(), pass, corner.pyramid, kRadius, 0, 0);
     rig.device().finish();
     const std::vector<float> probed = probedBy(plan);
     const ProbedLevel at = probedLevel(size.second, size.first, {0, levels - 1});
@@ -127,7 +127,7 @@ TEST_CASE("the same plan and bits at every width and in every run", "[screen_pla
         ScreenCorner corner(rig, 131, 57, 4);
         ScreenPlanPass pass(rig.device(), optionsOf(0.2f, 256, 3));
         ScreenPlan plan(rig.device());
-        plan.record(rig.executor(), pass, corner.pyramid, kRadius);
+        plan.record(rig.executor(), pass, corner.pyramid, kRadius, 0, 0);
         rig.device().finish();
         std::vector<float> probed = probedBy(plan);
         probed.resize(3 * LW_PROBED_PLANES * LW_PROBES);
@@ -149,7 +149,7 @@ TEST_CASE("a larger target takes no more, and a plan at rest stays", "[screen_pl
     for (const float error : {1e-6f, 0.01f, 0.03f, 0.1f, 0.3f, 1.0f}) {
         ScreenPlanPass pass(rig.device(), optionsOf(error, samples, 3));
         ScreenPlan plan(rig.device());
-        plan.record(rig.executor(), pass, corner.pyramid, kRadius);
+        plan.record(rig.executor(), pass, corner.pyramid, kRadius, 0, 0);
         rig.device().finish();
         const std::vector<cl_int> first = planOf(plan);
         CAPTURE(error, samples);
@@ -158,7 +158,7 @@ TEST_CASE("a larger target takes no more, and a plan at rest stays", "[screen_pl
             CHECK((first[k] == 0 || (first[k] >= 8 && cl_int(samples) % first[k] == 0)));
             before[k] = first[k];
         }
-        for (int i = 0; i < 3; ++i) plan.record(rig.executor(), pass, corner.pyramid, kRadius);
+        for (int i = 0; i < 3; ++i) plan.record(rig.executor(), pass, corner.pyramid, kRadius, 0, 0);
         rig.device().finish();
         CHECK(planOf(plan) == first);
     }
