@@ -5,9 +5,10 @@
 #include "shared/portable.h"
 #include "shared/screen_plan_types.h"
 
-// A new choice is made for this share of the target and stays while it meets the whole of it and no other would be cheaper: light that moves
-// slowly does not switch to and fro.
+// A new choice is made for this share of the target and stays while it meets the whole of it and no other would be cheaper by a third:
+// light that moves slowly does not switch to and fro.
 #define LW_SCREEN_ROOM 0.8f
+#define LW_SCREEN_CHEAPER 0.67f
 // Of a picture's error, what the receivers see on a coarse level: where surfaces meet, light is nearer than its texels. Measured in drawn corners:
 // 0.54 and more. Larger: the target is missed there.
 #define LW_SCREEN_SEEN 0.55f
@@ -113,7 +114,7 @@ __kernel void screen_plan_choose(__global const float* probed, LwScreenRings rin
     choose(&errors, samples, halvings, room * room, chosen);
     if (!restart) {
         for (int k = 0; k < LW_LEVELS; ++k) before[k] = plan[LW_SCREEN_PLAN_CHOSEN + k];
-        const int stays = error2_of(&errors, before) <= target * target && cost_of(chosen, samples) >= cost_of(before, samples);
+        const int stays = error2_of(&errors, before) <= target * target && cost_of(chosen, samples) >= LW_SCREEN_CHEAPER * cost_of(before, samples);
         for (int k = 0; k < LW_LEVELS && stays; ++k) chosen[k] = before[k];
     }
     int used = 0, most = 1;
