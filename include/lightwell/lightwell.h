@@ -565,6 +565,20 @@ typedef struct LWAoDesc {
 
 LW_API void lwDefaultAo(LWAoDesc* desc);
 
+/** Technique "lpv": the light of RSMs and authored VPLs spread through a cubic grid of cells, as two bands of spherical
+ *  harmonics, step by step (light propagation volumes). Pixels outside of the grid have validity 0. */
+typedef struct LWLpvDesc {
+    uint32_t structSize;
+    uint32_t size;    /**< cells a side: 16, 32, 64, 128 */
+    uint32_t steps;   /**< of propagation, 1 .. 1024; 0: twice `size` */
+    float extent;     /**< length of the grid's sides, to 1e9; 0: fitted to the surfaces that RSMs see (lit or not), authored
+                           VPLs and the vertices of the frame's triangles. A fitted grid stays from frame to frame as long as
+                           they lie in it and fill three quarters of it; LWFrame::reset fits anew */
+    float center[3];  /**< of the grid where `extent` is above 0 */
+} LWLpvDesc;
+
+LW_API void lwDefaultLpv(LWLpvDesc* desc);
+
 /* A technique's parameters, described for tools: the command line's --set and every chart read them
  * here, so a new technique needs no other registration. */
 typedef enum LWParameterKind {
@@ -625,6 +639,7 @@ LW_API LWStatus lwCreateFallback(LWDevice device, const LWFallbackDesc* desc, LW
 LW_API LWStatus lwCreateScreenSpace(LWDevice device, const LWScreenSpaceDesc* desc, LWTechnique* technique);
 LW_API LWStatus lwCreateHorizon(LWDevice device, const LWHorizonDesc* desc, LWTechnique* technique);
 LW_API LWStatus lwCreateAo(LWDevice device, const LWAoDesc* desc, LWTechnique* technique);
+LW_API LWStatus lwCreateLpv(LWDevice device, const LWLpvDesc* desc, LWTechnique* technique);
 LW_API LWStatus lwRetainTechnique(LWTechnique technique);
 LW_API LWStatus lwReleaseTechnique(LWTechnique technique);
 

@@ -57,6 +57,24 @@ LW_FN mask boxes_inside(const lw_packet* p, lw_direction c, lw_direction h, real
     return and_(inside, middle + half_ >= 0.0f);
 }
 
+// How far a box may begin behind the hits: rounding of hits on planes seen edge-on.
+#define LW_LIMIT_MARGIN 1.0001f
+
+// Which children of a node reach into the frustum no farther along its axis than `limit`, a bit each, and where they begin.
+LW_FN uint children_inside(const lw_packet* p, __global const float* node, float4 origin, float limit, float* begins) {
+    uint reached = 0;
+    for (int i = 0; i < LW_TREE_CHILDREN; i += LW_WIDTH) {
+        const lw_direction c = {load(node, i) - origin.x, load(node, i + 16) - origin.y, load(node, i + 32) - origin.z};
+        const lw_direction h = {load(node, LW_TREE_HALF + i), load(node, LW_TREE_HALF + i + 16),
+                                load(node, LW_TREE_HALF + i + 32)};
+        real nearest;
+        const mask inside = boxes_inside(p, c, h, &nearest);
+        reached |= bits_(and_(inside, nearest <= limit)) << i;
+        store(nearest, begins, i);
+    }
+    return reached;
+}
+
 LW_FN mask some_beyond(float4 axis, lw_corners t, real least) {
     return or_(or_(along_(axis, t.a) >= least, along_(axis, t.b) >= least), along_(axis, t.c) >= least);
 }

@@ -3,8 +3,8 @@
 // triangles, most of which are smaller than a texel.
 #include "paraboloid_packet.h"
 
-// Where rays have come to. The nearest hit, of equally near ones the least triangle: no bit depends on the order in which
-// boxes are opened.
+// Where rays have come to. The nearest hit, of equally near ones the least triangle by its values: no bit depends on the
+// order in which boxes are opened.
 typedef struct {
     real distance;   // 0 where there is no ray
     lanei triangle;  // -1: none yet
@@ -14,14 +14,27 @@ typedef struct {
 // Children of the nodes on the way to the deepest leaf.
 #define LW_TREE_STACK (LW_TREE_LEVELS * LW_TREE_CHILDREN)
 
-// How far a box may begin behind the hits: rounding of hits on planes seen edge-on.
-#define LW_LIMIT_MARGIN 1.0001f
+// Where `triangle` comes before those that rays met, by their own values: of equally near ones the same is seen whatever
+// the others in the tree are, and a map that is not redrawn holds what it would hold if it were.
+LW_FN mask comes_before(__global const float* triangles, int stride, int triangle, lanei others) {
+    mask before = splat_mask(0), same = splat_mask(1);
+    for (int plane = 0; plane < LW_TRIANGLE_PLANES; ++plane) {
+        __global const float* const values = triangles + plane * stride;
+        const real own = values[triangle], other = gather(values, others);
+        before = or_(before, and_(same, own < other));
+        same = and_(same, own == other);
+    }
+    return before;
+}
 
-LW_FN void meet_triangle(lw_nearest* n, const lw_packet* p, const lw_group_planes* g, int t, int triangle, int* met) {
+LW_FN void meet_triangle(lw_nearest* n, const lw_packet* p, __global const float* triangles, int stride,
+                         const lw_group_planes* g, int t, int triangle, int* met) {
     const mask within = within_edges(g, t, p->ray);
     if (!any_(within)) return;
     const real distance = plane_distance(g, t, p->ray, p->length);
-    const mask first = or_(distance < n->distance, and_(distance == n->distance, (lanei)(triangle) < n->triangle));
+    mask first = distance < n->distance;
+    const mask tie = and_(and_(within, distance == n->distance), n->triangle >= 0);
+    if (any_(tie)) first = or_(first, and_(tie, comes_before(triangles, stride, triangle, selecti_((lanei)(0), n->triangle, tie))));
     const mask nearer = and_(and_(within, first), and_(distance > 0.0f, distance < INFINITY));
     n->distance = select_(n->distance, distance, nearer);
     n->triangle = selecti_(n->triangle, (lanei)(triangle), nearer);
@@ -43,7 +56,7 @@ LW_FN void meet_leaf(lw_nearest* n, const lw_packet* p, __global const float* tr
     int met = 0;
     while (reached) {
         const int t = take_lowest(&reached);
-        meet_triangle(n, p, &planes, t, first + t, &met);
+        meet_triangle(n, p, triangles, stride, &planes, t, first + t, &met);
     }
     if (met) n->limit = max_lane(n->distance * p->cosine) * LW_LIMIT_MARGIN;
 }
@@ -57,18 +70,8 @@ typedef struct {
 
 // Puts the children of a node that the rays may reach.
 LW_FN void open_node(lw_open* open, const lw_packet* p, __global const float* nodes, int number, float4 origin, float limit) {
-    __global const float* const node = nodes + LW_TREE_NODE * number;
     float begins[LW_TREE_CHILDREN];
-    uint reached = 0;
-    for (int i = 0; i < LW_TREE_CHILDREN; i += LW_WIDTH) {
-        const lw_direction c = {load(node, i) - origin.x, load(node, i + 16) - origin.y, load(node, i + 32) - origin.z};
-        const lw_direction h = {load(node, LW_TREE_HALF + i), load(node, LW_TREE_HALF + i + 16),
-                                load(node, LW_TREE_HALF + i + 32)};
-        real nearest;
-        const mask inside = boxes_inside(p, c, h, &nearest);
-        reached |= bits_(and_(inside, nearest <= limit)) << i;
-        store(nearest, begins, i);
-    }
+    uint reached = children_inside(p, nodes + LW_TREE_NODE * number, origin, limit, begins);
     const int first = open->count;
     while (reached) {
         const int child = take_lowest(&reached), begin = as_int(begins[child]);
@@ -112,6 +115,11 @@ LW_FN laneu normal_word(lw_paraboloid frame, __global const float* triangles, in
     const lw_direction a = gather3(triangles, stride, LW_TRIANGLE_A, t);
     lw_direction normal = cross_(minus_(gather3(triangles, stride, LW_TRIANGLE_B, t), a),
                                  minus_(gather3(triangles, stride, LW_TRIANGLE_C, t), a));
+    // Of a sliver that rounding leaves no plane: towards the ray's origin, as whatever its plane is it is next to none.
+    const mask plane = or_(or_(normal.x != 0.0f, normal.y != 0.0f), normal.z != 0.0f);
+    normal.x = select_(ray.x, normal.x, plane);
+    normal.y = select_(ray.y, normal.y, plane);
+    normal.z = select_(ray.z, normal.z, plane);
     // So that no square leaves float's range, in whatever unit of length.
     const real largest = 1.0f / fmax(fmax(fabs(normal.x), fabs(normal.y)), fmax(fabs(normal.z), FLT_MIN));
     normal.x = normal.x * largest;
@@ -155,4 +163,24 @@ __kernel void paraboloid_map_trace(__global const float* triangles, int stride, 
     scatter(distance, (__global float*)records, 2 * at);
     scatter(as_real_(normal), (__global float*)records, 2 * at + 1);
     scatter(as_real_(colour), (__global float*)albedo, at);
+}
+
+// One work-item = such a block. Where something that has changed, in boxes of the node `changes`, begins nearer than what
+// the block's rays met, the map is stale: what came may be seen, and what went was. All else hides behind what is still there.
+__kernel void paraboloid_map_notice(__global const float* changes, __global const lw_paraboloid* frames,
+                                    __global const uint* records, int mapCount, int size, volatile __global int* states,
+                                    volatile __global uint* counters) {
+    const int column = (int)get_global_id(0) * LW_BLOCK_COLUMNS, row = (int)get_global_id(1) * LW_BLOCK_ROWS;
+    const int map = row / size;
+    if (column >= size || map >= mapCount || (states[map] & LW_MAP_STALE) || frames[map].origin.w == 0.0f) return;
+    const lanei x = (lanei_iota() & (LW_BLOCK_COLUMNS - 1)) + column, y = lanei_iota() / LW_BLOCK_COLUMNS + row % size;
+    lw_packet p;
+    set_packet(&p, frames[map], paraboloid_step(size), x, y, (float)column + 0.5f * (LW_BLOCK_COLUMNS - 1),
+               (float)(row % size) + 0.5f * (LW_BLOCK_ROWS - 1));
+    if (!any_(p.inside)) return;
+    const real met = gather((__global const float*)records, 2 * (map * size * size + y * size + x));
+    const float limit = max_lane(select_((real)(0.0f), met * p.cosine, p.inside)) * LW_LIMIT_MARGIN;
+    float begins[LW_TREE_CHILDREN];
+    if (!children_inside(&p, changes, frames[map].origin, limit, begins)) return;
+    if (!(atomic_or(states + map, LW_MAP_STALE | LW_MAP_DRAWN) & LW_MAP_STALE)) atomic_inc(counters + LW_MAP_REDRAWN);
 }

@@ -1,6 +1,5 @@
 // `lightwell chart`: times every point of every view, judges it against the view's truth, keeps
-// results.json. A little over 300 lines: one class whose members share the run's state; the views,
-// points, references and results that it works on have files of their own.
+// results.json. The views, points, truths and results that it works on have files of their own.
 #include "chart_run.h"
 
 #include <fmt/format.h>
@@ -16,6 +15,7 @@
 #include "chart_judge.h"
 #include "chart_point.h"
 #include "chart_results.h"
+#include "chart_truths.h"
 #include "cli.h"
 #include "film.h"
 #include "interrupt.h"
@@ -65,7 +65,6 @@ private:
     void chartScene(const std::string& name);
     void chartView(ChartView& view);
     void traceTruths(ChartView& view);
-    Json describeView(const ChartView& view);
     std::string timeKey(const ChartView& view, const ChartedPoint& point) const;
     std::string truthKey(const ChartView& view, const ChartedPoint& point) const;
     void chartPoint(const ChartView& view, const ChartedPoint& point, std::vector<Pending>& pending);
@@ -90,6 +89,13 @@ Charter::Charter(const ChartOptions& options)
     : options_(options),
       results_((std::filesystem::path(options.folder) / "results.json").string(), kFormat),
       points_(chartedPoints(options.techniques, options.quick, options.only)) {
+    const bool judgesOnScreen =
+        std::any_of(points_.begin(), points_.end(),
+                    [](const ChartedPoint& point) { return knowsPictureOnly(point.sweep.parameters); });
+    if (options.truth.onScreen && !judgesOnScreen)
+        throw UsageError(
+            "--on-screen: expected a technique that takes its light from the picture alone, got " +
+            joinNames(options.techniques));
     const bool needsDevice = std::any_of(points_.begin(), points_.end(), [](const ChartedPoint& point) {
         return point.sweep.parameters.needsDevice();
     });
@@ -190,39 +196,7 @@ void Charter::traceTruths(ChartView& view) {
             throw Interrupted("interrupted; the same command goes on with this truth");
     };
     view.obtainTruths(bounces, truth);
-    std::string note;
-    for (const auto& [count, judged] : view.truths())
-        note += fmt::format("{}{}: {} samples per pixel, noise {:.2e}", note.empty() ? "" : "; ",
-                            bouncesText(count), judged.truth.samples, judged.truth.noise);
-    if (view.onScreen() != nullptr)
-        note += fmt::format("; one bounce of what the view shows: {} samples per pixel, noise {:.2e}",
-                            view.onScreen()->truth.samples, view.onScreen()->truth.noise);
-    line.finish(note);
-}
-
-Json Charter::describeView(const ChartView& view) {
-    Json truths = Json::array();
-    for (const auto& [bounces, judged] : view.truths())
-        truths.push_back({{"bounces", bounces},
-                          {"noise", judged.truth.noise},
-                          {"samples", judged.truth.samples},
-                          {"name", judged.truth.name},
-                          {"picture_noise", judged.picture().noise},
-                          {"picture_samples", judged.picture().samples},
-                          {"shipped", judged.isShipped}});
-    Json onScreen;
-    if (view.onScreen() != nullptr)
-        onScreen = {{"noise", view.onScreen()->truth.noise},
-                    {"samples", view.onScreen()->truth.samples},
-                    {"name", view.onScreen()->truth.name}};
-    return {{"id", view.id()},
-            {"scene", view.sceneName()},
-            {"camera", view.cameraName()},
-            {"size", {options_.width, options_.height}},
-            {"rsm_texels", view.inputs().rsmTexelCount()},
-            {"truths", truths},
-            {"on_screen", onScreen},
-            {"images", writeViewPictures(view, options_.folder)}};
+    line.finish(truthNote(view));
 }
 
 // What the times depend on.
@@ -237,18 +211,11 @@ std::string Charter::timeKey(const ChartView& view, const ChartedPoint& point) c
 
 // What the errors depend on besides.
 std::string Charter::truthKey(const ChartView& view, const ChartedPoint& point) const {
-    std::string text = kProtocol;
-    for (const int bounces : {modelledBounces(point.sweep.parameters), 0})
-        if (const auto truth = view.truths().find(bounces); truth != view.truths().end())
-            text += fmt::format(" {} {} {}", truth->second.truth.name, truth->second.truth.samples,
-                                truth->second.picture().samples);
-    if (view.onScreen() != nullptr && knowsPictureOnly(point.technique))
-        text += fmt::format(" {} {}", view.onScreen()->truth.name, view.onScreen()->truth.samples);
-    return shortHash(text);
+    return shortHash(std::string(kProtocol) + truthNames(view, point.sweep.parameters));
 }
 
 void Charter::chartView(ChartView& view) {
-    results_.putView(describeView(view));
+    results_.putView(describeView(view, options_.folder));
     std::vector<Pending> pending;
     for (std::size_t i = 0; i < points_.size(); ++i) {
         report(double(i) / double(points_.size()),
@@ -282,7 +249,7 @@ void Charter::chartPoint(const ChartView& view, const ChartedPoint& point,
     }
     made.point["truth"] = truth;
     made.picture.bounces = made.point["bounces"];
-    made.picture.knowsPictureOnly = knowsPictureOnly(point.technique);
+    made.picture.knowsPictureOnly = knowsPictureOnly(point.sweep.parameters);
     made.picture.imageName = made.point["id"];
     made.picture.irradiance = studio::Image(options_.width, options_.height);
     addLayer(made.picture.irradiance, "", renderer->irradiance());

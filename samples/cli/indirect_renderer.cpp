@@ -42,6 +42,9 @@ std::unique_ptr<IndirectRenderer> makeRenderer(const Parameters& parameters, con
         if (options.quantity != Quantity::Irradiance)
             throw UsageError("technique " + parameters.technique() +
                              ": makes no ambient occlusion; expected one of the library");
+        if (!inputs.lwSources().empty())
+            throw UsageError("--source-view: technique " + parameters.technique() +
+                             " looks at none; expected one of the library");
         return makeRenderer(parameters, inputs, nullptr);
     }
     const lightwell::Device device = openDevice(options.device, options.width);

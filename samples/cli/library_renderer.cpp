@@ -1,5 +1,7 @@
 #include "library_renderer.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 
@@ -59,6 +61,10 @@ LibraryRenderer::LibraryRenderer(const lightwell::Device& device, const Paramete
     info_ = device_.info();
 }
 
+LibraryRenderer::~LibraryRenderer() {
+    lwFinish(device_.get());
+}
+
 // The view changes its size without allocating; the host's pictures are made anew.
 void LibraryRenderer::fitSize(int width, int height) {
     if (width == irradiance_.width() && height == irradiance_.height()) return;
@@ -78,6 +84,17 @@ LWOutput LibraryRenderer::describeOutput() {
         output.validity = describePlanes(validity_);
     }
     return output;
+}
+
+void LibraryRenderer::render(const LWGBuffer& gbuffer) {
+    const LWOutput output = describeOutput();
+    try {
+        technique_.render(view_, gbuffer, output);
+    } catch (const lightwell::Error& error) {
+        if (quantity_ == Quantity::AmbientOcclusion && error.status() == LW_ERROR_UNSUPPORTED)
+            throw UsageError(fmt::format("--quantity ambient-occlusion: {}", error.what()));
+        throw;
+    }
 }
 
 void LibraryRenderer::spreadAmbient() {
@@ -101,9 +118,8 @@ FrameSample LibraryRenderer::renderFrame(const RenderInputs& inputs, bool reset)
     frame.sourceViewCount = std::uint32_t(sources.size());
     frame.geometry = &inputs.geometry();
     std::copy_n(inputs.environment(), 3, frame.environment);
-    LWOutput output = describeOutput();
     technique_.update(frame);
-    technique_.render(view_, inputs.lwGBuffer(), output);
+    render(inputs.lwGBuffer());
     device_.finish();
     const std::chrono::duration<double, std::milli> wall = std::chrono::steady_clock::now() - start;
     if (quantity_ == Quantity::AmbientOcclusion) spreadAmbient();

@@ -10,6 +10,11 @@ public:
     LibraryRenderer(const lightwell::Device& device, const Parameters& parameters,
                     const RenderInputs& inputs, Quantity quantity = Quantity::Irradiance);
 
+    // A frame that was refused half-way leaves commands that read its inputs, which go next.
+    ~LibraryRenderer() override;
+    LibraryRenderer(const LibraryRenderer&) = delete;
+    LibraryRenderer& operator=(const LibraryRenderer&) = delete;
+
     FrameSample renderFrame(const RenderInputs& inputs, bool reset) override;
     const studio::PlanarBuffer& irradiance() const override { return irradiance_; }
     const studio::PlanarBuffer& validity() const override { return validity_; }
@@ -21,6 +26,7 @@ public:
 private:
     void fitSize(int width, int height);
     LWOutput describeOutput();
+    void render(const LWGBuffer& gbuffer);
     void spreadAmbient();
 
     lightwell::Device device_;

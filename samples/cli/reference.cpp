@@ -28,6 +28,7 @@ struct ReferenceOptions {
     std::string quantity = "irradiance", radius = "0.2", weighting = "cosine";
     std::vector<std::string> sourceViews;
     bool unshadowed = false, half = false, compact = false, onScreen = false;
+    CLI::Option *radiusGiven = nullptr, *weightingGiven = nullptr;
     bool isAmbient() const { return quantity == "ambient-occlusion"; }
 };
 
@@ -38,12 +39,16 @@ void checkQuantity(const ReferenceOptions& options) {
         throw UsageError("--source-view: expected --on-screen with it, whose light it adds to");
     if (options.onScreen && !options.vpls.empty())
         throw UsageError("--on-screen: --vpls has senders of its own; leave one of them out");
-    const bool hasLight =
-        !options.bounces.empty() || options.unshadowed || options.onScreen || !options.vpls.empty();
-    if (options.isAmbient() && hasLight)
+    if (options.isAmbient() &&
+        (!options.bounces.empty() || options.unshadowed || options.onScreen || !options.vpls.empty()))
         throw UsageError(
             "--quantity ambient-occlusion: knows no light; leave out --bounces, --unshadowed, "
             "--on-screen and --vpls");
+    for (const CLI::Option* given : {options.radiusGiven, options.weightingGiven})
+        if (!options.isAmbient() && given->count() > 0)
+            throw UsageError(fmt::format(
+                "{}: expected --quantity ambient-occlusion with it, which alone it says something of",
+                given->get_name()));
 }
 
 // The traced layers whose sum stands in R, G, B.
@@ -82,7 +87,8 @@ studio::PathTracerOptions tracerOptions(const ReferenceOptions& options) {
     tracer.seed = parseUnsigned("--seed", options.seed);
     tracer.unshadowed = options.unshadowed;
     tracer.judgedLayers = chosenLayers(options);
-    // Nobody keeps what later bounces bring: the same bits of the first ones for less time.
+    // Nobody keeps what later bounces bring: the same light of the first ones for less time, by other
+    // samples where sky or emission shine.
     if (options.compact && options.bounces != "all" && !options.isAmbient())
         tracer.maxBounces = options.bounces == "1" ? 1 : 2;
     if (!options.until.empty()) {
@@ -122,12 +128,6 @@ studio::Image assemble(const studio::Image& traced, const std::vector<std::strin
     return image;
 }
 
-std::vector<std::string> seenBy(const ReferenceOptions& options, const std::string& camera) {
-    std::vector<std::string> names{camera};
-    names.insert(names.end(), options.sourceViews.begin(), options.sourceViews.end());
-    return names;
-}
-
 void describe(studio::Image& image, const ReferenceOptions& options, const studio::Camera& camera,
               const std::vector<std::string>& chosen, double noise) {
     const std::string layer = fmt::format("{}", fmt::join(chosen, "+"));
@@ -136,8 +136,11 @@ void describe(studio::Image& image, const ReferenceOptions& options, const studi
     image.metadata["camera"] = camera.name;
     image.metadata["size"] = options.view.size;
     if (options.unshadowed) image.metadata["unshadowed"] = "1";
-    if (options.onScreen)
-        image.metadata["senders"] = fmt::format("{}", fmt::join(seenBy(options, camera.name), ", "));
+    if (options.onScreen) {
+        std::vector<std::string> names = options.sourceViews;
+        names.insert(names.begin(), camera.name);
+        image.metadata["senders"] = fmt::format("{}", fmt::join(names, ", "));
+    }
     if (options.isAmbient()) {
         image.metadata["radius"] = options.radius;
         image.metadata["weighting"] = options.weighting;
@@ -233,6 +236,42 @@ void traceReference(const ReferenceOptions& options) {
                effort, noise < 0.0 ? "" : fmt::format(", noise (relMSE) {:.3g}", noise));
 }
 
+// What is asked: a quantity, and whose light.
+void declareTruth(CLI::App& command, ReferenceOptions& options) {
+    command.add_option(
+        "--bounces", options.bounces,
+        "Required of irradiance; what stands in R,G,B: 1 = one indirect bounce; 2 = first and second "
+        "together; all");
+    command
+        .add_option("--quantity", options.quantity,
+                    "irradiance, or ambient-occlusion: the open share of the hemisphere, 1 = open")
+        ->capture_default_str();
+    options.radiusGiven =
+        command
+            .add_option(
+                "--radius", options.radius,
+                "Of ambient-occlusion: what counts lies nearer, in heights of the picture at the "
+                "pixel's depth")
+            ->capture_default_str();
+    options.weightingGiven =
+        command
+            .add_option("--weighting", options.weighting,
+                        "Of ambient-occlusion: directions by their cosine, or uniform")
+            ->capture_default_str();
+    command.add_flag("--on-screen", options.onScreen,
+                     "Only surfaces that the picture shows send light (one bounce): what a technique of "
+                     "the picture alone can know");
+    command
+        .add_option("--source-view", options.sourceViews,
+                    "Cameras whose pictures' surfaces send light too, with --on-screen")
+        ->take_all();
+    command.add_flag("--unshadowed", options.unshadowed,
+                     "Every lit surface along a pixel's ray sends light, none blocks it (one bounce)");
+    command.add_option(
+        "--vpls", options.vpls,
+        "VPLs of `lightwell render --vpls-out`, summed with exact visibility (one bounce)");
+}
+
 }  // namespace
 
 void addReference(CLI::App& app) {
@@ -241,35 +280,7 @@ void addReference(CLI::App& app) {
         "Path-trace the true indirect irradiance (W/m^2) of a view, with its own noise estimate");
     auto options = std::make_shared<ReferenceOptions>();
     options->view.declare(*command);
-    command->add_option(
-        "--bounces", options->bounces,
-        "Required; what stands in R,G,B: 1 = one indirect bounce; 2 = first and second together; all");
-    command
-        ->add_option("--quantity", options->quantity,
-                     "irradiance, or ambient-occlusion: the open share of the hemisphere, 1 = open")
-        ->capture_default_str();
-    command
-        ->add_option("--radius", options->radius,
-                     "Of ambient-occlusion: what counts lies nearer, in heights of the picture at the "
-                     "pixel's depth")
-        ->capture_default_str();
-    command
-        ->add_option("--weighting", options->weighting,
-                     "Of ambient-occlusion: directions by their cosine, or uniform")
-        ->capture_default_str();
-    command->add_flag(
-        "--on-screen", options->onScreen,
-        "Only surfaces that the picture shows send light (one bounce): what a technique of "
-        "the picture alone can know");
-    command
-        ->add_option("--source-view", options->sourceViews,
-                     "Cameras whose pictures' surfaces send light too, with --on-screen")
-        ->take_all();
-    command->add_flag("--unshadowed", options->unshadowed,
-                      "Every lit surface along a pixel's ray sends light, none blocks it (one bounce)");
-    command->add_option(
-        "--vpls", options->vpls,
-        "VPLs of `lightwell render --vpls-out`, summed with exact visibility (one bounce)");
+    declareTruth(*command, *options);
     CLI::Option* spp = command->add_option("--spp", options->samples, "Paths per pixel, an even number");
     spp->capture_default_str();
     command

@@ -65,6 +65,8 @@ void checkOptions(const RenderOptions& options) {
         requireOneOf("--width", std::to_string(options.width), {"1", "4", "8", "16"});
     for (const std::string& assignment : options.assignments) splitAssignment("--set", assignment);
     if (!options.exposure.empty()) parsePositive("--exposure", options.exposure);
+    if (!options.exposure.empty() && options.isAmbient())
+        throw UsageError("--exposure: ambient occlusion is drawn as it is, 1 = white; leave it out");
     parsePositive("--scale", options.scale);
     const double step = parseNumber("--step", options.step);
     if (step < 0.0 || !std::isfinite(float(step)))

@@ -122,8 +122,12 @@ int modelledBounces(const Parameters& parameters) {
     return most;
 }
 
-bool knowsPictureOnly(const std::string& technique) {
-    return technique == "screen_space" || technique == "horizon" || technique == "ao";
+bool knowsPictureOnly(const Parameters& parameters) {
+    const std::string& technique = parameters.technique();
+    if (parameters.parts().empty())
+        return technique == "screen_space" || technique == "horizon" || technique == "ao";
+    return std::all_of(parameters.parts().begin(), parameters.parts().end(),
+                       [](const auto& part) { return knowsPictureOnly(part.second); });
 }
 
 std::string describeDifference(const Parameters& parameters) {

@@ -22,9 +22,9 @@ std::vector<SweepPoint> sweepOf(const std::string& technique, bool quick);
 // Indirect bounces that a set of parameters models; 0: all.
 int modelledBounces(const Parameters& parameters);
 
-// Whether a technique takes its light from the view's own picture alone, so that the light of what the
-// view shows is the most that it can know.
-bool knowsPictureOnly(const std::string& technique);
+// Whether a technique, and all that it joins, takes its light from the view's own picture alone, so that
+// the light of what the view shows is the most that it can know.
+bool knowsPictureOnly(const Parameters& parameters);
 
 // "vpls=256 interleave=4": what differs from the defaults; "defaults" when nothing does.
 std::string describeDifference(const Parameters& parameters);

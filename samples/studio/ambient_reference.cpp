@@ -3,7 +3,7 @@
 //
 // Source: S. Zhukov, A. Iones and G. Kronin, "An Ambient Light Illumination Model" (1998), with
 // visibility cut off at a radius instead of a falloff: only so does an infinite wall have the closed
-// form that tests/unit/on_screen_test.cpp holds this to.
+// form that tests/unit/ambient_reference_test.cpp holds this to.
 #include "ambient_reference.h"
 
 #include <cmath>

@@ -144,7 +144,9 @@ bool loadCheckpoint(const std::string& path, const CheckpointKey& key, Film& fil
 
     // The order tells the likeliest mistake first.
     if (header.key.options != key.options)
-        refuse("belongs to a run with other options (seed, bounces, unshadowed or VPLs)");
+        refuse(
+            "belongs to a run with other options (seed, bounces, unshadowed, senders seen, ambient "
+            "occlusion or VPLs)");
     if (header.key.scene != key.scene) refuse("belongs to another scene or to other lights");
     if (header.key.view != key.view) refuse("belongs to another camera or size");
     if (header.sums != film.sums.size() || header.halves != std::uint32_t(film.halves))

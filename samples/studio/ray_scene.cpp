@@ -3,7 +3,7 @@
 // Surfaces are double-sided: normals are turned to the ray's side. Alpha masks are cut by a filter on
 // both kinds of ray, so that shadows have holes where the picture has. All biases are relative to
 // coordinates or to the scene's diagonal, so a scene in other units gives the same picture.
-// Three lines over 300: all that touches Embree's scene is here, so that no other file of the studio needs it but the rival.
+// A few lines over 300: all that touches Embree's scene is here, so that no other file of the studio needs it but the rival.
 #include "ray_scene.h"
 
 #include <algorithm>

@@ -41,7 +41,7 @@ std::vector<std::size_t> judgedLayers(const Film& film, const PathTracerOptions&
     return chosen;
 }
 
-std::uint64_t hashOptions(const PathTracerOptions& options, int halves) {
+std::uint64_t hashOptions(const PathTracerOptions& options, const GBuffer& view, int halves) {
     const std::uint64_t values[] = {options.seed, std::uint64_t(options.maxBounces),
                                     std::uint64_t(options.unshadowed), std::uint64_t(halves)};
     std::uint64_t hash = hashBytes(values, sizeof values, 3);
@@ -57,6 +57,9 @@ std::uint64_t hashOptions(const PathTracerOptions& options, int halves) {
     if (options.ambient != nullptr) {
         hash = hashBytes(options.ambient->isUniform ? "uniform" : "cosine", 6, hash);
         hash = hashBytes(&options.ambient->radius, sizeof options.ambient->radius, hash);
+        // Its radius is one in the picture, whose angle the positions of a pixel or two don't tell.
+        const std::uint64_t picture = hashPictureViews({{view.camera, view.width, view.height}});
+        hash = hashBytes(&picture, sizeof picture, hash);
     }
     if (options.vpls != nullptr)
         hash = hashBytes(options.vpls->data(), options.vpls->size() * sizeof(VplRecord), hash);
@@ -121,7 +124,7 @@ Run::Run(const RayScene& scene, const GBuffer& view, const PixelSurfaces& pixels
       most_(most),
       judged_(judgedLayers(film, options)) {
     if (options.checkpoint.empty()) return;
-    key_ = {hashScene(scene), hashView(view), hashOptions(options, film.halves)};
+    key_ = {hashScene(scene), hashView(view), hashOptions(options, view, film.halves)};
     loadCheckpoint(options.checkpoint, key_, film);
 }
 

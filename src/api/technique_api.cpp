@@ -114,6 +114,10 @@ LWStatus lwCreateAo(LWDevice device, const LWAoDesc* desc, LWTechnique* techniqu
     return createTechnique("lwCreateAo", device, "ao", desc, technique);
 }
 
+LWStatus lwCreateLpv(LWDevice device, const LWLpvDesc* desc, LWTechnique* technique) {
+    return createTechnique("lwCreateLpv", device, "lpv", desc, technique);
+}
+
 LWStatus lwRetainTechnique(LWTechnique technique) {
     return enter("lwRetainTechnique",
                  [&](Call&) { retainHandle(HandleKind::kTechnique, technique, "technique"); });

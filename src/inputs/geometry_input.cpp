@@ -22,10 +22,7 @@ namespace {
 constexpr std::uint32_t kMaxTriangles = 0x7fffffffu / LW_TRIANGLE_PLANES / 256 * 256;
 constexpr float kDefaultAlbedo = 0.5f;
 
-struct Triangle {
-    std::uint32_t host;  // its number among the host's
-    std::array<float, LW_TRIANGLE_PLANES> values;
-};
+using Triangle = HostTriangle;
 
 std::uint32_t vertexOf(const LWGeometry& g, std::size_t corner) {
     return g.indices ? g.indices[corner] : std::uint32_t(corner);
@@ -67,17 +64,38 @@ struct Bounds {
     double diagonal() const { return glm::length(upper - lower); }
 };
 
+TriangleBox boxOf(const Triangle& t) {
+    TriangleBox box;
+    const auto& v = t.values;
+    for (std::size_t c = 0; c < 3; ++c) {
+        box.lower[c] = std::min({v[c], v[3 + c], v[6 + c]});
+        box.upper[c] = std::max({v[c], v[3 + c], v[6 + c]});
+    }
+    return box;
+}
+
+// Of what differs between two lists in the host's order, there before and now.
+std::vector<TriangleBox> changedBoxes(const std::vector<Triangle>& before, const std::vector<Triangle>& now) {
+    std::vector<TriangleBox> boxes;
+    std::size_t i = 0, j = 0;
+    while (i < before.size() || j < now.size()) {
+        const bool went = j == now.size() || (i < before.size() && before[i].host <= now[j].host);
+        const bool came = i == before.size() || (j < now.size() && now[j].host <= before[i].host);
+        if (!went || !came || before[i].values != now[j].values) {
+            if (went) boxes.push_back(boxOf(before[i]));
+            if (came) boxes.push_back(boxOf(now[j]));
+        }
+        if (went) ++i;
+        if (came) ++j;
+    }
+    return boxes;
+}
+
 // The tree over the triangles, whose order depends on their own values alone: maps then hold the same bits in whatever
 // order the host keeps them.
 TriangleTree growTree(const std::vector<Triangle>& drawn) {
     std::vector<TriangleBox> boxes(drawn.size());
-    for (std::size_t i = 0; i < drawn.size(); ++i) {
-        const auto& v = drawn[i].values;
-        for (std::size_t c = 0; c < 3; ++c) {
-            boxes[i].lower[c] = std::min({v[c], v[3 + c], v[6 + c]});
-            boxes[i].upper[c] = std::max({v[c], v[3 + c], v[6 + c]});
-        }
-    }
+    std::transform(drawn.begin(), drawn.end(), boxes.begin(), boxOf);
     return triangleTreeOf(boxes, [&](std::uint32_t a, std::uint32_t b) {
         return drawn[a].values != drawn[b].values ? drawn[a].values < drawn[b].values : drawn[a].host < drawn[b].host;
     });
@@ -154,47 +172,65 @@ void GeometryInput::check(const LWGeometry* geometry) const {
     if (geometry && geometry->triangleCount && !(keyOf(geometry) == key_)) checkArrays(*geometry);
 }
 
+void GeometryInput::forget() {
+    key_ = Key{};
+    isForgotten_ = true;
+}
+
 void GeometryInput::import(Executor& executor, const LWGeometry* geometry) {
     const Key key = keyOf(geometry);
-    if (key == key_) return;
+    if (key == key_ && !isForgotten_) return;
     check(geometry);
     Bounds bounds;
     std::uint32_t rejected = 0;
     std::vector<Triangle> drawn;
     if (key.triangleCount) drawn = drawnTriangles(*geometry, bounds, rejected);
-
-    const std::uint32_t padded = paddedTo16(drawn.size());
-    const TriangleTree tree = growTree(drawn);
-    std::vector<float> planes(std::size_t(padded) * kPlaneCount);
-    // Padding repeats the last triangle's first vertex: no area, and no larger group.
-    for (std::size_t t = 0; t < padded; ++t) {
-        const Triangle& from = drawn[tree.order[std::min(t, drawn.size() - 1)]];
-        for (std::size_t p = 0; p < kPlaneCount; ++p)
-            planes[p * padded + t] = from.values[t < drawn.size() || p >= kAlbedo ? p : p % 3];
-    }
-    if (!drawn.empty()) {
-        // Both or none: where one fails, the last geometry stays whole.
-        const auto grown = [&](const Buffer& old, std::size_t floats, const char* what) {
-            const std::size_t bytes = floats * sizeof(float);
-            return old.bytes() < bytes ? Buffer(executor.device(), bytes, what) : Buffer();
-        };
-        Buffer newMemory = grown(memory_, planes.size(), "frame.geometry's triangles");
-        Buffer newNodes = grown(nodes, mostTreeNodes(drawn.size()) * LW_TREE_NODE, "frame.geometry's tree of triangles");
-        if (newMemory) memory_ = std::move(newMemory);
-        if (newNodes) nodes = std::move(newNodes);
-        executor.writeCopy("geometry_input.upload", memory_, 0, planes.size() * sizeof(float), planes.data());
-        executor.writeCopy("geometry_input.upload", nodes, 0, tree.nodes.size() * sizeof(float), tree.nodes.data());
+    const std::vector<TriangleBox> changed = changedBoxes(drawn_, drawn);
+    if (!changed.empty() || isForgotten_) {
+        const TriangleTree tree = growTree(drawn);
+        // Where about all is new, boxes around it cost the host a quarter of what the tree does, and would be everywhere.
+        const bool isKnown = !isForgotten_ && changed.size() <= drawn.size();
+        upload(executor, drawn, tree.order, tree.nodes, isKnown ? boxesAround(changed) : std::vector<float>());
+        triangleCount = std::uint32_t(drawn.size());
+        diagonal = drawn.empty() ? 0.0f : float(bounds.diagonal());
+        revision += isKnown ? 1 : 2;
+        isForgotten_ = false;
+        hostIndices.clear();
+        for (const std::uint32_t t : tree.order) hostIndices.push_back(drawn[t].host);
+        shareOut(drawn, tree.order, area, areaShares);
+        drawn_ = std::move(drawn);
     }
     key_ = key;
     rejected_ = rejected;
-    triangleCount = std::uint32_t(drawn.size());
-    diagonal = drawn.empty() ? 0.0f : float(bounds.diagonal());
-    ++revision;
-    hostIndices.clear();
-    for (const std::uint32_t t : tree.order) hostIndices.push_back(drawn[t].host);
-    shareOut(drawn, tree.order, area, areaShares);
+}
+
+void GeometryInput::upload(Executor& executor, const std::vector<Triangle>& drawn, const std::vector<std::uint32_t>& order,
+                           const std::vector<float>& treeNodes, const std::vector<float>& changed) {
+    const std::uint32_t padded = paddedTo16(drawn.size());
+    std::vector<float> planes(std::size_t(padded) * kPlaneCount);
+    // Padding repeats the last triangle's first vertex: no area.
+    for (std::size_t t = 0; t < padded; ++t) {
+        const Triangle& from = drawn[order[std::min(t, drawn.size() - 1)]];
+        for (std::size_t p = 0; p < kPlaneCount; ++p)
+            planes[p * padded + t] = from.values[t < drawn.size() || p >= kAlbedo ? p : p % 3];
+    }
+    // All or none: where one fails, the last geometry stays whole.
+    const auto grown = [&](const Buffer& old, std::size_t floats, const char* what) {
+        const std::size_t bytes = floats * sizeof(float);
+        return old.bytes() < bytes ? Buffer(executor.device(), bytes, what) : Buffer();
+    };
+    Buffer newMemory = grown(memory_, planes.size(), "frame.geometry's triangles");
+    Buffer newNodes = grown(nodes, mostTreeNodes(drawn.size()) * LW_TREE_NODE, "frame.geometry's tree of triangles");
+    Buffer newChanges = grown(changes, changed.size(), "frame.geometry's changes");
+    if (newMemory) memory_ = std::move(newMemory);
+    if (newNodes) nodes = std::move(newNodes);
+    if (newChanges) changes = std::move(newChanges);
+    if (!changed.empty())
+        executor.writeCopy("geometry_input.upload", changes, 0, changed.size() * sizeof(float), changed.data());
     triangles = Planes{};
     if (drawn.empty()) return;
+    executor.writeCopy("geometry_input.upload", memory_, 0, planes.size() * sizeof(float), planes.data());
+    executor.writeCopy("geometry_input.upload", nodes, 0, treeNodes.size() * sizeof(float), treeNodes.data());
     triangles.memory = memory_.get();
     triangles.rowStride = triangles.planeStride = padded;
     triangles.width = padded;
@@ -212,7 +248,8 @@ std::uint64_t GeometryInput::estimateBytes(std::uint32_t triangleCount) {
         fail(LW_ERROR_INVALID_ARGUMENT, "frame.geometry.triangleCount: expected at most ", kMaxTriangles, ", got ",
              triangleCount);
     const std::uint64_t planes = std::uint64_t(paddedTo16(triangleCount)) * kPlaneCount;
-    return (planes + mostTreeNodes(triangleCount) * LW_TREE_NODE) * sizeof(float);
+    const std::uint64_t nodes = triangleCount ? mostTreeNodes(triangleCount) + 1 : 0;  // and one of what changed
+    return (planes + nodes * LW_TREE_NODE) * sizeof(float);
 }
 
 }  // namespace lightwell

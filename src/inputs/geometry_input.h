@@ -1,6 +1,7 @@
 // The host's triangles on the device, ordered, in a tree of boxes for kernels that send rays.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -11,6 +12,12 @@
 #include "shared/geometry_types.h"
 
 namespace lightwell {
+
+// As the host gave it.
+struct HostTriangle {
+    std::uint32_t host;  // its number among the host's
+    std::array<float, LW_TRIANGLE_PLANES> values;
+};
 
 class GeometryInput {
 public:
@@ -27,25 +34,26 @@ public:
     void check(const LWGeometry* geometry) const;
 
     // Brings the geometry to the device (pass "geometry_input.upload") when its version, a pointer or a count
-    // differs from the last; host memory is read during the call only. Triangles are ordered by size and place, by
-    // their own values alone: their order in the host's arrays does not matter. Those with a vertex that is not
+    // differs from the last and some triangle does; host memory is read during the call only. Triangles are ordered by
+    // place, by their own values alone: their order in the host's arrays does not matter. Those with a vertex that is not
     // finite or beyond LW_LARGEST_DISTANCE are left out and counted, those without area left out. Refused
     // geometry leaves the last one in force.
     void import(Executor& executor, const LWGeometry* geometry);
-    void forget() { key_ = Key{}; }  // the next import() brings all again, whatever its key
+    void forget();  // the next import() brings all again, whatever its key
 
     Planes triangles;  // kPlaneCount planes, height 1, width = triangles padded; none without triangles
     Buffer nodes;      // of the tree of boxes over the triangles, see geometry_types.h
+    Buffer changes;    // a node of boxes around all that the last revision changed: triangles that came, and that went
     std::uint32_t triangleCount = 0;  // drawn
     float diagonal = 0.0f;            // of the bounding box of what is drawn, m
     double area = 0.0;                // of all that is drawn, m^2
     // For each drawn triangle the share of the area up to and with it, of 2^32; the last one's is the largest number.
     std::vector<std::uint32_t> areaShares;
-    std::uint64_t revision = 0;       // differs whenever the triangles do
+    std::uint64_t revision = 0;       // one more with every change of the triangles; by more where `changes` does not say what
     std::vector<std::uint32_t> hostIndices;  // of each drawn triangle: its number among the host's
 
     void report(Report& report) const;  // triangles, rejected_triangles
-    std::uint64_t bytes() const { return memory_.bytes() + nodes.bytes(); }
+    std::uint64_t bytes() const { return memory_.bytes() + nodes.bytes() + changes.bytes(); }
     // The most that bytes() becomes for so many triangles, and the refusal of more than kernels can index.
     static std::uint64_t estimateBytes(std::uint32_t triangleCount);
 
@@ -57,10 +65,14 @@ private:
         bool operator==(const Key& other) const;
     };
     static Key keyOf(const LWGeometry* geometry);
+    void upload(Executor& executor, const std::vector<HostTriangle>& drawn, const std::vector<std::uint32_t>& order,
+                const std::vector<float>& treeNodes, const std::vector<float>& changed);
 
     Buffer memory_;
+    std::vector<HostTriangle> drawn_;  // in the host's order, to tell what a new version changes
     Key key_;
     std::uint32_t rejected_ = 0;
+    bool isForgotten_ = false;
 };
 
 }  // namespace lightwell

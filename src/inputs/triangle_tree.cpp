@@ -25,6 +25,8 @@ constexpr std::size_t kMost = LW_TRIANGLE_GROUP;
 // From the parts with more items than this on bins along the longest axis alone: there one is as good as another, and
 // three axes take twice the time.
 constexpr std::size_t kMany = 1024;
+// Centroids no farther apart than this, m, are at one place: bins would be so narrow that their number overflows.
+constexpr float kOnePlace = 1e-36f;
 
 // Lower bounds, then negated upper ones, four each, so that growing is one operation on vectors.
 struct Bounds {
@@ -105,6 +107,14 @@ public:
         return std::move(tree_);
     }
 
+    std::vector<float> rootAlone() {
+        const std::size_t root = emptyNode();
+        if (items_.empty()) return std::move(tree_.nodes);
+        const std::vector<Part> parts = childrenOf(partOf(0, items_.size()), 0);
+        for (std::size_t child = 0; child < parts.size(); ++child) writeBox(nodeAt(root), child, parts[child].bounds);
+        return std::move(tree_.nodes);
+    }
+
 private:
     Part partOf(std::size_t first, std::size_t count) const {
         Part part;
@@ -147,7 +157,7 @@ private:
         for (std::size_t axis = 1; axis < 3; ++axis)
             if (part.centres.extent(axis) > part.centres.extent(longest)) longest = axis;
         for (std::size_t axis = 0; axis < 3; ++axis)
-            if (part.centres.extent(axis) > 0.0f && (axis == longest || part.count <= kMany)) improve(best, part, axis);
+            if (part.centres.extent(axis) > kOnePlace && (axis == longest || part.count <= kMany)) improve(best, part, axis);
         return best;
     }
 
@@ -216,17 +226,23 @@ private:
         }
     }
 
-    std::size_t addNode(const Part& whole, std::size_t level) {
+    std::size_t emptyNode() {
         const std::size_t number = tree_.nodes.size() / LW_TREE_NODE;
         tree_.nodes.resize(tree_.nodes.size() + LW_TREE_NODE, 0.0f);
         std::fill_n(tree_.nodes.begin() + std::ptrdiff_t(number * LW_TREE_NODE + LW_TREE_HALF), 48, -1.0f);
+        return number;
+    }
+    float* nodeAt(std::size_t number) { return tree_.nodes.data() + number * LW_TREE_NODE; }
+
+    std::size_t addNode(const Part& whole, std::size_t level) {
+        const std::size_t number = emptyNode();
         const std::vector<Part> parts = childrenOf(whole, level);
         for (std::size_t child = 0; child < parts.size(); ++child) {
             const Part& part = parts[child];
             const bool isLeaf = part.count <= kMost;
             if (isLeaf) sort(part);
             const std::int32_t at = std::int32_t(isLeaf ? part.first : addNode(part, level + 1)), count = std::int32_t(isLeaf ? part.count : 0);
-            float* const node = tree_.nodes.data() + number * LW_TREE_NODE;
+            float* const node = nodeAt(number);
             writeBox(node, child, part.bounds);
             std::memcpy(node + LW_TREE_CHILD + child, &at, sizeof at);
             std::memcpy(node + LW_TREE_COUNT + child, &count, sizeof count);
@@ -243,6 +259,10 @@ private:
 
 TriangleTree triangleTreeOf(const std::vector<TriangleBox>& boxes, const TriangleOrder& isBefore) {
     return Builder(boxes, isBefore).build();
+}
+
+std::vector<float> boxesAround(const std::vector<TriangleBox>& boxes) {
+    return Builder(boxes, std::less<std::uint32_t>()).rootAlone();
 }
 
 // Of N nodes those whose children are all leaves, B, hold 17 triangles or more, so B <= n / 17; the others have 16 children. Leaves

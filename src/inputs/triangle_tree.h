@@ -22,6 +22,9 @@ using TriangleOrder = std::function<bool(std::uint32_t, std::uint32_t)>;
 // By what triangles are, not by where they stand among the others: leaves in that order, whatever the order of `boxes`.
 TriangleTree triangleTreeOf(const std::vector<TriangleBox>& boxes, const TriangleOrder& isBefore);
 
+// One node, without any below it, whose boxes hold all of these: no more than what a tree's root has.
+std::vector<float> boxesAround(const std::vector<TriangleBox>& boxes);
+
 // The most nodes over so many triangles.
 std::uint64_t mostTreeNodes(std::uint64_t triangles);
 

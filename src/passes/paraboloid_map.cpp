@@ -34,6 +34,7 @@ ParaboloidMap::ParaboloidMap(Device& device, std::uint32_t size)
       place_(device.programs().kernel(kProgram, "paraboloid_map_place")),
       clear_(device.programs().kernel(kProgram, "paraboloid_map_clear")),
       trace_(device.programs().kernel(kTrace, "paraboloid_map_trace")),
+      notice_(device.programs().kernel(kTrace, "paraboloid_map_notice")),
       planes_(device.programs().kernel(kProgram, "paraboloid_map_planes")) {
     if (size < kSmallest || size > kLargest || size % 16 != 0)
         fail(LW_ERROR_INVALID_ARGUMENT, "mapSize: expected a multiple of 16 in ", kSmallest, " .. ", kLargest,
@@ -53,20 +54,20 @@ void ParaboloidMap::reserve(std::uint32_t clusterCount) {
 }
 
 void ParaboloidMap::place(Executor& executor, const Buffer& clusters, std::uint32_t clusterCount,
-                          const Buffer& diagonal, std::uint64_t revision) {
+                          const Buffer& diagonal, bool force) {
     reserve(clusterCount);
     mapCount_ = clusterCount;
     executor.fill("paraboloid_map.clear", counters_, 0, 0, LW_MAP_COUNTERS * sizeof(cl_uint));
     if (clusterCount == 0) return;
-    const cl_int force = clusterCount > drawnCount_ || revision != drawnRevision_ ? 1 : 0;
-    executor.run("paraboloid_map.place", place_, {clusterCount, 1}, {1, 1}, clusters, cl_int(clusterCount), diagonal, force,
+    const cl_int all = clusterCount > drawnCount_ || force ? 1 : 0;
+    executor.run("paraboloid_map.place", place_, {clusterCount, 1}, {1, 1}, clusters, cl_int(clusterCount), diagonal, all,
                  frames_, state_, counters_);
     drawnCount_ = 0;  // where what draws fails, all of them again
 }
 
 void ParaboloidMap::recordPlaces(Executor& executor, const Buffer& clusters, std::uint32_t clusterCount,
                                  const Buffer& diagonal, std::uint64_t revision) {
-    place(executor, clusters, clusterCount, diagonal, revision);
+    place(executor, clusters, clusterCount, diagonal, revision != drawnRevision_);
     if (clusterCount == 0) return;
     const std::size_t texels = std::size_t(size_) * size_;
     executor.run("paraboloid_map.clear", clear_, {texels, mapCount_}, {64, 1}, state_, cl_int(texels), records_);
@@ -77,20 +78,31 @@ void ParaboloidMap::noteDrawn(std::uint64_t revision) {
     drawnRevision_ = revision;
 }
 
+Range ParaboloidMap::grid() const {
+    const std::uint32_t columns = LW_BLOCK_COLUMNS_OF(trace_.width()), rows = trace_.width() / columns;
+    return {size_ / columns, std::size_t(size_ / rows) * mapCount_};
+}
+
+void ParaboloidMap::notice(Executor& executor, const Buffer& changes) {
+    executor.run("paraboloid_map.notice", notice_, grid(), traceGroup(notice_.width()), changes, frames_, records_,
+                 cl_int(mapCount_), cl_int(size_), state_, counters_);
+}
+
 void ParaboloidMap::record(Executor& executor, const Buffer& clusters, std::uint32_t clusterCount,
                            const GeometryInput& geometry) {
     diagonal_.reserve(device_, sizeof(float), "the triangles' extent");
     cl_uint diagonal;
     std::memcpy(&diagonal, &geometry.diagonal, sizeof diagonal);
     executor.fill("paraboloid_map.clear", diagonal_, diagonal, 0, sizeof diagonal);
-    place(executor, clusters, clusterCount, diagonal_, geometry.revision);
+    const bool changed = geometry.revision != drawnRevision_, isNext = geometry.revision == drawnRevision_ + 1;
+    const bool known = isNext && clusterCount <= drawnCount_;
+    place(executor, clusters, clusterCount, diagonal_, changed && !known);
     if (clusterCount == 0) return;
+    if (known) notice(executor, geometry.changes);
     // A kernel's argument must be some memory, also where none is read.
     const bool any = geometry.triangleCount != 0;
     const cl_mem triangles = any ? geometry.triangles.memory : records_.get(), nodes = any ? geometry.nodes.get() : records_.get();
-    const std::uint32_t columns = LW_BLOCK_COLUMNS_OF(trace_.width()), rows = trace_.width() / columns;
-    const Range grid{size_ / columns, size_ / rows * clusterCount};
-    executor.run("paraboloid_map.trace", trace_, grid, traceGroup(trace_.width()), triangles,
+    executor.run("paraboloid_map.trace", trace_, grid(), traceGroup(trace_.width()), triangles,
                  cl_int(geometry.triangles.planeStride), nodes, cl_int(any ? 1 : 0), frames_, state_, cl_int(clusterCount),
                  cl_int(size_), records_, albedo_);
     noteDrawn(geometry.revision);

@@ -27,7 +27,7 @@ public:
     ParaboloidMap(Device& device, std::uint32_t size);
 
     // Records passes "paraboloid_map.*". `clusters`: lw_cluster each, `clusterCount` of them. A map is redrawn
-    // only when its cluster's medoid or normal moved or the geometry changed; that is found out on the device.
+    // only when its cluster's medoid or normal moved or the geometry changed in its sight; that is found out on the device.
     void record(Executor& executor, const Buffer& clusters, std::uint32_t clusterCount,
                 const GeometryInput& geometry);
     // For another pass to draw into: places the maps, and empties those that are stale. `diagonal`: of the geometry, a
@@ -59,12 +59,13 @@ public:
 
 private:
     void reserve(std::uint32_t clusterCount);
-    void place(Executor& executor, const Buffer& clusters, std::uint32_t clusterCount, const Buffer& diagonal,
-               std::uint64_t revision);
+    void place(Executor& executor, const Buffer& clusters, std::uint32_t clusterCount, const Buffer& diagonal, bool force);
+    void notice(Executor& executor, const Buffer& changes);
+    Range grid() const;  // of blocks of texels
 
     Device& device_;
     std::uint32_t size_;
-    Kernel &place_, &clear_, &trace_, &planes_;
+    Kernel &place_, &clear_, &trace_, &notice_, &planes_;
     Buffer frames_, state_, records_, albedo_, counters_, diagonal_;
     std::uint32_t mapCount_ = 0;
     std::uint32_t drawnCount_ = 0;  // maps that hold what `drawnRevision_` showed

@@ -29,6 +29,8 @@ public:
     void record(Executor& executor, const Planes& level, std::uint32_t every, std::uint32_t fullHeight, const Camera& camera,
                 std::uint32_t turn, const Planes& gathered);
 
+    void forget() { uploaded_.reset(); }  // what was uploaded may have been lost
+
     std::uint64_t bytes() const { return points_.bytes() + rotations_.bytes(); }
     static std::uint64_t estimateBytes(const PointOcclusionOptions& options);
 

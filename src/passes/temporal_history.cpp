@@ -87,10 +87,13 @@ bool ViewHistory::Drawn::isOf(const LWCamera& from, std::uint32_t w, std::uint32
 }
 
 void ViewHistory::startFrame(bool forget) {
-    if (forget)
-        for (Drawn& drawn : drawn_) drawn.camera.reset();
+    if (forget) this->forget();
     isDrawn_ = false;
     if (updates_ < std::numeric_limits<std::uint32_t>::max()) ++updates_;
+}
+
+void ViewHistory::forget() {
+    for (Drawn& drawn : drawn_) drawn.camera.reset();
 }
 
 void ViewHistory::report(Device& device, Report& report) const {

@@ -45,6 +45,8 @@ public:
 
     // Once per update of the technique. `forget`: a cut, or commands that were lost on the device.
     void startFrame(bool forget);
+    // Before a record that nothing recorded before may enter.
+    void forget();
     // Of the view's last record: the count "history_new", surfaces that started anew.
     void report(Device& device, Report& report) const;
     static std::uint64_t estimateBytes(const TemporalHistoryOptions& options, std::uint32_t maxWidth, std::uint32_t maxHeight);

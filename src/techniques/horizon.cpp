@@ -50,9 +50,12 @@ public:
           ambient_(device, {patternOf(desc), false, desc.weighting == LW_AMBIENT_UNIFORM}) {}
 
     void update(Executor&, const LWFrame& frame) override {
-        const bool forget = frame.reset != 0 || device_.failures() != failures_;
+        const bool lost = device_.failures() != failures_, forget = frame.reset != 0 || lost;
         failures_ = device_.failures();
         if (desc_.history) turn_ = forget ? 0 : turn_ + 1;
+        if (lost) {  // tables and borders that are written once may never have been
+            states_.clear();
+        }
         unused_ = unusedByScreen(frame);
         states_.purge();
         states_.each([&](HorizonView& state) { state.screen.startFrame(forget); });

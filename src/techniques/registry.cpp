@@ -2,6 +2,7 @@
 #include "techniques/ao.h"
 #include "techniques/fallback.h"
 #include "techniques/horizon.h"
+#include "techniques/lpv.h"
 #include "techniques/rsm.h"
 #include "techniques/screen_space.h"
 #include "techniques/ssvp.h"
@@ -16,6 +17,7 @@ const std::vector<TechniqueEntry>& techniqueEntries() {
         screenSpaceEntry(),
         horizonEntry(),
         aoEntry(),
+        lpvEntry(),
         fallbackEntry(),
     };
     return entries;

@@ -71,21 +71,20 @@ public:
             ScreenPicture::check(device_, options_, sourceView(gbuffer, sourceName(i)), gbuffer, sourceName(i));
         }
         unused_ = unusedInputs(frame, desc_.cameras != 0);
-        const bool forget = frame.reset != 0 || device_.failures() != failures_;
+        const bool lost = device_.failures() != failures_, forget = frame.reset != 0 || lost;
         failures_ = device_.failures();
         if (options_.keeps()) turn_ = forget ? 0 : turn_ + 1;
+        if (lost) {  // patterns and borders that are written once may never have been
+            states_.clear();
+            sources_.clear();
+        }
         states_.purge();
         states_.each([&](ViewState& state) { state.screen.startFrame(forget); });
-        sources_.resize(count);
+        takeSources(frame, count);
         for (std::uint32_t i = 0; i < count; ++i) {
             const LWGBuffer& gbuffer = *frame.sourceViews[i].gbuffer;
-            const View view = sourceView(gbuffer, sourceName(i));
-            Source& source = sources_[i];
-            if (!source.screen || source.screen->maxWidth() != view.width || source.screen->maxHeight() != view.height)
-                source.screen = std::make_unique<ScreenPicture>(device_, options_, view.width, view.height);
-            source.view = frame.sourceViews[i].view;
-            source.screen->startFrame(forget);
-            source.screen->light(executor, passes_, view, gbuffer, sourceName(i), turn_);
+            sources_[i].screen->startFrame(forget);
+            sources_[i].screen->light(executor, passes_, sourceView(gbuffer, sourceName(i)), gbuffer, sourceName(i), turn_);
         }
     }
 
@@ -128,6 +127,28 @@ private:
         LWView view = nullptr;  // the host's handle: a view takes nothing from itself
         std::unique_ptr<ScreenPicture> screen;
     };
+
+    // A picture for each source view: the one of the frame before that was of the same view, whatever its place in the list then,
+    // so that its history is its own. Without a handle the place tells.
+    void takeSources(const LWFrame& frame, std::uint32_t count) {
+        std::vector<Source> next(count);
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const View size = sourceView(*frame.sourceViews[i].gbuffer, sourceName(i));
+            next[i].view = frame.sourceViews[i].view;
+            for (std::size_t j = 0; j < sources_.size() && !next[i].screen; ++j) {
+                Source& before = sources_[j];
+                if (before.screen && before.view == next[i].view && (before.view || i == j) &&
+                    before.screen->maxWidth() == size.width && before.screen->maxHeight() == size.height)
+                    next[i].screen = std::move(before.screen);
+            }
+        }
+        sources_.clear();  // what is not taken gives its memory back first
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const View size = sourceView(*frame.sourceViews[i].gbuffer, sourceName(i));
+            if (!next[i].screen) next[i].screen = std::make_unique<ScreenPicture>(device_, options_, size.width, size.height);
+        }
+        sources_ = std::move(next);
+    }
 
     Device& device_;
     LWScreenSpaceDesc desc_;

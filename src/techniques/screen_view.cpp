@@ -1,5 +1,6 @@
 #include "techniques/screen_view.h"
 
+#include <cstring>
 #include <utility>
 
 #include "compute/device.h"
@@ -66,7 +67,7 @@ void ScreenView::check(Device& device, const View& view, const LWOutput& output,
 }
 
 // Memory of what this frame needs, for the view's largest size.
-void ScreenView::reserve(Executor& executor, const View& view) {
+void ScreenView::reserve(const View& view) {
     const std::uint32_t w = options_.gathered(view.maxWidth), h = options_.gathered(view.maxHeight);
     PyramidLevels& levels = wantsLight_ ? withLight_ : plain_;
     if (!levels.bytes()) levels = PyramidLevels(device_, view.maxWidth, view.maxHeight, pyramidOptions(options_, wantsLight_));
@@ -78,8 +79,6 @@ void ScreenView::reserve(Executor& executor, const View& view) {
         history_.emplace(device_, options_.history, view.maxWidth, view.maxHeight);
         current_ = PlanarImage(device_, view.maxWidth, view.maxHeight, 5, "light of a frame alone");
         kept_ = PlanarImage(device_, view.maxWidth, view.maxHeight, 5, "means not asked for");
-        // What a frame does not make stays what it was, and finite from the first on.
-        executor.fill("screen_view.clear", current_.buffer(), 0, 0, current_.bytes());
     }
     if (!options_.half) return;
     if (wantsLight_ && !filteredLight_) filteredLight_ = PlanarImage(device_, w, h, 5, "filtered light");
@@ -90,13 +89,13 @@ void ScreenView::begin(Executor& executor, const View& view, const LWGBuffer& gb
                        const Camera& camera, ScreenPasses& passes, std::uint32_t turn) {
     const bool light = isAsked(output.irradiance) || isAsked(output.validity);
     gbuffer_.import(executor, view, gbuffer, needsOf(options_, light), "gbuffer");
-    camera_ = gbuffer.camera;
     wantsLight_ = light;
     hasLight_ = false;  // should a later step fail, the images of the frame before are gone
     isRendered_ = true;
     width_ = options_.gathered(view.width);
     height_ = options_.gathered(view.height);
-    reserve(executor, view);
+    reserve(view);
+    if (history_) beginPicture(executor, view, gbuffer.camera);
     executor.fill("screen_view.counts", counts_, 0, 0, counts_.bytes());
     executor.fill("screen_view.counts", upsampleCounts_, 0, 0, upsampleCounts_.bytes());
     asked_.irradiance = irradianceTarget_.begin(executor, view, output.irradiance, 3, "output.irradiance");
@@ -106,6 +105,24 @@ void ScreenView::begin(Executor& executor, const View& view, const LWGBuffer& gb
     (light ? passes.withLight_ : passes.plain_)
         .record(executor, gbuffer_.position, gbuffer_.normal, gbuffer_.directRadiance, gbuffer_.receiveMask, camera,
                 light ? withLight_ : plain_, counts_, turn);
+}
+
+// The same picture may be rendered for one output after another: what was made of it first still holds.
+void ScreenView::beginPicture(Executor& executor, const View& view, const LWCamera& camera) {
+    const bool isSized = view.width == fullWidth_ && view.height == fullHeight_;
+    if (isBegun_ && isSized && std::memcmp(&camera_, &camera, sizeof camera) == 0) return;
+    // What is not made enters the history as it was last made: of another size it would be noise, and much later a change of light
+    // that also shortens the means of what is made.
+    if (!isSized || (hasOldLight_ && !wantsLight_ && !held_.light)) {
+        executor.fill("screen_view.clear", current_.buffer(), 0, 0, current_.bytes());
+        hasOldLight_ = false;
+    }
+    fresh_ = {};
+    heldBefore_ = held_;
+    isBegun_ = true;
+    fullWidth_ = view.width;
+    fullHeight_ = view.height;
+    camera_ = camera;
 }
 
 Planes ScreenView::sized(const PlanarImage& image) const { return image.planes(width_, height_); }
@@ -118,6 +135,8 @@ void ScreenView::finishLight(Executor& executor, ScreenPasses& passes, bool with
     const std::uint32_t base = levels().options().firstLevel;
     const Planes position = levels().position(base), normal = levels().normal(base), open = withAmbient ? made_.open : Planes{};
     hasLight_ = true;
+    fresh_.light = hasOldLight_ = true;
+    fresh_.open = fresh_.open || withAmbient;
     if (!options_.half) {
         passes.filterLight_.record(executor, position, normal, options_.columns, options_.rows, gathered(true), between(true),
                                    made_.irradiance, made_.validity, open);
@@ -134,6 +153,7 @@ void ScreenView::finishAmbient(Executor& executor, ScreenPasses& passes) {
     const std::uint32_t base = levels().options().firstLevel;
     const Planes position = levels().position(base), normal = levels().normal(base);
     const Planes filtered = options_.half ? sized(filteredAmbient_) : made_.open;
+    fresh_.open = true;
     passes.filterAmbient_.record(executor, position, normal, options_.columns, options_.rows, gathered(false),
                                  between(false), {}, {}, filtered);
     if (options_.half)
@@ -141,23 +161,28 @@ void ScreenView::finishAmbient(Executor& executor, ScreenPasses& passes) {
                                             upsampleCounts_);
 }
 
+void ScreenView::record(Executor& executor, ScreenPasses& passes) {
+    const Planes& size = gbuffer_.position;
+    const ScreenPlanes kept = partsOf(kept_.planes(size.width, size.height));
+    const auto to = [](const Planes& asked, const Planes& spare) { return asked ? asked : spare; };
+    // A mean of what was not made before is none.
+    if ((fresh_.light && !heldBefore_.light) || (fresh_.open && !heldBefore_.open)) history_->forget();
+    passes.history_->record(executor,
+                            {gbuffer_.position, gbuffer_.normal, gbuffer_.motion, current_.planes(size.width, size.height),
+                             to(asked_.irradiance, kept.irradiance), to(asked_.validity, kept.validity), to(asked_.open, kept.open)},
+                            camera_, *history_);
+    held_ = fresh_;
+}
+
 void ScreenView::end(Executor& executor, ScreenPasses& passes) {
-    if (history_) {
-        const Planes& size = gbuffer_.position;
-        const ScreenPlanes kept = partsOf(kept_.planes(size.width, size.height));
-        const auto to = [](const Planes& asked, const Planes& spare) { return asked ? asked : spare; };
-        passes.history_->record(executor,
-                                {gbuffer_.position, gbuffer_.normal, gbuffer_.motion, current_.planes(size.width, size.height),
-                                 to(asked_.irradiance, kept.irradiance), to(asked_.validity, kept.validity), to(asked_.open, kept.open)},
-                                camera_, *history_);
-    }
+    if (history_) record(executor, passes);
     irradianceTarget_.end(executor);
     validityTarget_.end(executor);
     ambientTarget_.end(executor);
 }
 
 void ScreenView::startFrame(bool forget) {
-    isRendered_ = false;
+    isRendered_ = isBegun_ = false;
     if (history_) history_->startFrame(forget);
 }
 

@@ -77,7 +77,10 @@ public:
     static std::uint64_t estimateBytes(const ScreenOptions& options, const LWViewDesc& view, bool uploads);
 
 private:
-    void reserve(Executor& executor, const View& view);
+    void reserve(const View& view);
+    // With a history: forgets which parts of current_ are this picture's, where another begins.
+    void beginPicture(Executor& executor, const View& view, const LWCamera& camera);
+    void record(Executor& executor, ScreenPasses& passes);  // into the history
     Planes sized(const PlanarImage& image) const;
     Planes between(bool light) const;  // scratch of the filter
 
@@ -92,6 +95,14 @@ private:
     ScreenPlanes made_;   // what a frame alone makes: those, or parts of current_
     PlanarImage current_, kept_;  // with a history: a frame alone; means that the host has not asked for
     std::optional<ViewHistory> history_;
+    struct Parts {
+        bool light = false, open = false;
+    };
+    // What current_ holds of this picture, and what the history does of this one and of the one before.
+    Parts fresh_, held_, heldBefore_;
+    bool isBegun_ = false;      // a picture, since the last startFrame
+    bool hasOldLight_ = false;  // current_, perhaps of another picture
+    std::uint32_t fullWidth_ = 0, fullHeight_ = 0;
     LWCamera camera_{};
     std::uint32_t width_ = 0, height_ = 0;  // of the gathered image
     bool wantsLight_ = false, isRendered_ = false, hasLight_ = false;

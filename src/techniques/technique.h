@@ -80,6 +80,8 @@ public:
         for (const auto& entry : states_) visit(*entry.second);
     }
 
+    void clear() { states_.clear(); }
+
     // Drops the states of views that are gone.
     void purge() {
         for (std::size_t i = states_.size(); i-- > 0;)

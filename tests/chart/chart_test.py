@@ -199,6 +199,7 @@ class Chart(unittest.TestCase):
 
     def test_refusals(self):
         self.assertIn("rsm", self.chart("--techniques", "nothing", code=2))
+        self.assertIn("--on-screen", self.chart("--quick", "--techniques", "rsm", "--on-screen", "--no-report", code=2))
         self.assertIn("nothing", self.chart("--quick", "--scenes", "nothing", "--no-report", code=2))
         for wrong in ("vpls=65", "vplz=64", "vpls"):  # none charts everything instead
             self.assertIn("--only", self.chart(*QUICK, "--scenes", "cornell", "--only", wrong, code=2))

@@ -134,16 +134,20 @@ TEST_CASE("uploaded again only when something changed; host memory is the host's
     input.import(rig.executor(), nullptr);
     CHECK(uploads(rig) == 0);
     CHECK(input.triangleCount == 0);
-    CHECK(import() == 2);
+    CHECK(import() == 3);
     const std::uint64_t revision = input.revision;
     mesh.vertices[0] += 1.0f;  // nobody said so
-    CHECK(import() == 2);
+    CHECK(import() == 3);
     CHECK(input.revision == revision);
     ++mesh.version;
-    CHECK(import() == 4);
-    CHECK(input.revision != revision);
+    CHECK(import() == 6);
+    CHECK(input.revision == revision + 1);
+    ++mesh.version;  // and nothing else
+    CHECK(import() == 6);
+    CHECK(input.revision == revision + 1);
     mesh = Mesh{};
-    CHECK(import() == 4);
+    CHECK(import() == 6);
+    CHECK(input.revision > revision + 2);  // all went: no boxes around it
     CHECK((input.triangleCount == 0 && input.diagonal == 0.0f && !input.triangles));
     {
         const Mesh brief = scatter(40);
@@ -205,4 +209,54 @@ TEST_CASE("what is wrong with a geometry is said, and the last one stays", "[geo
     albedo[4] = std::numeric_limits<float>::quiet_NaN();
     CHECK(refusal([&](LWGeometry& g) { g.triangleAlbedo = albedo.data(); }).find("triangleAlbedo[4]") != std::string::npos);
     CHECK(thrown([] { GeometryInput::estimateBytes(0xffffffffu); }).says("triangleCount: expected at most"));
+}
+
+TEST_CASE("boxes around what changed, between lists of any lengths", "[geometry_input]") {
+    KernelRig rig(16);
+    Mesh mesh = scatter(200);
+    GeometryInput input;
+    const auto changedAfter = [&](std::size_t first, std::size_t count, double by) {
+        const Mesh before = mesh;
+        for (std::size_t i = 9 * first; i < 9 * (first + count); ++i) mesh.vertices[i] += float(by);
+        ++mesh.version;
+        const LWGeometry g = mesh.geometry();
+        input.import(rig.executor(), &g);
+        rig.device().finish();
+        const std::vector<float> node = floatsOf(input.changes.get(), rig.device(), LW_TREE_NODE);
+        for (const Mesh* m : {&before, static_cast<const Mesh*>(&mesh)})
+            for (std::size_t t = first; t < first + count; ++t) {
+                std::vector<float> corners(&m->vertices[9 * t], &m->vertices[9 * t] + 9);
+                CHECK(isUnder(node, corners, 1, 0));
+            }
+        double volume = 0.0;
+        for (std::size_t child = 0; child < LW_TREE_CHILDREN; ++child)
+            if (const float* const half = &node[LW_TREE_HALF + child]; half[0] >= 0.0f)
+                volume += 8.0 * double(half[0]) * double(half[16]) * double(half[32]);
+        return volume;
+    };
+    changedAfter(0, 200, 0.0);
+    CHECK(changedAfter(3, 1, 0.1) < 2.2 * 2.2 * 2.2);  // a triangle reaches over at most 2 a side
+    CHECK(changedAfter(0, 90, 0.5) > 100.0);
+    const std::uint64_t revision = input.revision;
+    mesh.vertices.resize(9 * 150);  // those after the last went
+    ++mesh.version;
+    const LWGeometry fewer = mesh.geometry();
+    input.import(rig.executor(), &fewer);
+    CHECK((input.triangleCount == 150 && input.revision == revision + 1));
+}
+
+TEST_CASE("after it was forgotten geometry is brought again, none of it too, and what changed is not known", "[geometry_input]") {
+    KernelRig rig(16);
+    const Mesh mesh = scatter(40);
+    GeometryInput input;
+    const LWGeometry g = mesh.geometry();
+    input.import(rig.executor(), &g);
+    const std::uint64_t revision = input.revision, before = uploads(rig);
+    input.forget();
+    input.import(rig.executor(), &g);
+    CHECK(input.revision > revision + 1);
+    CHECK(uploads(rig) > before);
+    input.forget();
+    input.import(rig.executor(), nullptr);
+    CHECK((input.triangleCount == 0 && !input.triangles));
 }

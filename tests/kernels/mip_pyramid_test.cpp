@@ -1,84 +1,26 @@
 // The pyramid of a G-buffer against its serial twin, conserved quantities and closed forms.
-#include "passes/mip_pyramid.h"
+#include "kernels/pyramid_rig.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <limits>
-
-#include "inputs/camera.h"
-#include "reference/pyramid_twin.h"
-#include "support/kernel_rig.h"
 
 using namespace lightwell;
 using namespace lightwell::test;
-using reference::Image;
-using reference::PinholeCamera;
 using reference::PyramidLevel;
 using reference::Vec;
 
 namespace {
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 // Positions are copies, normals three roundings. Areas and radiances: the offset from the eye, its cube, a few
 // divisions, then sums of four on each level.
 constexpr double kTwinTolerance = 1e-5;
 // Which child is nearest, or on the kept surface, is rounding's where two are equally so: such a texel is another one.
 constexpr double kTwinShare = 5e-3;
 
-struct Scene {
-    Image position, normal, radiance;
-    std::vector<float> mask;
-    Scene(std::uint32_t w, std::uint32_t h) : position(w, h), normal(w, h), radiance(w, h), mask(std::size_t(w) * h) {}
-};
-
-// What a pyramid holds, packed, by level.
-struct Read {
-    std::vector<Image> position, normal, radiance;
-    std::vector<std::vector<float>> area, depth;
-    std::vector<cl_int> counts;
-};
-
-Read build(KernelRig& rig, const Scene& scene, const PinholeCamera& camera, const PyramidOptions& options) {
-    const std::uint32_t w = scene.position.width, h = scene.position.height;
-    const Guarded p = rig.uploadPlanes(scene.position.planes, w, h, 3, kNaN), n = rig.uploadPlanes(scene.normal.planes, w, h, 3, 1.0f);
-    const Guarded l = rig.uploadPlanes(scene.radiance.planes, w, h, 3, kNaN), m = rig.uploadPlanes(scene.mask, w, h, 1, kNaN);
-    const Guarded counts = rig.upload(std::vector<cl_int>{0, 0});
-    MipPyramid pass(rig.device(), options.extras);
-    // Larger than the image: what lies behind the levels must stay zero, as must the borders.
-    PyramidLevels levels(rig.device(), w + 40, h + 5, options);
-    for (int frame = 0; frame < 2; ++frame) {  // the second finds the memory of the first
-        rig.executor().fill("test.counts", counts, 0, 0, counts.dataBytes());
-        pass.record(rig.executor(), rig.planes(p, w, h, 3), rig.planes(n, w, h, 3), rig.planes(l, w, h, 3), rig.planes(m, w, h, 1),
-                    Camera(camera.matrices(), w, h, "camera"), levels, counts);
-    }
-    rig.device().finish();
-    Read read;
-    std::vector<float> all(levels.bytes() / sizeof(float));
-    levels.memory().download(0, levels.bytes(), all.data());
-    for (std::uint32_t k = options.firstLevel; k <= options.lastLevel; ++k) {
-        const auto image = [&](const Planes& planes) {
-            Image result(planes.width, planes.height, planes.count);
-            result.planes = rig.downloadPlanes(planes);
-            return result;
-        };
-        read.position.push_back(image(levels.position(k)));
-        read.normal.push_back(image(levels.normal(k)));
-        if (options.extras & kPyramidRadiance) read.radiance.push_back(image(levels.radiance(k)));
-        if (options.extras & kPyramidArea) read.area.push_back(image(levels.area(k)).planes);
-        if (options.extras & kPyramidDepth) read.depth.push_back(image(levels.depth(k)).planes);
-        const Planes planes = levels.level(k);
-        for (std::uint32_t row = 0; row < planes.height * planes.count; ++row)
-            for (std::uint32_t x = 0; x < planes.width; ++x) all[std::size_t(planes.offset + row * planes.rowStride + x)] = 0.0f;
-    }
-    CHECK(std::all_of(all.begin(), all.end(), [](float v) { return v == 0.0f; }));
-    read.counts = rig.download<cl_int>(counts);
-    return read;
-}
-
 // A corner, a slab before it and background, seen by a camera; light, a character that only receives, bad numbers.
-Scene cornerScene(std::uint32_t w, std::uint32_t h, const PinholeCamera& camera) {
-    Scene scene(w, h);
+PyramidScene cornerScene(std::uint32_t w, std::uint32_t h, const PinholeCamera& camera) {
+    PyramidScene scene(w, h);
     const Image light = reference::randomImage(w, h, 3);
     for (std::uint32_t y = 0; y < h; ++y)
         for (std::uint32_t x = 0; x < w; ++x) {
@@ -105,16 +47,16 @@ TEST_CASE("a pyramid equals its serial twin", "[mip_pyramid]") {
     KernelRig rig(width);
     const auto [w, h] = size;
     const PinholeCamera camera{{0.2, 0.3, 0.5}, 0.4, w, h};
-    Scene scene = cornerScene(w, h, camera);
+    PyramidScene scene = cornerScene(w, h, camera);
     int bad = 0;
     if (w > 30) {
-        scene.radiance.set(w - 2, h - 1, {kNaN, 1, 1});
+        scene.radiance.set(w - 2, h - 1, {kNoNumber, 1, 1});
         scene.radiance.set(w / 3, h - 1, {1, -1, 1});
         scene.normal.set(w - 1, h - 1, {0.1, 0, 0});  // no normal: rejected
         bad = 1;
     }
     const PyramidOptions options{kPyramidRadiance | kPyramidArea | kPyramidDepth, first, 4};
-    const Read read = build(rig, scene, camera, options);
+    const PyramidRead read = build(rig, scene, camera, options);
     CHECK(read.counts == std::vector<cl_int>{bad, 2 * bad});
     PyramidLevel level = reference::pyramidBase(scene.position, scene.normal, scene.radiance, camera, [&](std::uint32_t x, std::uint32_t y) {
         return scene.mask[scene.position.at(x, y)] != 0.0f;
@@ -152,8 +94,8 @@ TEST_CASE("a pyramid that starts at a quarter has the bits of one that starts at
     CAPTURE(width, size.first, size.second, extras);
     KernelRig rig(width);
     const PinholeCamera camera{{0.1, 0.2, 0.5}, 0.4, size.first, size.second};
-    const Scene scene = cornerScene(size.first, size.second, camera);
-    const Read half = build(rig, scene, camera, {extras, 1, 3}), quarter = build(rig, scene, camera, {extras, 2, 3});
+    const PyramidScene scene = cornerScene(size.first, size.second, camera);
+    const PyramidRead half = build(rig, scene, camera, {extras, 1, 3}), quarter = build(rig, scene, camera, {extras, 2, 3});
     CHECK(quarter.counts == half.counts);
     for (std::size_t k = 0; k < 2; ++k) {
         CHECK(bitDifference(quarter.position[k].planes, half.position[k + 1].planes) == "");
@@ -165,13 +107,13 @@ TEST_CASE("a pyramid that starts at a quarter has the bits of one that starts at
 
 TEST_CASE("a pyramid has the same bits at every width, and fewer planes change nothing", "[mip_pyramid][large]") {
     const PinholeCamera camera{{0.2, 0.3, 0.5}, 0.4, 131, 57};
-    const Scene scene = cornerScene(131, 57, camera);
+    const PyramidScene scene = cornerScene(131, 57, camera);
     const PyramidOptions options{kPyramidRadiance | kPyramidArea, 1, 4};
     KernelRig scalar(1);
-    const Read first = build(scalar, scene, camera, options);
+    const PyramidRead first = build(scalar, scene, camera, options);
     for (const std::uint32_t width : {4u, 8u, 16u}) {
         KernelRig rig(width);
-        const Read other = build(rig, scene, camera, options);
+        const PyramidRead other = build(rig, scene, camera, options);
         for (std::size_t i = 0; i < 4; ++i) {
             CHECK(bitDifference(other.position[i].planes, first.position[i].planes) == "");
             CHECK(bitDifference(other.normal[i].planes, first.normal[i].planes) == "");
@@ -179,10 +121,10 @@ TEST_CASE("a pyramid has the same bits at every width, and fewer planes change n
             CHECK(bitDifference(other.area[i], first.area[i]) == "");
         }
     }
-    Scene everyoneSends = scene;
+    PyramidScene everyoneSends = scene;
     std::fill(everyoneSends.mask.begin(), everyoneSends.mask.end(), 0.0f);
-    const Read full = build(scalar, everyoneSends, camera, {kPyramidRadiance | kPyramidDepth, 0, 3});
-    const Read depth = build(scalar, everyoneSends, camera, {kPyramidDepth, 0, 3}), none = build(scalar, everyoneSends, camera, {0, 0, 3});
+    const PyramidRead full = build(scalar, everyoneSends, camera, {kPyramidRadiance | kPyramidDepth, 0, 3});
+    const PyramidRead depth = build(scalar, everyoneSends, camera, {kPyramidDepth, 0, 3}), none = build(scalar, everyoneSends, camera, {0, 0, 3});
     for (std::size_t i = 0; i < 4; ++i) {
         CHECK(bitDifference(depth.position[i].planes, full.position[i].planes) == "");
         CHECK(bitDifference(depth.depth[i], full.depth[i]) == "");
@@ -195,15 +137,8 @@ TEST_CASE("a texel is the nearest pixel of exactly its own block", "[mip_pyramid
     KernelRig rig(16);
     const auto [w, h] = testSize(std::make_pair(150u, 45u));
     const PinholeCamera camera{{0, 0, 0}, 0.5, w, h};
-    Scene scene(w, h);
-    const Image noise = reference::randomImage(w, h, 9);
-    for (std::uint32_t y = 0; y < h; ++y)
-        for (std::uint32_t x = 0; x < w; ++x) {
-            if (noise.get(x, y).y < 0.3) continue;
-            scene.position.set(x, y, camera.ray(x + 0.5, y + 0.5) * (2.0 + noise.get(x, y).x));
-            scene.normal.set(x, y, {0, 0, 1});
-        }
-    const Read read = build(rig, scene, camera, {kPyramidDepth, 1, 5});
+    const PyramidScene scene = grainyScene(camera, w, h);
+    const PyramidRead read = build(rig, scene, camera, {kPyramidDepth, 1, 5});
     for (std::uint32_t k = 1; k <= 5; ++k)
         for (std::uint32_t y = 0; y < PyramidLevels::sizeAt(h, k); ++y)
             for (std::uint32_t x = 0; x < PyramidLevels::sizeAt(w, k); ++x) {
@@ -224,38 +159,6 @@ TEST_CASE("a texel is the nearest pixel of exactly its own block", "[mip_pyramid
             }
 }
 
-TEST_CASE("a sampled texel is one pixel of its block, background too", "[mip_pyramid]") {
-    const auto width = GENERATE(1u, 16u);
-    KernelRig rig(width);
-    const auto [w, h] = testSize(std::make_pair(147u, 45u));
-    const PinholeCamera camera{{0, 0, 0}, 0.5, w, h};
-    Scene scene(w, h);
-    const Image noise = reference::randomImage(w, h, 9);
-    for (std::uint32_t y = 0; y < h; ++y)
-        for (std::uint32_t x = 0; x < w; ++x) {
-            if (noise.get(x, y).y < 0.3) continue;
-            scene.position.set(x, y, camera.ray(x + 0.5, y + 0.5) * (2.0 + noise.get(x, y).x));
-            scene.normal.set(x, y, {0, 0, 1});
-        }
-    PyramidOptions options{0, 0, 5};
-    options.sampled = true;
-    const Read read = build(rig, scene, camera, options);
-    std::uint32_t offset = 0;  // of the pixel in its block: the last bit of every second level, so that it stays about the middle
-    for (std::uint32_t k = 0; k <= 5; ++k) {
-        for (std::uint32_t y = 0; y < PyramidLevels::sizeAt(h, k); ++y)
-            for (std::uint32_t x = 0; x < PyramidLevels::sizeAt(w, k); ++x) {
-                const std::uint32_t i = (x << k) + offset, j = (y << k) + offset;
-                const bool on = i < w && j < h && scene.normal.get(i, j).z > 0;
-                const Vec got = read.position[k].get(x, y), n = read.normal[k].get(x, y);
-                CAPTURE(k, x, y);
-                REQUIRE((n.z > 0) == on);
-                if (!on) REQUIRE(n.x * n.x + n.y * n.y == 0.0);
-                if (on) REQUIRE((got.x == scene.position.get(i, j).x && got.z == scene.position.get(i, j).z));
-            }
-        if (k % 2) offset += 1u << k;
-    }
-}
-
 TEST_CASE("areas of texels sum to the area seen and their flux is that of the base, on every level", "[mip_pyramid]") {
     // A plane seen at a slant fills the image: its area between the rays through the corners is a closed form.
     const auto width = GENERATE(1u, 16u);
@@ -266,7 +169,7 @@ TEST_CASE("areas of texels sum to the area seen and their flux is that of the ba
     for (const std::uint32_t finer : {1u, 2u}) {
         const std::uint32_t w = finer * size.first, h = finer * size.second;
         const PinholeCamera camera{{1, 2, 3}, 0.76 * h / w, w, h};
-        Scene scene(w, h);
+        PyramidScene scene(w, h);
         const Image light = reference::randomImage(w, h, 5);
         for (std::uint32_t y = 0; y < h; ++y)
             for (std::uint32_t x = 0; x < w; ++x) {
@@ -277,7 +180,7 @@ TEST_CASE("areas of texels sum to the area seen and their flux is that of the ba
         const Vec a = camera.onPlane(0, 0, point, n), b = camera.onPlane(w, 0, point, n), c = camera.onPlane(w, h, point, n),
                   d = camera.onPlane(0, h, point, n), p = c - a, q = d - b;
         const double area = 0.5 * std::abs(dot({p.y * q.z - p.z * q.y, p.z * q.x - p.x * q.z, p.x * q.y - p.y * q.x}, n));
-        const Read read = build(rig, scene, camera, {kPyramidRadiance | kPyramidArea, 0, 5});
+        const PyramidRead read = build(rig, scene, camera, {kPyramidRadiance | kPyramidArea, 0, 5});
         double baseArea = 0.0, baseFlux = 0.0;
         for (std::size_t k = 0; k <= 5; ++k) {
             double sum = 0.0, flux = 0.0;
@@ -309,7 +212,7 @@ TEST_CASE("a shift by one pixel shifts every level's light by one pixel", "[mip_
     const PinholeCamera camera{{0, 0, 0}, 0.5, w, h};
     const PyramidOptions options{kPyramidRadiance | (hasArea ? kPyramidArea : 0u), 0, 4};
     for (std::uint32_t shift = 0; shift < 5; ++shift) {
-        Scene scene(w, h);
+        PyramidScene scene(w, h);
         const double cx = 90.0 + shift, cy = 50.0 + shift;
         for (std::uint32_t y = 0; y < h; ++y)
             for (std::uint32_t x = 0; x < w; ++x) {
@@ -318,7 +221,7 @@ TEST_CASE("a shift by one pixel shifts every level's light by one pixel", "[mip_
                 scene.normal.set(x, y, {0, 0, 1});
                 scene.radiance.set(x, y, {l, l, l});
             }
-        const Read read = build(rig, scene, camera, options);
+        const PyramidRead read = build(rig, scene, camera, options);
         for (std::uint32_t k = 0; k <= 4; ++k) {
             double sum = 0.0, sx = 0.0, sy = 0.0, off = 0.0;
             const std::uint32_t lw = read.position[k].width, lh = read.position[k].height;
@@ -345,7 +248,7 @@ TEST_CASE("background wins nowhere and sends nothing; those that only receive ne
     const auto width = GENERATE(1u, 16u);
     KernelRig rig(width);
     const PinholeCamera camera{{0, 0, 0}, 0.5, 16, 4};
-    Scene scene(16, 4);
+    PyramidScene scene(16, 4);
     // A wall two units away with a hole whose pixels claim to be nearer and bright, and a character at one unit.
     for (std::uint32_t y = 0; y < 4; ++y)
         for (std::uint32_t x = 0; x < 16; ++x) {
@@ -358,7 +261,7 @@ TEST_CASE("background wins nowhere and sends nothing; those that only receive ne
                 scene.mask[scene.position.at(x, y)] = 7.0f;
             }
         }
-    const Read read = build(rig, scene, camera, {kPyramidRadiance | kPyramidArea, 1, 2});
+    const PyramidRead read = build(rig, scene, camera, {kPyramidRadiance | kPyramidArea, 1, 2});
     for (std::uint32_t x = 0; x < 8; ++x) {
         CAPTURE(x);
         CHECK(read.radiance[0].get(x, 0).x == Approx(1.0));

@@ -208,7 +208,12 @@ TEST_CASE("a map is redrawn when its medoid, its normal or the geometry moved, a
     CHECK(countOf(rig.draw(mesh, clusters), "maps_redrawn") == 2);
     for (std::size_t k = 0; k < 4; ++k) CHECK(poisoned(k) == (k == 0 || k == 3));
     poison();
-    ++mesh.version;
+    rig.draw(mesh, kFour);
+    CHECK(rig.maps().records != maps.records);
+    Mesh other = soup(60, 9);
+    other.version = 2;
+    CHECK(countOf(rig.draw(other, kFour), "maps_redrawn") == 4);
+    mesh.version = 3;
     CHECK(countOf(rig.draw(mesh, kFour), "maps_redrawn") == 4);
     CHECK(rig.maps().records == maps.records);
     poison();

@@ -108,6 +108,23 @@ TEST_CASE("scenes that no plane splits well make no deeper tree than kernels can
         boxes.push_back({{at, 0.0f, 0.0f}, {at, 1.0f, float(i) * 1e-9f}});
     }
     checkTree(boxes);
+    std::vector<TriangleBox> dust;  // bins so narrow that how many go into a metre is no float
+    for (int i = 0; i < 100; ++i) dust.push_back({{float(i) * 1e-42f, 0.0f, 0.0f}, {float(i) * 1e-42f, 1.0f, 1.0f}});
+    checkTree(dust);
+}
+
+TEST_CASE("a node alone holds all boxes, apart where they are", "[triangle_tree]") {
+    for (const std::size_t count : {0u, 1u, 17u, 5000u}) {
+        const std::vector<TriangleBox> boxes = someBoxes(count);
+        TriangleTree root;
+        root.nodes = boxesAround(boxes);
+        REQUIRE(root.nodes.size() == LW_TREE_NODE);
+        for (const TriangleBox& box : boxes) {
+            bool isHeld = false;
+            for (std::size_t child = 0; child < LW_TREE_CHILDREN; ++child) isHeld = isHeld || holds(root, 0, child, box);
+            REQUIRE(isHeld);
+        }
+    }
 }
 
 TEST_CASE("the tree is the same whatever the order of the triangles", "[triangle_tree]") {

@@ -9,6 +9,7 @@
 
 #include "reference/pyramid_twin.h"
 #include "support/lit_room.h"
+#include "support/packed_light.h"
 #include "support/scoped_api.h"
 
 namespace lightwell::test {
@@ -96,18 +97,6 @@ inline Result render(LWDevice device, const LWScreenSpaceDesc& desc, const Pictu
     TestTechnique technique(device, "screen_space", &desc);
     TestView view(device, picture.camera.width, picture.camera.height);
     return render(technique, view, picture.gbuffer, device, sources);
-}
-
-inline double meanOf(const std::vector<float>& values) {
-    double sum = 0.0;
-    for (const float v : values) sum += double(v);
-    return sum / double(values.size());
-}
-
-inline double rootMeanSquare(const std::vector<float>& a, const std::vector<float>& b) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < a.size(); ++i) sum += std::pow(double(a[i]) - double(b[i]), 2.0);
-    return std::sqrt(sum / double(a.size())) / meanOf(b);
 }
 
 // A floor of radiance 1 that meets a dark wall, both wholly on the screen: 2 wide, 1 deep, 1 high.

@@ -6,6 +6,7 @@
 
 #include "support/camera_matrices.h"
 #include "support/lit_room.h"
+#include "support/packed_light.h"
 #include "support/scoped_api.h"
 
 using namespace lightwell::test;
@@ -47,18 +48,6 @@ LWFrame frameOf(const LWLight& light, std::uint32_t reset = 0) {
     return frame;
 }
 
-double meanOf(const std::vector<float>& values) {
-    double sum = 0.0;
-    for (const float v : values) sum += double(v);
-    return sum / double(values.size());
-}
-
-double distance(const std::vector<float>& a, const std::vector<float>& b) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < a.size(); ++i) sum += std::pow(double(a[i]) - double(b[i]), 2);
-    return std::sqrt(sum / double(a.size())) / meanOf(b);
-}
-
 constexpr std::uint32_t kWidth = 96, kHeight = 64;
 
 }  // namespace
@@ -75,13 +64,13 @@ TEST_CASE("with a history a static view nears the light of all texels, and stays
     limit.update({floor.light});
     alone.update({floor.light});
     const std::vector<float> truth = limit.render(view, scene.gbuffer);
-    const double error = distance(alone.render(view, scene.gbuffer), truth);
+    const double error = difference(alone.render(view, scene.gbuffer), truth);
     double late = 0.0, worst = 0.0, first = 0.0, last = 0.0;
     for (int f = 0; f < 500; ++f) {
         kept.update({floor.light});
         const std::vector<float> picture = kept.render(view, scene.gbuffer);
         if (f < 64) continue;
-        const double now = distance(picture, truth);
+        const double now = difference(picture, truth);
         worst = std::max(worst, now);
         late = now;
         if (f < 164) first += meanOf(picture) / 100.0;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 
+#include "support/packed_light.h"
 #include "techniques/screen_rig.h"
 
 using namespace lightwell::test;
@@ -36,38 +37,29 @@ LWAoDesc aoWith(std::uint32_t history, std::uint32_t samples) {
 
 DrawnView litView() { return DrawnView(litScene(2.0), lookAt({0.7, 1.4, 2.4}, {0, 0.4, 0.3}, 0.42), kWidth, kHeight); }
 
-double meanOf(const std::vector<float>& values) {
-    double sum = 0.0;
-    for (const float v : values) sum += double(v);
-    return sum / double(values.size());
-}
-
-double distance(const std::vector<float>& a, const std::vector<float>& b) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < a.size(); ++i) sum += std::pow(double(a[i]) - double(b[i]), 2);
-    return std::sqrt(sum / double(a.size())) / meanOf(b);
-}
-
 // Frames of `kept` near `truth`, more than `alone` is, and stay there.
+// From frame 192 on: the bounds' measure of the noise takes some 128 frames to settle. horizon, windows of 64 frames from 0 on, against
+// frames 64 to 640: with bounds -0.5, -0.2, 0.0 %, then within 0.09 %; without (history_clamp=0) -0.2 %, then within 0.05 %, first
+// to last. Nothing goes on drifting.
 // noise: of a mean over 128 frames of patterns that never come again, as a share.
 void checkStatic(LWDevice device, TestTechnique& kept, const ScreenResult& alone, const ScreenResult& truth, double noise) {
     DrawnView drawn = litView();
     TestView view(device, kWidth, kHeight);
     double first = 0.0, last = 0.0, worst = 0.0;
-    const double error = distance(alone.irradiance, truth.irradiance);
+    const double error = difference(alone.irradiance, truth.irradiance);
     ScreenResult result;
     for (int f = 0; f < 500; ++f) {
         result = renderScreen(kept, view, device, drawn.gbuffer);
         if (f < 64) continue;
-        worst = std::max(worst, distance(result.irradiance, truth.irradiance));
-        if (f < 192) first += meanOf(result.irradiance) / 128.0;
+        worst = std::max(worst, difference(result.irradiance, truth.irradiance));
+        if (f >= 192 && f < 320) first += meanOf(result.irradiance) / 128.0;
         if (f >= 372) last += meanOf(result.irradiance) / 128.0;
     }
     CAPTURE(error, worst, first, last);
     CHECK(worst < 0.7 * error);
     CHECK(last == Approx(first).epsilon(noise));
-    CHECK(distance(result.validity, truth.validity) < 0.7 * distance(alone.validity, truth.validity));
-    CHECK(distance(result.ambient, truth.ambient) < 0.7 * distance(alone.ambient, truth.ambient));
+    CHECK(difference(result.validity, truth.validity) < 0.7 * difference(alone.validity, truth.validity));
+    CHECK(difference(result.ambient, truth.ambient) < 0.7 * difference(alone.ambient, truth.ambient));
     CHECK(kept.count("history_new") == 0);
 }
 
@@ -89,7 +81,7 @@ TEST_CASE("with a history horizon nears all slices at once, and stays there for 
     DrawnView drawn = litView();
     const auto single = renderScreen(device, "horizon", &alone, drawn), truth = renderScreen(device, "horizon", &all, drawn);
     TestTechnique technique(device, "horizon", &kept);
-    checkStatic(device, technique, single, truth, 3e-3);
+    checkStatic(device, technique, single, truth, 1e-3);
 }
 
 TEST_CASE("with a history ao nears many points, and stays there for 500 frames", "[ao][history]") {
@@ -103,6 +95,8 @@ TEST_CASE("with a history ao nears many points, and stays there for 500 frames",
     DrawnView drawn = litView();
     const auto single = renderScreen(device, "ao", &alone, drawn), truth = renderScreen(device, "ao", &all, drawn);
     TestTechnique technique(device, "ao", &kept);
+    // Without bounds the mean is linear and cannot drift: what is left is the noise of light that few points find. Ten windows
+    // of 64 frames differ from their mean by 0.3 % (standard deviation) in no order, and so do halves of 200 frames.
     checkStatic(device, technique, single, truth, 1e-2);
 }
 
@@ -144,5 +138,5 @@ TEST_CASE("ambient occlusion alone has a history, too", "[horizon][history]") {
     TestView view(device, kWidth, kHeight);
     ScreenResult result;
     for (int f = 0; f < 48; ++f) result = renderScreen(technique, view, device, drawn.gbuffer, kAmbient);
-    CHECK(distance(result.ambient, truth.ambient) < 0.7 * distance(single.ambient, truth.ambient));
+    CHECK(difference(result.ambient, truth.ambient) < 0.7 * difference(single.ambient, truth.ambient));
 }

@@ -157,7 +157,8 @@ TEST_CASE("a still frame redraws no map of surfels, and every map of the screen,
     }
     technique.update(Frame(floor, describe(room, asSurfels, 2), &source).frame);
     CHECK(technique.render(view, scene.gbuffer) == settled);
-    CHECK(technique.count("maps_redrawn") == 16);
+    // Of surfels it is not known which changed; triangles, the same ones again, are not even sampled anew.
+    CHECK(technique.count("maps_redrawn") == (occluders == LW_OCCLUDERS_SURFELS && !asSurfels ? 0 : 16));
 }
 
 TEST_CASE("auto takes triangles before surfels before the screen, from frame to frame", "[ssvp][surfels]") {

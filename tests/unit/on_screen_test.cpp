@@ -1,5 +1,5 @@
-// Truths of what a picture can know: light from surfaces that cameras see, and ambient occlusion,
-// against Lambert's polygon formula and closed forms.
+// Truths of what a picture can know: light from surfaces that cameras see, against Lambert's polygon
+// formula and a sum over the picture's pixels in double.
 #include <catch2/catch.hpp>
 
 #include <cmath>
@@ -135,6 +135,96 @@ TEST_CASE("senders: a picture of everything changes no bit; only the first bounc
     CHECK_FALSE(seen.has("direct.R"));
 }
 
+namespace {
+
+constexpr double kWall = 0.7, kIntensity = 3.0;
+
+struct Emitted {
+    std::vector<double> irradiance;  // of each receiver
+    int emitters = 0;
+};
+
+// What the pixels of a square picture, lit by a lamp without shadows, send to a row of receivers: each
+// stands for the area that its solid angle cuts out of its surface. What is nearer to the camera than
+// z = 2 is black.
+Emitted lightOfPixels(const studio::GBuffer& shown, const vec3& lamp, const studio::GBuffer& receivers) {
+    Emitted sum{std::vector<double>(std::size_t(receivers.width)), 0};
+    const glm::dvec3 camera(shown.camera.position);
+    const glm::dvec3 axis = glm::normalize(glm::dvec3(shown.camera.target) - camera);
+    const double side = 2.0 * std::tan(0.5 * double(shown.camera.verticalFov)) / shown.height;
+    for (int y = 0; y < shown.height; ++y)
+        for (int x = 0; x < shown.width; ++x) {
+            const glm::dvec3 at(shown.position.rgb(x, y)), normal(shown.normal.rgb(x, y));
+            if (normal == glm::dvec3(0.0) || at.z > 2.0) continue;
+            ++sum.emitters;
+            const glm::dvec3 eye = at - camera, toLamp = glm::dvec3(lamp) - at;
+            const double cosine = glm::dot(glm::normalize(eye), axis);
+            const double area = side * side * cosine * cosine * cosine * glm::dot(eye, eye) /
+                                std::abs(glm::dot(glm::normalize(eye), normal));
+            const double lit = std::max(0.0, glm::dot(normal, glm::normalize(toLamp)));
+            const double power = kWall / kPi * kIntensity * lit / glm::dot(toLamp, toLamp) * area;
+            for (int i = 0; i < receivers.width; ++i) {
+                const glm::dvec3 way = at - glm::dvec3(receivers.position.rgb(i, 0));
+                const double squared = glm::dot(way, way);
+                const double in = glm::dot(way, glm::dvec3(receivers.normal.rgb(i, 0)));
+                const double out = -glm::dot(way, normal);
+                if (in > 0.0 && out > 0.0)
+                    sum.irradiance[std::size_t(i)] += power * in * out / (squared * squared);
+            }
+        }
+    return sum;
+}
+
+}  // namespace
+
+TEST_CASE("senders: the sum over the picture's pixels as emitters, in double") {
+    // A floor and a wall that the picture cuts, and a black card before the camera, which hides a part
+    // of both and lies behind the lamp and the receivers: with shadows or without, the light is the
+    // same.
+    constexpr int kPixels = 512;
+    const vec3 lamp(0.2f, 1.2f, 0.3f);
+    QuadScene s;
+    const int grey = s.material(vec3(float(kWall)));
+    s.quad(grey, vec3(-1, 0, -1), vec3(1, 0, -1), vec3(1, 0, 1), vec3(-1, 0, 1));
+    s.quad(grey, vec3(-1, 0, -1), vec3(1, 0, -1), vec3(1, 2, -1), vec3(-1, 2, -1));
+    s.quad(s.material(vec3(0.0f)), vec3(-0.3f, 1.2f, 2.5f), vec3(0, 1.2f, 2.5f), vec3(0, 1.5f, 2.5f),
+           vec3(-0.3f, 1.5f, 2.5f));
+    s.point(lamp, vec3(float(kIntensity)));
+    PictureView picture;
+    picture.camera.position = vec3(0, 1.5f, 3.5f);
+    picture.camera.target = vec3(0.3f, 0.6f, -1);
+    picture.camera.verticalFov = 0.35f;
+    picture.width = picture.height = kPixels;
+    const studio::RayScene scene = s.build();
+    const studio::GBuffer shown =
+        studio::renderGBuffer(scene, picture.camera, kPixels, kPixels, picture.camera, 0.0f);
+
+    Receivers points(3, 1, vec3(-5, 0.5f, 0));
+    points.set(0, 0, vec3(0, 1, 0.5f), vec3(0, -0.2f, -1));
+    points.set(1, 0, vec3(0.6f, 0.9f, -0.1f), vec3(-1, -0.5f, -0.3f));
+    points.set(2, 0, vec3(-0.5f, 1.4f, 0.2f), vec3(0.3f, -1, 0));
+    const Emitted sum = lightOfPixels(shown, lamp, points.view);
+    const std::vector<double>& expected = sum.irradiance;
+    REQUIRE(sum.emitters > kPixels * kPixels / 2);  // and not all: the card and the sky beside the wall
+    REQUIRE(sum.emitters < kPixels * kPixels * 99 / 100);
+
+    PathTracerOptions options;
+    options.samplesPerPixel = kSamples;
+    options.sendersSeenBy = {picture};
+    for (const bool unshadowed : {false, true}) {
+        options.unshadowed = unshadowed;
+        options.threads = 1;
+        const Image image = tracePaths(scene, points.view, options);
+        options.threads = 3;
+        CHECK(tracePaths(scene, points.view, options).plane("bounce1.G") == image.plane("bounce1.G"));
+        for (int i = 0; i < 3; ++i) {
+            CAPTURE(unshadowed, i);
+            CHECK(double(image.plane("bounce1.G")[std::size_t(i)]) ==
+                  Approx(expected[std::size_t(i)]).epsilon(kJoined));
+        }
+    }
+}
+
 TEST_CASE("senders: a checkpoint of other pictures is refused; impossible questions are named") {
     const studio_test::TempFolder folder;
     const studio::RayScene scene = patch().build();
@@ -155,43 +245,4 @@ TEST_CASE("senders: a checkpoint of other pictures is refused; impossible questi
     ambient.radius = 0.0;
     CHECK_THROWS_WITH(tracePaths(scene, point.view, options),
                       Catch::Contains("ambient.radius: expected"));
-}
-
-TEST_CASE("ambient occlusion: an infinite wall within the radius, a plane, a corner, both weightings") {
-    // The camera looks down from 10: R = 0.1 heights of 2 tan(fov / 2) 10 m each. A wall at x = 0
-    // reaches past R, and another at z = 0 past it from the corner.
-    constexpr float kFov = 0.9f;
-    const double range = 0.1 * 2.0 * std::tan(0.5 * double(kFov)) * 10.0;
-    QuadScene s;
-    const int grey = s.material(vec3(0.5f));
-    s.quad(grey, vec3(0, 0, -9), vec3(9, 0, -9), vec3(9, 0, 9), vec3(0, 0, 9));
-    s.quad(grey, vec3(0, 0, -9), vec3(0, 3, -9), vec3(0, 3, 9), vec3(0, 0, 9));
-    s.quad(grey, vec3(0, 0, -9), vec3(9, 0, -9), vec3(9, 3, -9), vec3(0, 3, -9));
-    const double shares[] = {0.05, 0.4, 0.9, 1.2};
-    Receivers points(5, 1, vec3(0, 10, 0));
-    points.view.camera.target = vec3(0, 0, 0);
-    points.view.camera.up = vec3(0, 0, -1);
-    points.view.camera.verticalFov = kFov;
-    for (int i = 0; i < 4; ++i) points.set(i, 0, vec3(float(shares[i] * range), 0, 0), vec3(0, 1, 0));
-    points.set(4, 0, vec3(1e-4f, 0, -9 + 1e-4f), vec3(0, 1, 0));  // the corner: 1/4
-    studio::AmbientOptions ambient;
-    ambient.radius = 0.1;
-    PathTracerOptions options;
-    options.samplesPerPixel = 1 << 14;
-    options.ambient = &ambient;
-    for (const bool isUniform : {false, true}) {
-        ambient.isUniform = isUniform;
-        const Image image = tracePaths(s.build(), points.view, options);
-        for (int i = 0; i < 5; ++i) {
-            const double x = std::min(1.0, i < 4 ? shares[i] : 0.0);
-            double expected =
-                isUniform ? 0.5 * (1.0 + x) : 1.0 - (std::acos(x) - x * std::sqrt(1.0 - x * x)) / kPi;
-            if (i == 4) expected = 0.25;
-            CAPTURE(isUniform, i);
-            // Two stratified sequences of 8192: far below a deviation of independent samples, 0.004.
-            CHECK(double(image.plane("ambient.G")[std::size_t(i)]) == Approx(expected).margin(0.002));
-        }
-        CHECK(image.has("a.ambient.R"));
-        CHECK_FALSE(image.has("bounce1.R"));
-    }
 }

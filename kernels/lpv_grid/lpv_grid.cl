@@ -1,0 +1,267 @@
+// Where a light propagation volume lies, and the light that is injected into it (Kaplanyan and Dachsbacher 2010): every texel
+// of the reflective shadow maps, and every VPL of the host's own, is a lobe of flux Phi in the cell half a cell in front of it,
+// or surfaces would light themselves:
+//   cell of x + n s / 2  +=  Phi / pi * lobe(n).
+//
+// Sums are whole numbers of 64 bits, so that nothing depends on the order of additions: a texel's light is cut to
+// multiples of a power of two that the frame's brightest texel and the number of texels choose (LwLpvFit::bits), with which no
+// sum can overflow. Of n texels the unit is at most 2^-60 n of the brightest one, the error of a sum n units.
+#include "shared/lpv_types.h"
+#include "shared/rsm_types.h"
+#include "shared/vpl_list.h"
+#include "shared/wide.h"
+
+#define LPV_LOBE0_PI 0.2820947918f  // LOBE0 / pi
+#define LPV_LOBE1_PI 0.3257350079f  // LOBE1 / pi
+// Texels or VPLs of a work-item, which adds up those of one cell before it touches memory that others write as well.
+#define LPV_RUN 64
+
+// Numbers that order as floats do, and back.
+LW_FN uint key_of(float v) {
+    const uint bits = as_uint(v);
+    return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
+}
+LW_FN float of_key(uint key) { return as_float(key & 0x80000000u ? key ^ 0x80000000u : ~key); }
+
+LW_FN void raise(__global uint* to, uint value) { atomic_max(to, value); }
+
+// One work-item = one row of an RSM: bounds of its surfaces, lit or not, and its largest flux.
+__kernel void lpv_grid_scan_texels(__global const float* texels, int4 layout, __global const int4* rows, int rowCount,
+                                   __global uint* state) {
+    const int r = lw_list_index();
+    if (r >= rowCount) return;
+    const int4 row = rows[r];
+    __global const float* base = texels + layout.x + row.x;
+    const int stride = layout.z;
+    real flux = (real)0.0f;
+    real low[3], high[3];
+    for (int axis = 0; axis < 3; ++axis) {
+        low[axis] = (real)FLT_MAX;
+        high[axis] = (real)-FLT_MAX;
+    }
+    for (int i = 0; i < row.y; i += LW_WIDTH) {
+        const real nx = load(base, LW_RSM_NORMAL * stride + i), ny = load(base, (LW_RSM_NORMAL + 1) * stride + i),
+                   nz = load(base, (LW_RSM_NORMAL + 2) * stride + i);
+        const mask surface = and_(fma_(nx, nx, fma_(ny, ny, nz * nz)) > 0.0f, lanei_iota() + i < row.y);
+        for (int axis = 0; axis < 3; ++axis) {
+            const real x = load(base, (LW_RSM_POSITION + axis) * stride + i);
+            low[axis] = select_(low[axis], fmin(low[axis], x), surface);
+            high[axis] = select_(high[axis], fmax(high[axis], x), surface);
+        }
+        for (int c = 0; c < 3; ++c)
+            flux = fmax(flux, select_((real)0.0f, load(base, (LW_RSM_FLUX + c) * stride + i), surface));
+    }
+    raise(state + LW_LPV_LARGEST, as_uint(max_lane(flux)));
+    for (int axis = 0; axis < 3; ++axis) {
+        const float least = min_lane(low[axis]), most = max_lane(high[axis]);
+        if (!(least <= most)) continue;
+        raise(state + LW_LPV_LOW + axis, key_of(-least));
+        raise(state + LW_LPV_HIGH + axis, key_of(most));
+    }
+}
+
+// One work-item = LPV_RUN VPLs, with flux or not.
+__kernel void lpv_grid_scan_vpls(__global const lw_vpl* vpls, int count, __global uint* state) {
+    const int first = lw_list_index() * LPV_RUN, last = min(first + LPV_RUN, count);
+    float largest = 0.0f;
+    float low[3] = {FLT_MAX, FLT_MAX, FLT_MAX}, high[3] = {-FLT_MAX, -FLT_MAX, -FLT_MAX};
+    for (int i = first; i < last; ++i) {
+        const lw_vpl vpl = vpls[i];
+        const float flux = fmax(fmax(vpl.flux.x, vpl.flux.y), vpl.flux.z);
+        if (!(flux > 0.0f)) continue;
+        largest = fmax(largest, flux);
+        const float p[3] = {vpl.positionArea.x, vpl.positionArea.y, vpl.positionArea.z};
+        for (int axis = 0; axis < 3; ++axis) {
+            low[axis] = fmin(low[axis], p[axis]);
+            high[axis] = fmax(high[axis], p[axis]);
+        }
+    }
+    if (!(largest > 0.0f)) return;
+    raise(state + LW_LPV_LARGEST, as_uint(largest));
+    for (int axis = 0; axis < 3; ++axis) {
+        raise(state + LW_LPV_LOW + axis, key_of(-low[axis]));
+        raise(state + LW_LPV_HIGH + axis, key_of(high[axis]));
+    }
+}
+
+// Of the box that a grid is fitted to: a cell's share of a new grid beside the border of one cell all around, and how much
+// smaller than the grid's inside the box may get before the grid shrinks. Less slack: the grid changes whenever a light moves,
+// and all of the picture flickers. More: coarser cells.
+#define LPV_SLACK 1.05f
+#define LPV_LEAST 0.75f
+// Sides of cells from which on their squares and the squares' inverses are finite.
+#define LPV_LEAST_CELL 1e-18f
+#define LPV_LARGEST_CELL 1e18f
+
+// A grid about the box: the last one where it still fits, else that one moved by whole cells, else one of another size.
+LW_FN LwLpvPlace fitted(LwLpvPlace last, LwLpvFit fit, const float* low, const float* high) {
+    const float size = (float)fit.size;
+    const float longest = fmax(fmax(high[0] - low[0], high[1] - low[1]), high[2] - low[2]);
+    const float inner = (size - 2.0f) * last.cell.x;
+    const int keeps = !fit.refit && last.origin.w > 0.0f && longest <= inner && longest >= LPV_LEAST * inner;
+    const float cell = keeps ? last.cell.x : longest * LPV_SLACK / (size - 2.0f);
+    float origin[3] = {last.origin.x, last.origin.y, last.origin.z};
+    for (int axis = 0; axis < 3; ++axis) {
+        const float wanted = 0.5f * (low[axis] + high[axis]) - 0.5f * size * cell;
+        if (!keeps)
+            origin[axis] = wanted;
+        else if (low[axis] < origin[axis] + cell || high[axis] > origin[axis] + (size - 1.0f) * cell)
+            origin[axis] += cell * round((wanted - origin[axis]) / cell);
+    }
+    LwLpvPlace place;
+    place.origin = (float4)(origin[0], origin[1], origin[2], 0.0f);
+    place.cell = (float4)(cell, 1.0f, 1.0f, 0.0f);
+    return place;
+}
+
+// One work-item in all.
+__kernel void lpv_grid_fit(__global const uint* state, LwLpvFit fit, __global LwLpvPlace* place) {
+    if (get_global_id(0) != 0) return;
+    LwLpvPlace to = *place;
+    if (fit.centre.w > 0.0f) {
+        const float half_ = 0.5f * fit.centre.w;
+        to.origin = (float4)(fit.centre.x - half_, fit.centre.y - half_, fit.centre.z - half_, 0.0f);
+        to.cell.x = fit.centre.w / (float)fit.size;
+    } else {
+        float low[3] = {fit.low.x, fit.low.y, fit.low.z}, high[3] = {fit.high.x, fit.high.y, fit.high.z};
+        int some = fit.low.w > 0.0f;
+        for (int axis = 0; axis < 3; ++axis) {
+            if (state[LW_LPV_HIGH + axis] == 0u) continue;
+            const float least = -of_key(state[LW_LPV_LOW + axis]), most = of_key(state[LW_LPV_HIGH + axis]);
+            low[axis] = fit.low.w > 0.0f ? fmin(low[axis], least) : least;
+            high[axis] = fit.low.w > 0.0f ? fmax(high[axis], most) : most;
+            some = 1;
+        }
+        if (some)
+            to = fitted(to, fit, low, high);
+        else if (fit.refit)
+            to.cell.x = 0.0f;
+    }
+    const int usable = to.cell.x > LPV_LEAST_CELL && to.cell.x < LPV_LARGEST_CELL;
+    if (!usable) to.origin = (float4)(0.0f);
+    to.origin.w = usable ? 1.0f / to.cell.x : 0.0f;
+    // The largest flux is below 2^exponent.
+    int exponent = 0;
+    const float largest = as_float(state[LW_LPV_LARGEST]);
+    if (largest > 0.0f) frexp(largest, &exponent);
+    const int shift = largest > 0.0f ? fit.bits - exponent : 0;
+    to.cell.y = ldexp(1.0f, shift / 2);
+    to.cell.z = ldexp(1.0f, shift - shift / 2);
+    *place = to;
+}
+
+// The cell of a light, or -1.
+LW_FN int cell_of(const LwLpvPlace place, int size, float px, float py, float pz, float nx, float ny, float nz) {
+    const float inverse = place.origin.w, most = (float)size;
+    const float x = (px - place.origin.x) * inverse + 0.5f * nx, y = (py - place.origin.y) * inverse + 0.5f * ny,
+                z = (pz - place.origin.z) * inverse + 0.5f * nz;
+    if (!(inverse > 0.0f && x >= 0.0f && x < most && y >= 0.0f && y < most && z >= 0.0f && z < most)) return -1;
+    return ((int)z * size + (int)y) * size + (int)x;
+}
+
+// Towards zero: rounding to the nearest takes PoCL a hundred times as long.
+LW_FN long whole(float light, const LwLpvPlace place) { return (long)(light * place.cell.y * place.cell.z); }
+
+// Adds to 64 bits in two halves: what overflows the lower one is seen by the one addition that makes it so.
+LW_FN void add_long(__global uint* to, long value) {
+    if (value == 0) return;
+    const uint low = (uint)((ulong)value & 0xffffffffu);
+    const uint before = atomic_add(to, low);
+    const uint high = (uint)((ulong)value >> 32) + (before + low < before ? 1u : 0u);
+    if (high) atomic_add(to + 1, high);
+}
+
+// Sums of one cell's lights; of cell -1 what lies outside.
+typedef struct {
+    long sums[LW_LPV_PLANES];
+    int cell;
+} lpv_run;
+
+LW_FN void end_run(lpv_run* run, __global uint* sums) {
+    if (run->cell < 0) return;
+    __global uint* to = sums + 2 * LW_LPV_PLANES * run->cell;
+    for (int c = 0; c < LW_LPV_PLANES; ++c) {
+        add_long(to + 2 * c, run->sums[c]);
+        run->sums[c] = 0;
+    }
+}
+
+LW_FN int add_light(lpv_run* run, const LwLpvPlace place, int cell, const float* flux, float nx, float ny, float nz,
+                    __global uint* sums) {
+    if (cell != run->cell) {
+        end_run(run, sums);
+        run->cell = cell;
+    }
+    if (cell < 0) return 1;
+    _Pragma("unroll") for (int c = 0; c < LW_LPV_COLOURS; ++c) {
+        const float lobe0 = flux[c] * LPV_LOBE0_PI, lobe1 = flux[c] * LPV_LOBE1_PI;
+        long* to = run->sums + LW_LPV_BANDS * c;
+        to[0] += whole(lobe0, place);
+        to[1] += whole(lobe1 * nx, place);
+        to[2] += whole(lobe1 * ny, place);
+        to[3] += whole(lobe1 * nz, place);
+    }
+    return 0;
+}
+
+LW_FN lpv_run empty_run(void) {
+    lpv_run run;
+    for (int c = 0; c < LW_LPV_PLANES; ++c) run.sums[c] = 0;
+    run.cell = -1;
+    return run;
+}
+
+// One work-item = LPV_RUN texels of all maps. sums: two halves of 64 bits for each of a cell's planes.
+__kernel void lpv_grid_inject_texels(__global const float* texels, int4 layout, int count, __global const LwLpvPlace* grid,
+                                     int size, __global uint* sums, __global uint* state) {
+    const int first = lw_list_index() * LPV_RUN, last = min(first + LPV_RUN, count), stride = layout.z;
+    const LwLpvPlace place = *grid;
+    __global const float* base = texels + layout.x;
+    lpv_run run = empty_run();
+    int outside = 0;
+    for (int i = first; i < last; ++i) {
+        __global const float* p = base + i;
+        const float flux[3] = {p[LW_RSM_FLUX * stride], p[(LW_RSM_FLUX + 1) * stride], p[(LW_RSM_FLUX + 2) * stride]};
+        if (!(fmax(fmax(flux[0], flux[1]), flux[2]) > 0.0f)) continue;
+        const float nx = p[LW_RSM_NORMAL * stride], ny = p[(LW_RSM_NORMAL + 1) * stride], nz = p[(LW_RSM_NORMAL + 2) * stride];
+        const int cell = cell_of(place, size, p[LW_RSM_POSITION * stride], p[(LW_RSM_POSITION + 1) * stride],
+                                 p[(LW_RSM_POSITION + 2) * stride], nx, ny, nz);
+        outside += add_light(&run, place, cell, flux, nx, ny, nz, sums);
+    }
+    end_run(&run, sums);
+    if (outside) atomic_add(state + LW_LPV_OUTSIDE, (uint)outside);
+}
+
+// One work-item = LPV_RUN of the host's own VPLs.
+__kernel void lpv_grid_inject_vpls(__global const lw_vpl* vpls, int count, __global const LwLpvPlace* grid, int size,
+                                   __global uint* sums, __global uint* state) {
+    const int first = lw_list_index() * LPV_RUN, last = min(first + LPV_RUN, count);
+    const LwLpvPlace place = *grid;
+    lpv_run run = empty_run();
+    int outside = 0;
+    for (int i = first; i < last; ++i) {
+        const lw_vpl vpl = vpls[i];
+        const float flux[3] = {vpl.flux.x, vpl.flux.y, vpl.flux.z};
+        if (!(fmax(fmax(flux[0], flux[1]), flux[2]) > 0.0f)) continue;
+        // Hosts' normals may be 2 % off unit length.
+        const float scale = rsqrt(vpl.normal.x * vpl.normal.x + vpl.normal.y * vpl.normal.y + vpl.normal.z * vpl.normal.z);
+        const float nx = vpl.normal.x * scale, ny = vpl.normal.y * scale, nz = vpl.normal.z * scale;
+        const int cell = cell_of(place, size, vpl.positionArea.x, vpl.positionArea.y, vpl.positionArea.z, nx, ny, nz);
+        outside += add_light(&run, place, cell, flux, nx, ny, nz, sums);
+    }
+    end_run(&run, sums);
+    if (outside) atomic_add(state + LW_LPV_OUTSIDE, (uint)outside);
+}
+
+// One work-item = one cell (x; y and z): its sums as floats, in W/sr.
+__kernel void lpv_grid_resolve(__global const uint* sums, __global const LwLpvPlace* grid, int size, __global float* to) {
+    const int x = (int)get_global_id(0), line = (int)get_global_id(1);
+    if (x >= size || line >= size * size) return;
+    const float first = 1.0f / grid->cell.y, second = 1.0f / grid->cell.z;
+    __global const uint* from = sums + 2 * LW_LPV_PLANES * (line * size + x);
+    const int at = lpv_cell(size, x, line % size, line / size), plane = lpv_plane(size);
+    for (int c = 0; c < LW_LPV_PLANES; ++c) {
+        const long value = (long)((ulong)from[2 * c + 1] << 32 | (ulong)from[2 * c]);
+        to[c * plane + at] = convert_float(value) * first * second;
+    }
+}

@@ -1,0 +1,107 @@
+// Irradiance read from a light propagation volume (Kaplanyan and Dachsbacher 2010): the light half a cell in front of a
+// surface, where what the surface itself sent was injected, interpolated and convolved with the cosine,
+//   E(n) = k / s^2 max(0, LOBE0 c0 - LOBE1 (c1 . n)),
+// light that travels along d lighting what faces -d. k: LpvPropagation::calibration. Here is where the light
+// is clamped at 0, and only here.
+#include "shared/input_limits.h"
+#include "shared/lpv_types.h"
+#include "shared/surface.h"
+#include "shared/wide.h"
+
+#define LPV_LOBE0 0.8862269255f
+#define LPV_LOBE1 1.0233267079f
+// Floats of a cell in the order that pixels read: c0, c1.x, c1.y, c1.z of the three colours, and one unused, each.
+#define LPV_CELL_FLOATS 16
+
+// One work-item = one cell (x; y and z): planes to cells, so that a pixel finds all of a cell in one place.
+__kernel void lpv_read_pack(__global const float* from, int size, __global float* cells) {
+    const int x = (int)get_global_id(0), line = (int)get_global_id(1);
+    if (x >= size || line >= size * size) return;
+    const int plane = lpv_plane(size);
+    __global const float* p = from + lpv_cell(size, x, line % size, line / size);
+    __global float* to = cells + LPV_CELL_FLOATS * (line * size + x);
+    for (int band = 0; band < LW_LPV_BANDS; ++band) {
+        for (int c = 0; c < LW_LPV_COLOURS; ++c) to[4 * band + c] = p[(LW_LPV_BANDS * c + band) * plane];
+        to[4 * band + 3] = 0.0f;
+    }
+}
+
+// A coordinate in cells, from the first one's centre, to the lower of the two cells around it and the upper one's share. Beyond the
+// outermost centres their light holds: the cells outside are empty because there are none.
+LW_FN real split(real g, int size, lanei* lower) {
+    const real inside = clamp(g, (real)0.0f, (real)(float)(size - 1));
+    *lower = min(to_lanei(inside), (lanei)(size - 2));
+    return inside - to_real(*lower);
+}
+
+// The corner (cell and its seven neighbours towards +) of one pixel.
+LW_FN float16 interpolate(__global const float16* corner, int size, float x, float y, float z) {
+    const int dz = size * size;
+    float16 light = (float16)(0.0f);
+    _Pragma("unroll") for (int k = 0; k < 8; ++k) {
+        const float w = ((k & 1) ? x : 1.0f - x) * ((k & 2) ? y : 1.0f - y) * ((k & 4) ? z : 1.0f - z);
+        light += w * corner[((k & 1) ? 1 : 0) + ((k & 2) ? size : 0) + ((k & 4) ? dz : 0)];
+    }
+    return light;
+}
+
+// One work-item = LW_WIDTH pixels of a row. hasIrradiance, hasValidity: which are wanted; the other's arguments are not
+// touched. Validity is 1 where the grid has the surface, 0 elsewhere, where irradiance is 0 as well. counts[0]: pixels that are
+// neither surface nor background; counts[1]: whose light was brought down; counts[2]: surfaces that the grid does not have.
+__kernel void lpv_read_gather(__global const float* position, int4 positionLayout, __global const float* normal,
+                            int4 normalLayout, int width, int height, __global const LwLpvPlace* grid, int size,
+                            __global const float16* cells, float calibration, int hasIrradiance, int hasValidity,
+                            __global float* irradiance, int4 irradianceLayout, __global float* validity, int4 validityLayout,
+                            __global int* counts) {
+    const int x = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);
+    if (x >= width || y >= height) return;
+    const LwLpvPlace place = *grid;
+    const lw_surface s = load_surface(position, positionLayout, normal, normalLayout, x, y);
+    const mask shown = lanei_iota() + x < width;
+    const float inverse = place.origin.w, most = (float)size;
+    // In cells from the grid's corner, half a cell off the surface.
+    const real gx = fma_(s.nx, (real)0.5f, (s.px - place.origin.x) * inverse);
+    const real gy = fma_(s.ny, (real)0.5f, (s.py - place.origin.y) * inverse);
+    const real gz = fma_(s.nz, (real)0.5f, (s.pz - place.origin.z) * inverse);
+    const mask within = and_(and_(and_(gx >= 0.0f, gx <= most), and_(gy >= 0.0f, gy <= most)), and_(gz >= 0.0f, gz <= most));
+    const mask has = and_(s.valid, and_(within, splat_mask(inverse > 0.0f)));
+
+    const mask rejected = and_(s.rejected, shown), missing = and_(and_(s.valid, not_(has)), shown);
+    if (any_(rejected)) atomic_add(counts, count_(rejected));
+    if (any_(missing)) atomic_add(counts + 2, count_(missing));
+    if (hasValidity) store(ones_(has), validity, validityLayout.x + y * validityLayout.y + x);
+    if (!hasIrradiance) return;
+
+    lanei ix, iy, iz;
+    const real none = (real)0.0f;
+    const real fx = split(select_(none, gx - 0.5f, has), size, &ix), fy = split(select_(none, gy - 0.5f, has), size, &iy),
+               fz = split(select_(none, gz - 0.5f, has), size, &iz);
+    // Pixel by pixel: one load takes all of a cell, where lanes of pixels would gather every number alone.
+    float px[LW_WIDTH], py[LW_WIDTH], pz[LW_WIDTH], nx[LW_WIDTH], ny[LW_WIDTH], nz[LW_WIDTH];
+    float light[LW_LPV_COLOURS][LW_WIDTH];
+    int corner[LW_WIDTH];
+    store(fx, px, 0);
+    store(fy, py, 0);
+    store(fz, pz, 0);
+    store(s.nx, nx, 0);
+    store(s.ny, ny, 0);
+    store(s.nz, nz, 0);
+    store((iz * size + iy) * size + ix, corner, 0);
+    for (int l = 0; l < LW_WIDTH; ++l) {
+        const float16 v = interpolate(cells + corner[l], size, px[l], py[l], pz[l]);
+        const float4 e = v.s0123 * LPV_LOBE0 - (v.s4567 * nx[l] + v.s89ab * ny[l] + v.scdef * nz[l]) * LPV_LOBE1;
+        light[0][l] = e.x;
+        light[1][l] = e.y;
+        light[2][l] = e.z;
+    }
+    const int e = irradianceLayout.x + y * irradianceLayout.y + x;
+    mask saturated = splat_mask(0);
+    for (int c = 0; c < LW_LPV_COLOURS; ++c) {
+        const real found = fmax(load(light[c], 0), none) * calibration * inverse * inverse;
+        const real value = select_(none, found, has);
+        saturated = or_(saturated, value > LW_LARGEST_IRRADIANCE);
+        store(fmin(value, (real)LW_LARGEST_IRRADIANCE), irradiance, e + c * irradianceLayout.z);
+    }
+    saturated = and_(saturated, shown);
+    if (any_(saturated)) atomic_add(counts + 1, count_(saturated));
+}

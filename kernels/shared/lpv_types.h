@@ -1,0 +1,63 @@
+// Light propagation volumes (Kaplanyan and Dachsbacher 2010): how a grid lies in memory, where it lies in the world, and
+// the constants of its spherical harmonics.
+//
+// A colour's light in a cell is radiant intensity in two bands, I(d) = Y0 c0 + Y1 (c1 . d) in W/sr: four planes of floats for
+// each colour, c0, c1.x, c1.y, c1.z.
+#ifndef LW_LPV_TYPES_H
+#define LW_LPV_TYPES_H
+
+#include "portable.h"
+
+#define LW_LPV_COLOURS 3
+#define LW_LPV_BANDS 4
+#define LW_LPV_PLANES (LW_LPV_COLOURS * LW_LPV_BANDS)
+
+// For the host, in double; kernels have them as floats.
+// Y0 = 1 / (2 sqrt(pi)), Y1 = sqrt(3 / (4 pi)); the cosine lobe max(0, n.d) is LOBE0 Y0 + LOBE1 Y1 (n.d).
+#define LW_LPV_Y0 0.2820947917738781
+#define LW_LPV_Y1 0.4886025119029199
+#define LW_LPV_LOBE0 0.8862269254527579  // sqrt(pi) / 2
+#define LW_LPV_LOBE1 1.0233267079464885  // sqrt(pi / 3)
+
+// Solid angles of a cell's five far faces from the centre of the neighbour: 4 asin(1/10), and a quarter of what is missing of
+// a sixth of the sphere's 4 pi. With the widely copied 0.4234413544 for the side faces each step makes 1.9e-5 of light.
+#define LW_LPV_FRONT_ANGLE 0.4006696846462392
+#define LW_LPV_SIDE_ANGLE 0.423431354436739
+
+// Empty cells between the rows of a plane, which thus are each row's border on both sides; as many before the first.
+#define LW_LPV_PAD 16
+
+// Floats from a row, from a slice to the next, and of a plane: rows of a slice and slices have an empty one before and after.
+LW_FN lw_int lpv_row(lw_int size) { return size + LW_LPV_PAD; }
+LW_FN lw_int lpv_slice(lw_int size) { return lpv_row(size) * (size + 2); }
+LW_FN lw_int lpv_plane(lw_int size) { return LW_LPV_PAD + lpv_slice(size) * (size + 2); }
+LW_FN lw_int lpv_cell(lw_int size, lw_int x, lw_int y, lw_int z) {
+    return LW_LPV_PAD + x + (y + 1) * lpv_row(size) + (z + 1) * lpv_slice(size);
+}
+
+typedef struct {
+    lw_float4 origin;  // xyz: lower corner of cell (0, 0, 0); w: cells to a unit of length; 0: there is no grid
+    // x: a cell's side. y, z: powers of two whose product takes W/sr to whole numbers, two of them so that neither leaves
+    // float's range.
+    lw_float4 cell;
+} LwLpvPlace;
+LW_SIZE_CHECK(LwLpvPlace, 32);
+
+// How a frame wants its grid placed.
+typedef struct {
+    lw_float4 centre;        // xyz; w: length of the grid's sides; 0: fitted to what the RSMs see, the VPLs and the box below
+    lw_float4 low, high;     // xyz: a box to fit to as well; low.w: 1 where there is one
+    lw_int refit;            // 1: whatever the last frame's grid was
+    lw_int bits;             // of the largest whole number that one texel's light may make
+    lw_int size, reserved;
+} LwLpvFit;
+LW_SIZE_CHECK(LwLpvFit, 64);
+
+// What is known of a frame's light before the grid is placed; the bounds as keys that order as the numbers do.
+#define LW_LPV_LOW 0      // three: of the negated coordinates
+#define LW_LPV_HIGH 3     // three
+#define LW_LPV_LARGEST 6  // bits of the largest flux of a colour
+#define LW_LPV_OUTSIDE 7  // texels and VPLs with flux that no cell takes
+#define LW_LPV_STATE 8
+
+#endif

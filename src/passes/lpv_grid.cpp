@@ -1,0 +1,97 @@
+#include "passes/lpv_grid.h"
+
+#include <algorithm>
+
+#include "compute/device.h"
+#include "passes/lpv_propagation.h"
+#include "passes/vpl_list.h"
+#include "shared/vpl_types.h"
+
+namespace lightwell {
+namespace {
+
+constexpr const char* kProgram = "lpv_grid/lpv_grid";
+constexpr std::size_t kRun = 64;  // LPV_RUN of the kernels
+constexpr Range kListGroup{16, 1};
+constexpr Range kCellGroup{16, 4};
+
+std::uint64_t sumBytes(std::uint32_t size) {
+    return std::uint64_t(size) * size * size * LW_LPV_PLANES * 2 * sizeof(cl_uint);
+}
+
+// So that as many of the largest number do not overflow 63 bits; no coefficient is above a third of its flux.
+cl_int bitsFor(std::uint64_t lights) {
+    cl_int bits = 62;
+    for (std::uint64_t n = 1; n < lights; n *= 2) --bits;
+    return bits;
+}
+
+LwLpvFit fitOf(const LpvPlacement& placement, std::uint32_t size, std::uint64_t lights) {
+    const auto at = [](const float* p, float w) { return cl_float4{{p[0], p[1], p[2], w}}; };
+    LwLpvFit fit{};
+    fit.centre = at(placement.centre, placement.extent);
+    fit.low = at(placement.low, placement.hasBox ? 1.0f : 0.0f);
+    fit.high = at(placement.high, 0.0f);
+    fit.refit = placement.refit ? 1 : 0;
+    fit.bits = bitsFor(lights);
+    fit.size = cl_int(size);
+    return fit;
+}
+
+}  // namespace
+
+LpvGrid::LpvGrid(Device& device, std::uint32_t size)
+    : device_(device),
+      size_(size),
+      scanTexels_(device.programs().kernel(kProgram, "lpv_grid_scan_texels")),
+      scanVpls_(device.programs().kernel(kProgram, "lpv_grid_scan_vpls")),
+      fit_(device.programs().kernel(kProgram, "lpv_grid_fit")),
+      injectTexels_(device.programs().kernel(kProgram, "lpv_grid_inject_texels")),
+      injectVpls_(device.programs().kernel(kProgram, "lpv_grid_inject_vpls")),
+      resolve_(device.programs().kernel(kProgram, "lpv_grid_resolve")) {}
+
+void LpvGrid::reserve(Executor& executor, std::uint32_t authoredCount) {
+    authored_.reserve(device_, std::max(authoredCount, 1u) * sizeof(lw_vpl), "frame.vpls");
+    state_.reserve(device_, LW_LPV_STATE * sizeof(cl_uint), "bounds of the light");
+    sums_.reserve(device_, sumBytes(size_), "sums of injected light");
+    if (!injected_) injected_ = LpvPropagation::makeGrid(executor, size_, "injected light");
+    if (place_) return;
+    place_ = Buffer(device_, sizeof(LwLpvPlace), "place of the grid");
+    executor.fill("lpv_grid.clear", place_, 0, 0, place_.bytes());
+}
+
+void LpvGrid::record(Executor& executor, const RsmInput& rsms, const LWVpl* authored, std::uint32_t authoredCount,
+                     const LpvPlacement& placement) {
+    reserve(executor, authoredCount);
+    static_assert(sizeof(LWVpl) == sizeof(lw_vpl), "LWVpl is uploaded as it is");
+    if (authoredCount) executor.writeCopy("lpv_grid.upload", authored_, 0, authoredCount * sizeof(lw_vpl), authored);
+    executor.fill("lpv_grid.clear", state_, 0, 0, state_.bytes());
+    executor.fill("lpv_grid.clear", sums_, 0, 0, sums_.bytes());
+    const std::uint64_t texels = rsms.texels ? rsms.texels.width : 0;
+    const auto runs = [](std::uint64_t count) { return gridOver(std::size_t((count + kRun - 1) / kRun)); };
+    if (texels)
+        executor.run("lpv_grid.scan", scanTexels_, gridOver(rsms.rowCount), kListGroup, rsms.texels, rsms.rows,
+                     cl_int(rsms.rowCount), state_);
+    if (authoredCount)
+        executor.run("lpv_grid.scan", scanVpls_, runs(authoredCount), kListGroup, authored_, cl_int(authoredCount), state_);
+    executor.run("lpv_grid.fit", fit_, {1, 1}, {1, 1}, state_, fitOf(placement, size_, texels + authoredCount), place_);
+    if (texels)
+        executor.run("lpv_grid.inject", injectTexels_, runs(texels), kListGroup, rsms.texels, cl_int(texels), place_,
+                     cl_int(size_), sums_, state_);
+    if (authoredCount)
+        executor.run("lpv_grid.inject", injectVpls_, runs(authoredCount), kListGroup, authored_, cl_int(authoredCount), place_,
+                     cl_int(size_), sums_, state_);
+    executor.run("lpv_grid.resolve", resolve_, {size_, std::size_t(size_) * size_}, kCellGroup, sums_, place_, cl_int(size_),
+                 injected_);
+}
+
+std::uint64_t LpvGrid::bytes() const {
+    return state_.bytes() + place_.bytes() + sums_.bytes() + injected_.bytes() + authored_.bytes();
+}
+
+std::uint64_t LpvGrid::estimateBytes(std::uint32_t size, std::uint32_t authoredCount) {
+    return LW_LPV_STATE * sizeof(cl_uint) + sizeof(LwLpvPlace) + sumBytes(size) + LpvPropagation::gridBytes(size) +
+           std::max(authoredCount, 1u) * sizeof(lw_vpl);
+}
+
+}  // namespace lightwell

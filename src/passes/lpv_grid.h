@@ -1,0 +1,46 @@
+// Where a light propagation volume lies, and the light that is injected into it (kernels/lpv_grid).
+#pragma once
+
+#include <cstdint>
+
+#include "compute/buffer.h"
+#include "compute/executor.h"
+#include "inputs/rsm_input.h"
+#include "shared/lpv_types.h"
+
+namespace lightwell {
+
+// Where a frame's grid shall lie: a cube of this side about a centre, or fitted.
+struct LpvPlacement {
+    float centre[3] = {0.0f, 0.0f, 0.0f};
+    float extent = 0.0f;  // 0: fitted to the surfaces that RSMs see, VPLs with flux, and this box
+    bool hasBox = false;
+    float low[3] = {0.0f, 0.0f, 0.0f}, high[3] = {0.0f, 0.0f, 0.0f};
+    bool refit = false;  // whatever the last frame's grid was
+};
+
+class LpvGrid {
+public:
+    LpvGrid(Device& device, std::uint32_t size);
+
+    // Passes "lpv_grid.*". `authored` is read before the call returns. A fitted grid stays as long as the box still fits and
+    // is no smaller than three quarters of the grid's inside; then it moves by whole cells, or gets another size.
+    void record(Executor& executor, const RsmInput& rsms, const LWVpl* authored, std::uint32_t authoredCount,
+                const LpvPlacement& placement);
+
+    const Buffer& injected() const { return injected_; }  // a grid of LpvPropagation's
+    const Buffer& place() const { return place_; }        // LwLpvPlace
+    const Buffer& state() const { return state_; }        // LW_LPV_OUTSIDE: lights that no cell took
+    std::uint64_t bytes() const;
+    static std::uint64_t estimateBytes(std::uint32_t size, std::uint32_t authoredCount);
+
+private:
+    void reserve(Executor& executor, std::uint32_t authoredCount);
+
+    Device& device_;
+    std::uint32_t size_;
+    Kernel &scanTexels_, &scanVpls_, &fit_, &injectTexels_, &injectVpls_, &resolve_;
+    Buffer state_, place_, sums_, injected_, authored_;
+};
+
+}  // namespace lightwell

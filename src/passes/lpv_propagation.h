@@ -1,0 +1,46 @@
+// Light spread step by step through a grid of cells (kernels/lpv_propagation): light propagation volumes, Kaplanyan and
+// Dachsbacher 2010.
+#pragma once
+
+#include <cstdint>
+
+#include "compute/buffer.h"
+#include "compute/executor.h"
+
+namespace lightwell {
+
+class LpvPropagation {
+public:
+    // size: cells a side, a power of two from 16 on. units: compute units that the work is cut up for; 0: the device's. The
+    // result does not depend on it.
+    LpvPropagation(Device& device, std::uint32_t size, std::uint32_t units = 0);
+
+    // Pass "lpv_propagation.wave", or ".step" where work-items hold one cell. `injected`: a grid laid out as
+    // shared/lpv_types.h has it. Returns the sum of what was injected and of all that `steps` steps make of it; `injected` itself
+    // for none.
+    const Buffer& record(Executor& executor, const Buffer& injected, std::uint32_t steps);
+
+    std::uint64_t bytes() const { return grids_[0].bytes() + grids_[1].bytes(); }
+    static std::uint64_t gridBytes(std::uint32_t size);
+    static std::uint64_t estimateBytes(std::uint32_t size, std::uint32_t steps) {
+        return (steps < 2 ? steps : 2) * gridBytes(size);
+    }
+    // A grid whose borders are empty, as steps want them.
+    static Buffer makeGrid(Executor& executor, std::uint32_t size, const char* what);
+    // Planes of a grid for a debug view: slices below each other, with the two empty rows between them.
+    static Planes debugPlanes(const Buffer& grid, std::uint32_t size);
+
+    // What irradiance read from the grid is multiplied by: it makes the mean over the four cells above an infinite plane of
+    // exitance 1, which fills the grid's lowest layer, 1. No single number does, since the field keeps filling.
+    static double calibration(std::uint32_t size, std::uint32_t steps);
+
+private:
+    const Buffer& recordSteps(Executor& executor, const Buffer& injected, std::uint32_t steps);
+    const Buffer& recordWaves(Executor& executor, const Buffer& injected, std::uint32_t steps);
+
+    std::uint32_t size_, units_;
+    Kernel &step_, &wave_;
+    Buffer grids_[2];
+};
+
+}  // namespace lightwell

@@ -1,0 +1,243 @@
+// Frame part, report and registration; the table of parameters is lpv_parameters.cpp's.
+#include "techniques/lpv.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "compute/device.h"
+#include "inputs/gbuffer_input.h"
+#include "inputs/geometry_input.h"
+#include "inputs/output_target.h"
+#include "inputs/rsm_input.h"
+#include "passes/lpv_grid.h"
+#include "passes/lpv_propagation.h"
+#include "passes/lpv_read.h"
+#include "shared/input_limits.h"
+#include "techniques/lpv_parameters.h"
+#include "techniques/prewarm.h"
+#include "techniques/technique_entry.h"
+
+namespace lightwell {
+namespace {
+
+// Light crosses a cell in a step at best (Kaplanyan and Dachsbacher 2010 take as many as the grid is long, twice over).
+std::uint32_t stepsOf(const LWLpvDesc& desc) { return desc.steps ? desc.steps : 2 * desc.size; }
+
+constexpr std::size_t kCountBytes = LpvRead::kCounts * sizeof(cl_int);
+
+// The box around the triangles' vertices; read again when the geometry's version, pointer or count changes.
+class TriangleBox {
+public:
+    void look(const LWGeometry* geometry) {
+        const bool some = geometry && geometry->triangleCount;
+        if (some && vertices_ == geometry->vertices && count_ == geometry->vertexCount && version_ == geometry->version) return;
+        GeometryInput().check(geometry);
+        vertices_ = some ? geometry->vertices : nullptr;
+        count_ = some ? geometry->vertexCount : 0;
+        version_ = some ? geometry->version : 0;
+        isSome_ = false;
+        for (std::uint32_t i = 0; i < count_; ++i) add(vertices_ + 3 * std::size_t(i));
+    }
+    void putInto(LpvPlacement& placement) const {
+        placement.hasBox = isSome_;
+        for (int a = 0; a < 3; ++a) {
+            placement.low[a] = low_[a];
+            placement.high[a] = high_[a];
+        }
+    }
+
+private:
+    void add(const float* p) {
+        if (!(std::hypot(p[0], p[1], p[2]) <= LW_LARGEST_DISTANCE)) return;
+        for (int a = 0; a < 3; ++a) {
+            low_[a] = isSome_ ? std::min(low_[a], p[a]) : p[a];
+            high_[a] = isSome_ ? std::max(high_[a], p[a]) : p[a];
+        }
+        isSome_ = true;
+    }
+    const float* vertices_ = nullptr;
+    std::uint32_t count_ = 0;
+    std::uint64_t version_ = 0;
+    bool isSome_ = false;
+    float low_[3] = {}, high_[3] = {};
+};
+
+std::vector<LWChoice> unusedInputs(const LWFrame& frame, bool fitted) {
+    constexpr const char* kReason = "not used: technique lpv takes light from RSMs and authored VPLs only";
+    std::vector<LWChoice> unused;
+    if (frame.sourceViewCount) unused.push_back({"frame.sourceViews", kReason});
+    if (frame.geometry)
+        unused.push_back({"frame.geometry", fitted && frame.geometry->triangleCount
+                                                ? "triangles: the grid reaches around them; nothing blocks light"
+                                                : "not used: nothing blocks light"});
+    if (frame.blockerCount) unused.push_back({"frame.blockers", kReason});
+    if (frame.environment[0] > 0.0f || frame.environment[1] > 0.0f || frame.environment[2] > 0.0f)
+        unused.push_back({"frame.environment", kReason});
+    for (std::uint32_t l = 0; l < frame.lightCount; ++l)
+        if (frame.lights[l].rsmCount == 0) {
+            unused.push_back({"frame.lights", "some have no RSM: technique lpv makes no indirect light of those"});
+            break;
+        }
+    return unused;
+}
+
+// Grids and kernels of one size.
+struct Volume {
+    Volume(Device& device, std::uint32_t size) : grid(device, size), propagation(device, size), read(device, size) {}
+    std::uint64_t bytes() const { return grid.bytes() + propagation.bytes() + read.bytes(); }
+    LpvGrid grid;
+    LpvPropagation propagation;
+    LpvRead read;
+};
+
+struct LpvView {
+    GBufferInput gbuffer;
+    OutputTarget irradiance, validity;
+    Buffer counts;
+    bool isRendered = false;
+};
+
+class LpvTechnique final : public Technique {
+public:
+    LpvTechnique(Device& device, const LWLpvDesc& desc)
+        : device_(device),
+          desc_(desc),
+          calibration_(LpvPropagation::calibration(desc.size, stepsOf(desc))),
+          failures_(device.failures()) {
+        volume_.emplace(device, desc.size);
+        for (int a = 0; a < 3; ++a) placement_.centre[a] = desc.center[a];
+        placement_.extent = desc.extent;
+    }
+
+    void update(Executor& executor, const LWFrame& frame) override {
+        const bool failed = device_.failures() != failures_;
+        box_.look(frame.geometry);
+        rsms_.import(executor, frame);
+        failures_ = device_.failures();
+        if (failed) volume_.emplace(device_, desc_.size);  // what its memory holds is not known
+        box_.putInto(placement_);
+        placement_.refit = frame.reset != 0 || failed;
+        volume_->grid.record(executor, rsms_, frame.vpls, frame.vplCount, placement_);
+        propagated_ = &volume_->propagation.record(executor, volume_->grid.injected(), stepsOf(desc_));
+        volume_->read.recordPack(executor, *propagated_);
+        unused_ = unusedInputs(frame, desc_.extent == 0.0f);
+        states_.purge();
+        states_.each([](LpvView& state) { state.isRendered = false; });
+    }
+
+    void render(Executor& executor, const std::shared_ptr<View>& view, const LWGBuffer& gbuffer, const LWOutput& output) override {
+        checkLightOutputs(device_, *view, output, "lpv");
+        LpvView& state = states_.get(view, [] { return std::make_unique<LpvView>(); });
+        state.gbuffer.import(executor, *view, gbuffer, 0, "gbuffer");
+        state.counts.reserve(device_, kCountBytes, "counts of a view");
+        executor.fill("lpv_read.counts", state.counts, 0, 0, kCountBytes);
+        const Planes irradiance = state.irradiance.begin(executor, *view, output.irradiance, 3, "output.irradiance");
+        const Planes validity = state.validity.begin(executor, *view, output.validity, 1, "output.validity");
+        volume_->read.recordGather(executor, state.gbuffer.position, state.gbuffer.normal, volume_->grid.place(), calibration_,
+                                   irradiance, validity, state.counts);
+        state.irradiance.end(executor);
+        state.validity.end(executor);
+        state.isRendered = true;
+    }
+
+    void prewarm(Executor& executor, const std::shared_ptr<View>&) override {
+        LWLpvDesc desc = desc_;
+        desc.steps = std::min(stepsOf(desc), 2u);
+        LpvTechnique twin(device_, desc);
+        twin.prewarmVpls(executor);
+        exerciseTechnique(executor, twin);
+    }
+
+    Report report() override;
+    std::vector<DebugView> debugViews(const View* view) override;
+    std::uint64_t bytes() const override;
+
+private:
+    // A frame of VPLs, which exerciseTechnique's have none of.
+    void prewarmVpls(Executor& executor) {
+        LWVpl vpl{};
+        vpl.normal[1] = vpl.flux[0] = 1.0f;
+        LWFrame frame{};
+        frame.structSize = sizeof frame;
+        frame.vpls = &vpl;
+        frame.vplCount = 1;
+        update(executor, frame);
+    }
+
+    Device& device_;
+    LWLpvDesc desc_;
+    double calibration_;
+    std::uint64_t failures_;  // that the device had seen when the last update began
+    TriangleBox box_;
+    LpvPlacement placement_;
+    RsmInput rsms_;
+    std::optional<Volume> volume_;
+    const Buffer* propagated_ = nullptr;
+    PerView<LpvView> states_;
+    std::vector<LWChoice> unused_;  // of the last update
+};
+
+Report LpvTechnique::report() {
+    Report report;
+    rsms_.report(report);
+    for (const LWChoice& choice : unused_) report.choose(choice.name, choice.reason);
+    report.counts.push_back({"steps", stepsOf(desc_)});
+    for (const char* name : {"lights_outside", "rejected_pixels", "saturated_pixels", "pixels_outside"})
+        report.counts.push_back({name, 0});
+    if (propagated_) report.read(device_, "lights_outside", volume_->grid.state(), LW_LPV_OUTSIDE * sizeof(cl_uint));
+    states_.each([&](const LpvView& state) {
+        if (!state.isRendered) return;
+        state.gbuffer.report(report);
+        state.irradiance.report(report);
+        state.validity.report(report);
+        report.read(device_, "rejected_pixels", state.counts, 0);
+        report.read(device_, "saturated_pixels", state.counts, sizeof(cl_int));
+        report.read(device_, "pixels_outside", state.counts, 2 * sizeof(cl_int));
+    });
+    return report;
+}
+
+std::vector<DebugView> LpvTechnique::debugViews(const View* view) {
+    std::vector<DebugView> views;
+    if (propagated_) {
+        views.push_back({"injected", "cells, slice below slice with two empty rows between: c0, c1 xyz of red, green, blue (W/sr)",
+                         LpvPropagation::debugPlanes(volume_->grid.injected(), desc_.size), {}});
+        views.push_back({"propagated", "the same after all steps, with what was injected",
+                         LpvPropagation::debugPlanes(*propagated_, desc_.size), {}});
+    }
+    if (const LpvView* state = states_.find(view); state && state->isRendered) {
+        views.push_back({"position", "world position (m)", state->gbuffer.position, {}});
+        views.push_back({"normal", "world normal as the host gave it", state->gbuffer.normal, {}});
+    }
+    return views;
+}
+
+std::uint64_t LpvTechnique::bytes() const {
+    std::uint64_t total = rsms_.bytes() + volume_->bytes();
+    states_.each([&](const LpvView& state) {
+        total += state.gbuffer.bytes() + state.irradiance.bytes() + state.validity.bytes() + state.counts.bytes();
+    });
+    return total;
+}
+
+// ------------------------------------------------------------------------------------- registration
+
+std::uint64_t estimateBytes(const void* desc, const LWViewDesc& view, const FrameShape& shape) {
+    const LWLpvDesc& lpv = *static_cast<const LWLpvDesc*>(desc);
+    return RsmInput::estimateBytes(shape) + LpvGrid::estimateBytes(lpv.size, shape.vplCount) +
+           LpvPropagation::estimateBytes(lpv.size, stepsOf(lpv)) + LpvRead::estimateBytes(lpv.size) +
+           GBufferInput::estimateBytes(view, 0, shape.uploads) + OutputTarget::estimateBytes(view, 3, shape.uploads) +
+           OutputTarget::estimateBytes(view, 1, shape.uploads) + kCountBytes;
+}
+
+}  // namespace
+
+const TechniqueEntry& lpvEntry() {
+    static const TechniqueEntry entry = techniqueEntry<LpvTechnique, LWLpvDesc, lwDefaultLpv>(
+        "lpv", "light propagation volumes: RSMs' light spread from cell to cell of a grid, without visibility", 1, lpvParameters(),
+        lpvSettings(), estimateBytes);
+    return entry;
+}
+
+}  // namespace lightwell

@@ -1,0 +1,53 @@
+// Ranges, defaults and sweeps of technique lpv's parameters.
+#include "techniques/lpv_parameters.h"
+
+#include <cstddef>
+
+#include "techniques/parameter_table.h"
+
+namespace lightwell {
+namespace {
+
+constexpr double kSizeValues[] = {16, 32, 64, 128};
+constexpr double kSizeSweep[] = {16, 32, 64};
+constexpr double kStepSweep[] = {0, 8, 16, 32};
+
+LWParameter centre(const char* name, std::size_t axis) {
+    return parameter(name, "of the grid; with an extent only", LW_PARAMETER_FLOAT,
+                     offsetof(LWLpvDesc, center) + axis * sizeof(float), -1e9, 1e9, 0);
+}
+
+}  // namespace
+
+const std::vector<LWParameter>& lpvParameters() {
+    static const std::vector<LWParameter> table = {
+        swept(allowing(parameter("size",
+                                 "cells along each side of the grid: finer light, thinner leaks; time and memory grow with its cube, and "
+                                 "the same steps bring light less far",
+                                 LW_PARAMETER_UINT, offsetof(LWLpvDesc, size), 16, 128, 32),
+                       kSizeValues),
+              kSizeSweep),
+        swept(parameter("steps",
+                        "of propagation, each as far as the next cell; 0: twice the size. Time grows with it, range with its "
+                        "square root",
+                        LW_PARAMETER_UINT, offsetof(LWLpvDesc, steps), 0, 1024, 0),
+              kStepSweep),
+        parameter("extent", "length of the grid's sides, in units of length; 0: fitted to what the lights and the triangles reach",
+                  LW_PARAMETER_FLOAT, offsetof(LWLpvDesc, extent), 0, 1e9, 0),
+        centre("center_x", 0), centre("center_y", 1), centre("center_z", 2)};
+    return table;
+}
+
+const std::vector<LWSetting>& lpvSettings() {
+    static const std::vector<LWSetting> settings = {{"fast", "size=16 steps=16"}, {"fine", "size=64 steps=32"}};
+    return settings;
+}
+
+}  // namespace lightwell
+
+extern "C" void lwDefaultLpv(LWLpvDesc* desc) {
+    if (!desc) return;
+    *desc = LWLpvDesc{};
+    desc->structSize = sizeof *desc;
+    desc->size = 32;
+}
