@@ -1,12 +1,15 @@
 // How many samples each level of technique screen_space needs. A few receivers take the light of every texel of a coarse
 // level, which is cheap and without noise, ring by ring: so much a level brings, so much of it a smaller number of
-// samples loses to the bound of the form factor, and so much its samples differ. What is decided depends on this frame and the
-// choice of the one before, and on nothing else; each lane is a receiver of its own and sums in one order, so that the same frames
-// have the same bits at every width.
+// samples loses to the bound of the form factor, and so much its samples differ. What is decided depends on the frames since the
+// last cut and on nothing else; each lane is a receiver of its own and sums in one order, so that the same frames have the same
+// bits at every width.
 #ifndef LW_LEVELS
 #define LW_LEVELS 4  // 1 .. 6
 #endif
 #include "shared/screen_plan_types.h"
+#ifndef LW_ASKED_HALVINGS
+#define LW_ASKED_HALVINGS LW_PROBED_HALVINGS  // fewer where there is no coarser start: the others' planes are then not written
+#endif
 #include "shared/screen_types.h"
 #include "shared/surface.h"
 #include "shared/wide.h"
@@ -31,32 +34,36 @@ __kernel void screen_plan_rows(__global const float* level, int4 layout, int wid
 }
 
 typedef struct {
-    real light[LW_LEVELS], loss[LW_SCREEN_HALVINGS][LW_LEVELS], squares[LW_LEVELS], share[LW_LEVELS];
+    real light[LW_LEVELS], loss[LW_ASKED_HALVINGS][LW_LEVELS], squares[LW_LEVELS], share[LW_LEVELS];
 } lw_probed;
 
 // One texel of `area` and radiance l: the bounded term of screen_gather with samples of any number, whose bound is what a sample stands
 // for, but at least a texel of its level. `inside`: the ring of each lane's texel.
+LW_FN real bounded_sample(real numerator, real d4, real edge, real standsFor, float bound) {
+    return fmin(numerator / (d4 + fma_(edge, standsFor * bound, (real)1e-37f)), (real)LW_LARGEST_SAMPLE);
+}
+
 LW_FN void add_texel(lw_probed* sum, const mask* inside, const real* standsFor, real edge, real d4, real numerator, float l, float bound) {
-    real w[LW_SCREEN_HALVINGS + 1];
-    LW_UNROLL for (int c = 0; c <= LW_SCREEN_HALVINGS; ++c) {
-        const real w0 = numerator / (d4 + fma_(edge, standsFor[c] * bound, (real)1e-37f));
-        w[c] = fmin(w0, (real)LW_LARGEST_SAMPLE);
-    }
+    real w[LW_ASKED_HALVINGS + 1];
+    w[0] = bounded_sample(numerator, d4, edge, standsFor[0], bound);
+    LW_UNROLL for (int k = 0; k < LW_LEVELS; ++k) sum->share[k] = fma_(ones_(inside[k]), w[0], sum->share[k]);
+    if (!(l > 0.0f)) return;  // divisions take most of the time, and most of a picture may be in the shade
+    LW_UNROLL for (int c = 1; c <= LW_ASKED_HALVINGS; ++c) w[c] = bounded_sample(numerator, d4, edge, standsFor[c], bound);
     LW_UNROLL for (int k = 0; k < LW_LEVELS; ++k) {
         const real here = ones_(inside[k]), whole = here * w[0];
-        sum->share[k] += whole;
         sum->light[k] = fma_(whole, (real)l, sum->light[k]);
         sum->squares[k] = fma_(whole * l, w[0] * l, sum->squares[k]);
-        LW_UNROLL for (int c = 0; c < LW_SCREEN_HALVINGS; ++c)
+        LW_UNROLL for (int c = 0; c < LW_ASKED_HALVINGS; ++c)
             sum->loss[c][k] = fma_(here * (w[0] - w[c + 1]), (real)l, sum->loss[c][k]);
     }
 }
 
-// One work-item = LW_WIDTH receivers of one row of them. samples: the most. bound: as of screen_gather, or 0.
+// One work-item = LW_WIDTH receivers of one row of them: every `turns`th, from `turn` on. samples: the most. bound: as of
+// screen_gather, or 0.
 __kernel void screen_plan_probe(__global const float* level, int4 layout, int width, int height, int step,
-                                __global const float* brightest, int samples, float bound, LwScreenRings rings,
-                                __global float* probed) {
-    const int column = (int)get_global_id(0) * LW_WIDTH, row = (int)get_global_id(1);
+                                __global const float* brightest, int samples, float bound, LwScreenRings rings, int turn,
+                                int turns, __global float* probed) {
+    const int column = (int)get_global_id(0) * LW_WIDTH, row = turn + (int)get_global_id(1) * turns;
     if (column >= LW_PROBE_COLUMNS || row >= LW_PROBE_ROWS) return;
     const int plane = layout.z, ry = (2 * row + 1) * height / (2 * LW_PROBE_ROWS);
     const lanei rx = (2 * (lanei_iota() + (lanei)column) + 1) * width / (2 * LW_PROBE_COLUMNS);
@@ -69,7 +76,7 @@ __kernel void screen_plan_probe(__global const float* level, int4 layout, int wi
     lw_probed sum;
     LW_UNROLL for (int k = 0; k < LW_LEVELS; ++k) {
         sum.light[k] = sum.squares[k] = sum.share[k] = (real)0.0f;
-        LW_UNROLL for (int c = 0; c < LW_SCREEN_HALVINGS; ++c) sum.loss[c][k] = (real)0.0f;
+        LW_UNROLL for (int c = 0; c < LW_ASKED_HALVINGS; ++c) sum.loss[c][k] = (real)0.0f;
     }
     for (int y = 0; y < height; y += step)
         for (int x = 0; x < width; x += step) {
@@ -84,15 +91,15 @@ __kernel void screen_plan_probe(__global const float* level, int4 layout, int wi
             const real across = to_real((lanei)x - rx), down = (real)(float)(y - ry);
             const real off2 = fma_(across, across, down * down), d2 = fma_(dx, dx, fma_(dy, dy, dz * dz));
             mask inside[LW_LEVELS], within = splat_mask(0);
-            real standsFor[LW_SCREEN_HALVINGS + 1];
-            LW_UNROLL for (int i = 0; i <= LW_SCREEN_HALVINGS; ++i) standsFor[i] = (real)0.0f;
+            real standsFor[LW_ASKED_HALVINGS + 1];
+            LW_UNROLL for (int i = 0; i <= LW_ASKED_HALVINGS; ++i) standsFor[i] = (real)0.0f;
             LW_UNROLL for (int k = 0; k < LW_LEVELS; ++k) {
                 const mask out = off2 < rings.outer2[k];
                 inside[k] = and_(faces, and_(out, not_(within)));
                 within = out;
                 // In texels that are asked: what one of the level's samples stands for.
                 const float own_texel = rings.area[k] / rings.texels[k];
-                LW_UNROLL for (int i = 0; i <= LW_SCREEN_HALVINGS; ++i) {
+                LW_UNROLL for (int i = 0; i <= LW_ASKED_HALVINGS; ++i) {
                     const float each = fmax(rings.texels[k] * (float)(1 << i) / (float)samples, 1.0f) * own_texel;
                     standsFor[i] = select_(standsFor[i], (real)(each * area), inside[k]);
                 }
@@ -100,12 +107,13 @@ __kernel void screen_plan_probe(__global const float* level, int4 layout, int wi
             const real numerator = select_((real)0.0f, c * cp * (area * texels), faces);
             add_texel(&sum, inside, standsFor, fma_(3.0f * cp, cp, d2), d2 * d2, numerator, mean_radiance(level, at, plane) * scale, bound);
         }
+    if (column == 0) probed[LW_PROBED_UNITS + row] = scale > 0.0f ? most : 0.0f;
     // A texel that stands for those stepped over has the square of their sum, not the sum of their squares.
     const int to = row * LW_PROBE_COLUMNS + column;
     LW_UNROLL for (int k = 0; k < LW_LEVELS; ++k) {
         __global float* out = probed + k * LW_PROBED_PLANES * LW_PROBES + to;
         store(sum.light[k], out, LW_PROBED_LIGHT * LW_PROBES);
-        LW_UNROLL for (int c = 0; c < LW_SCREEN_HALVINGS; ++c) store(sum.loss[c][k], out, (LW_PROBED_LOSS + c) * LW_PROBES);
+        LW_UNROLL for (int c = 0; c < LW_ASKED_HALVINGS; ++c) store(sum.loss[c][k], out, (LW_PROBED_LOSS + c) * LW_PROBES);
         store(sum.squares[k] / texels, out, LW_PROBED_SQUARES * LW_PROBES);
         store(sum.share[k] * M_1_PI_F, out, LW_PROBED_SHARE * LW_PROBES);
     }

@@ -44,10 +44,10 @@ void ScreenCombine::recordFilter(Executor& executor, const Planes& texels, bool 
                  cl_int(light.width), cl_int(light.height), cl_int(alike ? 1 : 0), light, filtered);
 }
 
-void ScreenCombine::recordFilter(Executor& executor, const Planes& texels, std::uint32_t alikeCounts, const Planes& light,
-                                 const Planes& filtered, const Buffer& plan, std::uint32_t level) {
+void ScreenCombine::recordFilter(Executor& executor, const Planes& texels, std::uint32_t alike, std::uint32_t discsAlike,
+                                 const Planes& light, const Planes& filtered, const Buffer& plan, std::uint32_t level) {
     executor.run("screen_combine.filter", *filter_, itemsOver(light, filter_->width()), groupOf(*filter_), texels,
-                 cl_int(light.width), cl_int(light.height), cl_int(alikeCounts), light, filtered, plan, cl_int(level));
+                 cl_int(light.width), cl_int(light.height), cl_int(alike), light, filtered, cl_int(discsAlike), plan, cl_int(level));
 }
 
 void ScreenCombine::recordAdd(Executor& executor, const Planes& fine, const Planes& own, const Planes& coarse,

@@ -78,29 +78,40 @@ void ScreenLevels::resize(Executor& executor, std::uint32_t width, std::uint32_t
 
 ScreenGather::ScreenGather(Device& device, std::uint32_t interleave, bool planned)
     : interleave_(interleave),
-      deal_(device.programs().kernel(kProgram, "screen_gather_deal", definesOf(interleave))),
+      deal_(device.programs().kernel(kProgram, "screen_gather_deal", definesOf(interleave, planned))),
       gather_(device.programs().kernel(kProgram, "screen_gather_gather", definesOf(interleave, planned))) {}
 
-void ScreenGather::recordDeal(Executor& executor, const PyramidLevels& pyramid, const ScreenLevels& levels, std::uint32_t k) {
+void ScreenGather::recordDeal(Executor& executor, const PyramidLevels& pyramid, const ScreenLevels& levels, std::uint32_t k,
+                              const Buffer* plan) {
     const Planes level = pyramid.level(k);
-    executor.run("screen_gather.deal", deal_, {perItem(level.width, deal_.width() * interleave_), level.height}, groupOf(deal_),
-                 level, cl_int(level.width), cl_int(level.height), levels.dealt(), levels.dealtLayout(k));
+    const auto run = [&](const auto&... more) {
+        executor.run("screen_gather.deal", deal_, {perItem(level.width, deal_.width() * interleave_), level.height}, groupOf(deal_),
+                     level, cl_int(level.width), cl_int(level.height), levels.dealt(), levels.dealtLayout(k), more...);
+    };
+    if (plan)
+        run(*plan, cl_int(k - levels.range().first));
+    else
+        run();
+}
+
+template <typename... More>
+void ScreenGather::runGather(Executor& executor, const ScreenLevels& levels, std::uint32_t k, const Buffer& samples,
+                             std::uint32_t sampleCount, bool bounded, const Planes& light, const More&... more) {
+    constexpr float kBound = 0.25f / 3.14159265f;
+    const std::uint32_t vectors = perItem(perItem(light.width, interleave_), gather_.width());
+    executor.run(kLevelPasses[k - levels.range().first], gather_, {std::size_t(vectors) * interleave_, light.height}, groupOf(gather_),
+                 levels.dealt(), levels.dealtLayout(k), cl_int(light.width), cl_int(light.height), samples, cl_int(sampleCount),
+                 bounded ? kBound : 0.0f, light, more...);
 }
 
 void ScreenGather::recordGather(Executor& executor, const ScreenLevels& levels, std::uint32_t k, const Buffer& samples,
-                                std::uint32_t sampleCount, bool bounded, const Planes& light, const Buffer* plan) {
-    constexpr float kBound = 0.25f / 3.14159265f;
-    const std::uint32_t vectors = perItem(perItem(light.width, interleave_), gather_.width());
-    const std::uint32_t level = k - levels.range().first;
-    const auto run = [&](const auto&... more) {
-        executor.run(kLevelPasses[level], gather_, {std::size_t(vectors) * interleave_, light.height}, groupOf(gather_),
-                     levels.dealt(), levels.dealtLayout(k), cl_int(light.width), cl_int(light.height), samples, cl_int(sampleCount),
-                     bounded ? kBound : 0.0f, light, more...);
-    };
-    if (plan)
-        run(*plan, cl_int(level));
-    else
-        run();
+                                std::uint32_t sampleCount, bool bounded, const Planes& light) {
+    runGather(executor, levels, k, samples, sampleCount, bounded, light);
+}
+
+void ScreenGather::recordGather(Executor& executor, const ScreenLevels& levels, std::uint32_t k, const Buffer& samples,
+                                const Buffer& discs, std::uint32_t sampleCount, bool bounded, const Planes& light, const Buffer& plan) {
+    runGather(executor, levels, k, samples, sampleCount, bounded, light, discs, plan, cl_int(k - levels.range().first));
 }
 
 }  // namespace lightwell

@@ -114,15 +114,17 @@ void ScreenPicture::gatherLevels(Executor& executor, ScreenSpacePasses& passes) 
     std::vector<Planes> contributions(options_.levels);
     Planes sum;
     for (std::uint32_t k = range.last + 1; k-- > range.first;) {
-        passes.gather.recordDeal(executor, pyramid_, levels_, k);
+        const Buffer* plan = plan_ ? &plan_->plan() : nullptr;
+        passes.gather.recordDeal(executor, pyramid_, levels_, k, plan);
         const Planes raw = filters ? levels_.other(k) : levels_.own(k), own = levels_.own(k), texels = pyramid_.level(k);
         const int table = k == range.first ? 0 : 1;
-        const Buffer* plan = plan_ ? &plan_->plan() : nullptr;
-        passes.gather.recordGather(executor, levels_, k, patterns_[table], options_.samples, options_.bounded, raw, plan);
-        if (filters && plan)
-            passes.combine.recordFilter(executor, texels, alike_[table], raw, own, *plan, k - range.first);
-        else if (filters)
-            passes.combine.recordFilter(executor, texels, alike_[table] != 0, raw, own);
+        if (plan) {
+            passes.gather.recordGather(executor, levels_, k, patterns_[1], patterns_[0], options_.samples, options_.bounded, raw, *plan);
+            if (filters) passes.combine.recordFilter(executor, texels, alike_[1], alike_[0], raw, own, *plan, k - range.first);
+        } else {
+            passes.gather.recordGather(executor, levels_, k, patterns_[table], options_.samples, options_.bounded, raw);
+            if (filters) passes.combine.recordFilter(executor, texels, alike_[table] != 0, raw, own);
+        }
         contributions[k - range.first] = own;
         if (k < range.last) passes.combine.recordAdd(executor, texels, own, pyramid_.level(k + 1), sum, levels_.other(k));
         sum = k < range.last ? levels_.other(k) : own;

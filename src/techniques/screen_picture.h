@@ -22,7 +22,7 @@ struct ScreenSpaceOptions {
     std::uint32_t levels = 4, samples = 64, interleave = 4, seed = 0;
     double radius = 20.0;  // texels, of an image of kRadiusRows rows
     bool bounded = true, cameras = false;
-    float autoError = 0.0f;  // above 0: samples and levels are the most there may be
+    float autoError = 0.0f;  // above 0: start, samples and levels are the most there may be
     TemporalHistoryOptions history;  // none with 0 frames
 
     static constexpr double kRadiusRows = 720.0;
@@ -42,7 +42,8 @@ struct ScreenSpacePasses {
         : pyramid(device, ScreenGather::kExtras), gather(device, options.interleave, options.plans()),
           combine(device, {options.interleave, 1u << options.start, options.levels > 1, options.cameras, options.keeps(), options.plans()}) {
         if (options.plans())
-            plan.emplace(device, ScreenPlanOptions{options.autoError, options.samples, options.levels, options.interleave, options.bounded});
+            plan.emplace(device, ScreenPlanOptions{options.autoError, options.start, options.samples, options.levels, options.interleave,
+                                                       options.bounded});
         if (options.keeps()) history.emplace(device, options.history);
     }
     MipPyramid pyramid;
