@@ -196,7 +196,8 @@ void ScreenPicture::addDebugViews(std::vector<DebugView>& views, ScreenSpacePass
 }
 
 std::uint64_t ScreenPicture::bytes() const {
-    return gbuffer_.bytes() + pyramid_.bytes() + levels_.bytes() + counts_.bytes() + patterns_[0].bytes() + patterns_[1].bytes() + (plan_ ? plan_->bytes() : 0) +
+    return gbuffer_.bytes() + pyramid_.bytes() + levels_.bytes() + counts_.bytes() + patterns_[0].bytes() + patterns_[1].bytes() +
+           (plan_ ? plan_->bytes() : 0) +
            (history_ ? history_->view.bytes() + history_->motion.bytes() + history_->memory.bytes() : 0);
 }
 
