@@ -505,6 +505,9 @@ typedef struct LWScreenSpaceDesc {
     uint32_t seed;           /**< shifts the sample patterns; 0: unshifted */
     uint32_t history;        /**< as LWRsmDesc's, of irradiance and validity; takes LWGBuffer::motion, if given */
     float historyClamp;      /**< as LWRsmDesc's */
+    float autoError;         /**< above 0: `samples` and `levels` are the most and `start` is the finest there may be, and each
+                                  frame takes what this relative error of the picture asks for, against the picture with the
+                                  most; 0: always the most; 0 .. 1 */
 } LWScreenSpaceDesc;
 
 LW_API void lwDefaultScreenSpace(LWScreenSpaceDesc* desc);

@@ -5,6 +5,10 @@
 #ifndef LW_INTERLEAVE
 #define LW_INTERLEAVE 4  // 2, 4
 #endif
+#ifndef LW_PLANNED
+#define LW_PLANNED 0  // 1: the plan of the frame says which levels are gathered, and with how many samples
+#endif
+#include "shared/screen_plan_types.h"
 #include "shared/wide.h"
 #include "screen_combine.h"
 
@@ -13,12 +17,27 @@
 LW_FN float window_weight(int i) { return i == -LW_REACH || i == LW_REACH ? 0.5f : 1.0f; }
 
 // One work-item = LW_WIDTH texels of one row. light -> filtered: LW_LIGHT_PLANES planes. texels: the level of the
-// pyramid, whose rows have columns without a surface either side. alike: all patterns are, and nothing is to be filtered.
+// pyramid, whose rows have columns without a surface either side. alike: all patterns are, and nothing is to be filtered; with a
+// plan, the sum of those numbers of samples of which they are, and discsAlike that for the level that the picture starts with. plan: by
+// level, how many samples it has; a level without any has no light.
 __kernel void screen_combine_filter(__global const float* texels, int4 texelLayout, int width, int height, int alike,
                                     __global const float* light, int4 lightLayout, __global float* filtered,
-                                    int4 filteredLayout) {
+                                    int4 filteredLayout
+#if LW_PLANNED
+                                    , int discsAlike, __global const int* plan, int level
+#endif
+) {
     const int x = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);
     if (x >= width || y >= height) return;
+    const int o = filteredLayout.x + y * filteredLayout.y + x;
+#if LW_PLANNED
+    const int samples = plan[LW_SCREEN_PLAN_SAMPLES + level];
+    if (samples == 0) {
+        LW_UNROLL for (int a = 0; a < LW_LIGHT_PLANES; ++a) store((real)0.0f, filtered, o + a * filteredLayout.z);
+        return;
+    }
+    alike = ((level == plan[LW_SCREEN_PLAN_START] ? discsAlike : alike) & samples) != 0;
+#endif
     lw_lit_row row;
     lw_lit_texel own;
     lit_row(&row, texels, texelLayout, light, lightLayout, x, y);
@@ -40,6 +59,5 @@ __kernel void screen_combine_filter(__global const float* texels, int4 texelLayo
         }
     }
     const real scale = select_((real)0.0f, 1.0f / sum.weight, and_(s.valid, sum.weight > 0.0f));
-    const int o = filteredLayout.x + y * filteredLayout.y + x;
     LW_UNROLL for (int a = 0; a < LW_LIGHT_PLANES; ++a) store(sum.v[a] * scale, filtered, o + a * filteredLayout.z);
 }

@@ -8,17 +8,28 @@
 #ifndef LW_INTERLEAVE
 #define LW_INTERLEAVE 4  // 1, 2, 4
 #endif
+#ifndef LW_PLANNED
+#define LW_PLANNED 0  // 1: the plan of the frame says which levels are gathered, and with how many samples
+#endif
 #include "shared/wide.h"
 #include "shared/interleave.h"
+#include "shared/screen_plan_types.h"
 #include "shared/screen_types.h"
 #include "shared/surface.h"
 
 // Dealt layout: x first float of segment 0's first column, y row stride, z plane stride, w distance of segments.
 // Before each segment and behind the last there are LW_PYRAMID_BORDER columns without a surface.
 
-// One work-item = LW_INTERLEAVE * LW_WIDTH texels of one row, all planes of senders.
+// One work-item = LW_INTERLEAVE * LW_WIDTH texels of one row, all planes of senders. A level that is not gathered is not dealt.
 __kernel void screen_gather_deal(__global const float* level, int4 levelLayout, int width, int height,
-                                 __global float* dealt, int4 dealtLayout) {
+                                 __global float* dealt, int4 dealtLayout
+#if LW_PLANNED
+                                 , __global const int* plan, int planned
+#endif
+) {
+#if LW_PLANNED
+    if (plan[LW_SCREEN_PLAN_SAMPLES + planned] == 0) return;
+#endif
     const int i = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1), x = i * LW_INTERLEAVE;
     if (x >= width || y >= height) return;
     for (int plane = 0; plane < LW_SENDER_PLANES; ++plane) {
@@ -72,10 +83,23 @@ LW_FN int sample_at(const LwScreenSample s, int phase, int i, int y, int columns
 }
 
 // One work-item = LW_WIDTH texels with one pattern: columns LW_INTERLEAVE apart of one row. samples: pairs, of
-// LW_INTERLEAVE^2 patterns. light: LW_LIGHT_PLANES planes of the level, columns as in the image.
+// LW_INTERLEAVE^2 patterns. light: LW_LIGHT_PLANES planes of the level, columns as in the image. plan: by level, how many samples it
+// takes; `samples` then has the patterns of sampleCount, of half of it, and so on, and `discs` those for the level that the
+// picture starts with.
 __kernel void screen_gather_gather(__global const float* dealt, int4 dealtLayout, int width, int height,
                                    __global const LwScreenSample* samples, int sampleCount, float bound,
-                                   __global float* light, int4 lightLayout) {
+                                   __global float* light, int4 lightLayout
+#if LW_PLANNED
+                                   , __global const LwScreenSample* discs, __global const int* plan, int level
+#endif
+) {
+#if LW_PLANNED
+    const int most = sampleCount;
+    sampleCount = plan[LW_SCREEN_PLAN_SAMPLES + level];
+    if (LW_INTERLEAVE > 1 && sampleCount == 0) return;  // the filter clears the light
+    if (level == plan[LW_SCREEN_PLAN_START]) samples = discs;
+    samples += 2 * LW_INTERLEAVE * LW_INTERLEAVE * (most - sampleCount);
+#endif
     const int columns = (width + LW_INTERLEAVE - 1) / LW_INTERLEAVE, vectors = (columns + LW_WIDTH - 1) / LW_WIDTH;
     const int phase = (int)get_global_id(0) / vectors, i = ((int)get_global_id(0) % vectors) * LW_WIDTH;
     const int y = (int)get_global_id(1);
@@ -103,10 +127,10 @@ __kernel void screen_gather_gather(__global const float* dealt, int4 dealtLayout
             add_two_samples(&sum, s, dealt, at, plane, weight, bound);
         }
     }
-    const real most = (real)LW_LARGEST_IRRADIANCE;
+    const real limit = (real)LW_LARGEST_IRRADIANCE;
     const lanei to = (lanei)(lightLayout.x + y * lightLayout.y + i * LW_INTERLEAVE + phase) + lanei_iota() * LW_INTERLEAVE;
-    scatter(select_((real)0.0f, fmin(sum.r, most), s.valid), light, to);
-    scatter(select_((real)0.0f, fmin(sum.g, most), s.valid), light, to + lightLayout.z);
-    scatter(select_((real)0.0f, fmin(sum.b, most), s.valid), light, to + 2 * lightLayout.z);
+    scatter(select_((real)0.0f, fmin(sum.r, limit), s.valid), light, to);
+    scatter(select_((real)0.0f, fmin(sum.g, limit), s.valid), light, to + lightLayout.z);
+    scatter(select_((real)0.0f, fmin(sum.b, limit), s.valid), light, to + 2 * lightLayout.z);
     scatter(select_((real)0.0f, sum.share * M_1_PI_F, s.valid), light, to + LW_LIGHT_SHARE * lightLayout.z);
 }

@@ -12,6 +12,12 @@ constexpr const char* kProgram = "screen_combine/screen_combine";
 
 Defines definesOf(std::uint32_t interleave) { return {{"LW_INTERLEAVE", std::to_string(interleave)}}; }
 
+Defines filterDefines(std::uint32_t interleave, bool planned) {
+    Defines defines = definesOf(interleave);
+    if (planned) defines.push_back({"LW_PLANNED", "1"});
+    return defines;
+}
+
 Range groupOf(const Kernel& kernel) { return kernel.width() == 1 ? Range{64, 1} : Range{8, 1}; }
 
 Range itemsOver(const Planes& planes, std::uint32_t columnsPerItem, std::uint32_t rowsPerItem = 1) {
@@ -25,7 +31,8 @@ constexpr std::uint32_t kRows = 2;  // LW_LIT_ROWS of kernels/screen_combine
 ScreenCombine::ScreenCombine(Device& device, const Options& options)
     : factor_(options.factor), finish_(device.programs().kernel(kProgram, "screen_combine_finish", definesOf(options.factor))) {
     if (options.interleave > 1)
-        filter_ = &device.programs().kernel("screen_combine/screen_filter", "screen_combine_filter", definesOf(options.interleave));
+        filter_ = &device.programs().kernel("screen_combine/screen_filter", "screen_combine_filter",
+                                             filterDefines(options.interleave, options.planned));
     if (options.adds) add_ = &device.programs().kernel(kProgram, "screen_combine_add", definesOf(2));
     if (options.joins) join_ = &device.programs().kernel("screen_combine/screen_join", "screen_combine_join");
     if (options.moves && factor_ > 1)
@@ -35,6 +42,12 @@ ScreenCombine::ScreenCombine(Device& device, const Options& options)
 void ScreenCombine::recordFilter(Executor& executor, const Planes& texels, bool alike, const Planes& light, const Planes& filtered) {
     executor.run("screen_combine.filter", *filter_, itemsOver(light, filter_->width()), groupOf(*filter_), texels,
                  cl_int(light.width), cl_int(light.height), cl_int(alike ? 1 : 0), light, filtered);
+}
+
+void ScreenCombine::recordFilter(Executor& executor, const Planes& texels, std::uint32_t alike, std::uint32_t discsAlike,
+                                 const Planes& light, const Planes& filtered, const Buffer& plan, std::uint32_t level) {
+    executor.run("screen_combine.filter", *filter_, itemsOver(light, filter_->width()), groupOf(*filter_), texels,
+                 cl_int(light.width), cl_int(light.height), cl_int(alike), light, filtered, cl_int(discsAlike), plan, cl_int(level));
 }
 
 void ScreenCombine::recordAdd(Executor& executor, const Planes& fine, const Planes& own, const Planes& coarse,

@@ -12,7 +12,11 @@ constexpr const char* kProgram = "screen_gather/screen_gather";
 constexpr const char* kLevelPasses[] = {"screen_gather.level1", "screen_gather.level2", "screen_gather.level3",
                                         "screen_gather.level4", "screen_gather.level5", "screen_gather.level6"};
 
-Defines definesOf(std::uint32_t interleave) { return {{"LW_INTERLEAVE", std::to_string(interleave)}}; }
+Defines definesOf(std::uint32_t interleave, bool planned = false) {
+    Defines defines{{"LW_INTERLEAVE", std::to_string(interleave)}};
+    if (planned) defines.push_back({"LW_PLANNED", "1"});
+    return defines;
+}
 
 Range groupOf(const Kernel& kernel) { return kernel.width() == 1 ? Range{64, 1} : Range{8, 1}; }
 
@@ -72,24 +76,42 @@ void ScreenLevels::resize(Executor& executor, std::uint32_t width, std::uint32_t
     height_ = height;
 }
 
-ScreenGather::ScreenGather(Device& device, std::uint32_t interleave)
+ScreenGather::ScreenGather(Device& device, std::uint32_t interleave, bool planned)
     : interleave_(interleave),
-      deal_(device.programs().kernel(kProgram, "screen_gather_deal", definesOf(interleave))),
-      gather_(device.programs().kernel(kProgram, "screen_gather_gather", definesOf(interleave))) {}
+      deal_(device.programs().kernel(kProgram, "screen_gather_deal", definesOf(interleave, planned))),
+      gather_(device.programs().kernel(kProgram, "screen_gather_gather", definesOf(interleave, planned))) {}
 
-void ScreenGather::recordDeal(Executor& executor, const PyramidLevels& pyramid, const ScreenLevels& levels, std::uint32_t k) {
+void ScreenGather::recordDeal(Executor& executor, const PyramidLevels& pyramid, const ScreenLevels& levels, std::uint32_t k,
+                              const Buffer* plan) {
     const Planes level = pyramid.level(k);
-    executor.run("screen_gather.deal", deal_, {perItem(level.width, deal_.width() * interleave_), level.height}, groupOf(deal_),
-                 level, cl_int(level.width), cl_int(level.height), levels.dealt(), levels.dealtLayout(k));
+    const auto run = [&](const auto&... more) {
+        executor.run("screen_gather.deal", deal_, {perItem(level.width, deal_.width() * interleave_), level.height}, groupOf(deal_),
+                     level, cl_int(level.width), cl_int(level.height), levels.dealt(), levels.dealtLayout(k), more...);
+    };
+    if (plan)
+        run(*plan, cl_int(k - levels.range().first));
+    else
+        run();
+}
+
+template <typename... More>
+void ScreenGather::runGather(Executor& executor, const ScreenLevels& levels, std::uint32_t k, const Buffer& samples,
+                             std::uint32_t sampleCount, bool bounded, const Planes& light, const More&... more) {
+    constexpr float kBound = 0.25f / 3.14159265f;
+    const std::uint32_t vectors = perItem(perItem(light.width, interleave_), gather_.width());
+    executor.run(kLevelPasses[k - levels.range().first], gather_, {std::size_t(vectors) * interleave_, light.height}, groupOf(gather_),
+                 levels.dealt(), levels.dealtLayout(k), cl_int(light.width), cl_int(light.height), samples, cl_int(sampleCount),
+                 bounded ? kBound : 0.0f, light, more...);
 }
 
 void ScreenGather::recordGather(Executor& executor, const ScreenLevels& levels, std::uint32_t k, const Buffer& samples,
                                 std::uint32_t sampleCount, bool bounded, const Planes& light) {
-    constexpr float kBound = 0.25f / 3.14159265f;
-    const std::uint32_t vectors = perItem(perItem(light.width, interleave_), gather_.width());
-    executor.run(kLevelPasses[k - levels.range().first], gather_, {std::size_t(vectors) * interleave_, light.height},
-                 groupOf(gather_), levels.dealt(), levels.dealtLayout(k), cl_int(light.width), cl_int(light.height), samples,
-                 cl_int(sampleCount), bounded ? kBound : 0.0f, light);
+    runGather(executor, levels, k, samples, sampleCount, bounded, light);
+}
+
+void ScreenGather::recordGather(Executor& executor, const ScreenLevels& levels, std::uint32_t k, const Buffer& samples,
+                                const Buffer& discs, std::uint32_t sampleCount, bool bounded, const Planes& light, const Buffer& plan) {
+    runGather(executor, levels, k, samples, sampleCount, bounded, light, discs, plan, cl_int(k - levels.range().first));
 }
 
 }  // namespace lightwell

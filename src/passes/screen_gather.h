@@ -44,15 +44,25 @@ public:
     // The pyramid must have exactly radiance and area beside position and normal.
     static constexpr std::uint32_t kExtras = kPyramidRadiance | kPyramidArea;
 
-    ScreenGather(Device& device, std::uint32_t interleave);  // 1, 2 or 4
+    // interleave: 1, 2 or 4. planned: every gather has a plan, or else none has.
+    ScreenGather(Device& device, std::uint32_t interleave, bool planned = false);
 
-    // Pass "screen_gather.deal": level k in the layout that the gather reads.
-    void recordDeal(Executor& executor, const PyramidLevels& pyramid, const ScreenLevels& levels, std::uint32_t k);
+    // Pass "screen_gather.deal": level k in the layout that the gather reads; with a plan of ScreenPlan not where it has no samples.
+    void recordDeal(Executor& executor, const PyramidLevels& pyramid, const ScreenLevels& levels, std::uint32_t k,
+                    const Buffer* plan = nullptr);
     // Pass "screen_gather.level1" for the first level, and so on: light of level k; `samples`: interleave^2 patterns of sampleCount.
     void recordGather(Executor& executor, const ScreenLevels& levels, std::uint32_t k, const Buffer& samples,
                       std::uint32_t sampleCount, bool bounded, const Planes& light);
+    // The same by a plan of ScreenPlan, which has how many of the patterns are taken (behind them stand those of half as many, and so
+    // on) and for which level those of `discs` are. A level without samples is left as it is, or cleared with interleave = 1.
+    void recordGather(Executor& executor, const ScreenLevels& levels, std::uint32_t k, const Buffer& samples, const Buffer& discs,
+                      std::uint32_t sampleCount, bool bounded, const Planes& light, const Buffer& plan);
 
 private:
+    template <typename... More>
+    void runGather(Executor& executor, const ScreenLevels& levels, std::uint32_t k, const Buffer& samples, std::uint32_t sampleCount,
+                   bool bounded, const Planes& light, const More&... more);
+
     std::uint32_t interleave_;
     Kernel &deal_, &gather_;
 };

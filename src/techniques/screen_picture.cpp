@@ -6,8 +6,12 @@
 namespace lightwell {
 namespace {
 
+std::uint32_t halvingsOf(const ScreenSpaceOptions& options) { return options.plans() ? ScreenPlanPass::halvings(options.samples) : 0; }
+
 std::uint64_t patternBytes(const ScreenSpaceOptions& options) {
-    return std::uint64_t(options.interleave) * options.interleave * options.samples * sizeof(LwScreenSample);
+    std::uint64_t samples = 0;
+    for (std::uint32_t i = 0; i <= halvingsOf(options); ++i) samples += options.samples >> i;
+    return std::uint64_t(options.interleave) * options.interleave * samples * sizeof(LwScreenSample);
 }
 
 Planes part(const Planes& image, std::uint32_t first, std::uint32_t count) {
@@ -52,6 +56,7 @@ ScreenPicture::ScreenPicture(Device& device, const ScreenSpaceOptions& options, 
       pyramid_(device, maxWidth, maxHeight, options.pyramid()),
       levels_(device, maxWidth, maxHeight, options.range(), options.interleave),
       counts_(device, LW_SCREEN_COUNTERS * sizeof(cl_int), "counts of a view") {
+    if (options.plans()) plan_.emplace(device);
     if (options.keeps()) history_.emplace(device, options, maxWidth, maxHeight);
     for (Buffer& patterns : patterns_) patterns = Buffer(device, std::size_t(patternBytes(options)), "sample patterns");
 }
@@ -64,17 +69,21 @@ void ScreenPicture::check(Device& device, const ScreenSpaceOptions& options, con
 // The first level's disc and the ring of all others, in texels of the level.
 void ScreenPicture::makePatterns(Executor& executor, std::uint32_t rows, std::uint32_t turn) {
     const bool isNew = rows != patternRows_;
-    if (!isNew && (turn == patternTurn_ || (alike_[0] && alike_[1]))) return;
-    const double r = options_.radiusAt(rows);
-    const std::vector<LwScreenSample> tables[2] = {
-        screenPatterns(0.0, 2.0 * r, options_.samples, options_.interleave, options_.seed, turn),
-        screenPatterns(r, 2.0 * r, options_.samples, options_.interleave, options_.seed, turn)};
-    if (isNew) {
-        alike_[0] = takesEveryTexel(0.0, 2.0 * r, options_.samples);
-        alike_[1] = takesEveryTexel(r, 2.0 * r, options_.samples);
+    std::uint32_t all = 0;
+    for (std::uint32_t i = 0; i <= halvingsOf(options_); ++i) all += options_.samples >> i;
+    if (!isNew && (turn == patternTurn_ || (alike_[0] == all && alike_[1] == all))) return;
+    const double r = options_.radiusAt(rows), inner[2] = {0.0, r};
+    for (int i = 0; i < 2; ++i) {
+        std::vector<LwScreenSample> table;
+        if (isNew) alike_[i] = 0;
+        for (std::uint32_t halving = 0; halving <= halvingsOf(options_); ++halving) {
+            const std::uint32_t samples = options_.samples >> halving;
+            const std::vector<LwScreenSample> patterns = screenPatterns(inner[i], 2.0 * r, samples, options_.interleave, options_.seed, turn);
+            table.insert(table.end(), patterns.begin(), patterns.end());
+            if (isNew && takesEveryTexel(inner[i], 2.0 * r, samples)) alike_[i] |= samples;
+        }
+        executor.writeCopy("screen_gather.patterns", patterns_[i], 0, table.size() * sizeof(LwScreenSample), table.data());
     }
-    for (int i = 0; i < 2; ++i)
-        executor.writeCopy("screen_gather.patterns", patterns_[i], 0, tables[i].size() * sizeof(LwScreenSample), tables[i].data());
     patternRows_ = rows;
     patternTurn_ = turn;
 }
@@ -93,6 +102,7 @@ void ScreenPicture::light(Executor& executor, ScreenSpacePasses& passes, const V
     levels_.resize(executor, view.width, view.height);
     passes.pyramid.record(executor, gbuffer_.position, gbuffer_.normal, gbuffer_.directRadiance, gbuffer_.receiveMask, camera_,
                           pyramid_, counts_);
+    if (plan_) plan_->record(executor, *passes.plan, pyramid_, options_.radiusAt(view.height), alike_[0], alike_[1]);
     gatherLevels(executor, passes);
     if (history_) keep(executor, passes, view, gbuffer.camera);
 }
@@ -104,11 +114,17 @@ void ScreenPicture::gatherLevels(Executor& executor, ScreenSpacePasses& passes) 
     std::vector<Planes> contributions(options_.levels);
     Planes sum;
     for (std::uint32_t k = range.last + 1; k-- > range.first;) {
-        passes.gather.recordDeal(executor, pyramid_, levels_, k);
+        const Buffer* plan = plan_ ? &plan_->plan() : nullptr;
+        passes.gather.recordDeal(executor, pyramid_, levels_, k, plan);
         const Planes raw = filters ? levels_.other(k) : levels_.own(k), own = levels_.own(k), texels = pyramid_.level(k);
         const int table = k == range.first ? 0 : 1;
-        passes.gather.recordGather(executor, levels_, k, patterns_[table], options_.samples, options_.bounded, raw);
-        if (filters) passes.combine.recordFilter(executor, texels, alike_[table], raw, own);
+        if (plan) {
+            passes.gather.recordGather(executor, levels_, k, patterns_[1], patterns_[0], options_.samples, options_.bounded, raw, *plan);
+            if (filters) passes.combine.recordFilter(executor, texels, alike_[1], alike_[0], raw, own, *plan, k - range.first);
+        } else {
+            passes.gather.recordGather(executor, levels_, k, patterns_[table], options_.samples, options_.bounded, raw);
+            if (filters) passes.combine.recordFilter(executor, texels, alike_[table] != 0, raw, own);
+        }
         contributions[k - range.first] = own;
         if (k < range.last) passes.combine.recordAdd(executor, texels, own, pyramid_.level(k + 1), sum, levels_.other(k));
         sum = k < range.last ? levels_.other(k) : own;
@@ -157,6 +173,7 @@ void ScreenPicture::report(Device& device, Report& report) const {
     report.read(device, "rejected_radiances", counts_, LW_SCREEN_REJECTED_RADIANCE * sizeof(cl_int));
     report.read(device, "upsample_fallbacks", counts_, LW_SCREEN_FALLBACKS * sizeof(cl_int));
     report.read(device, "saturated_pixels", counts_, LW_SCREEN_SATURATED * sizeof(cl_int));
+    if (plan_) plan_->report(device, report);
     if (history_) history_->view.report(device, report);
 }
 
@@ -180,6 +197,7 @@ void ScreenPicture::addDebugViews(std::vector<DebugView>& views, ScreenSpacePass
 
 std::uint64_t ScreenPicture::bytes() const {
     return gbuffer_.bytes() + pyramid_.bytes() + levels_.bytes() + counts_.bytes() + patterns_[0].bytes() + patterns_[1].bytes() +
+           (plan_ ? plan_->bytes() : 0) +
            (history_ ? history_->view.bytes() + history_->motion.bytes() + history_->memory.bytes() : 0);
 }
 
@@ -192,7 +210,7 @@ std::uint64_t ScreenPicture::estimateBytes(const ScreenSpaceOptions& options, co
     return history + GBufferInput::estimateBytes(view, options.needs(), uploads) +
            PyramidLevels::estimateBytes(view.maxWidth, view.maxHeight, options.pyramid()) +
            ScreenLevels::estimateBytes(view.maxWidth, view.maxHeight, options.range(), options.interleave) +
-           2 * patternBytes(options) + LW_SCREEN_COUNTERS * sizeof(cl_int);
+           2 * patternBytes(options) + (options.plans() ? ScreenPlan::estimateBytes() : 0) + LW_SCREEN_COUNTERS * sizeof(cl_int);
 }
 
 }  // namespace lightwell

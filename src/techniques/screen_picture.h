@@ -11,6 +11,7 @@
 #include "passes/mip_pyramid.h"
 #include "passes/screen_combine.h"
 #include "passes/screen_gather.h"
+#include "passes/screen_plan.h"
 #include "passes/temporal_history.h"
 #include "techniques/technique.h"
 
@@ -21,12 +22,14 @@ struct ScreenSpaceOptions {
     std::uint32_t levels = 4, samples = 64, interleave = 4, seed = 0;
     double radius = 20.0;  // texels, of an image of kRadiusRows rows
     bool bounded = true, cameras = false;
+    float autoError = 0.0f;  // above 0: start, samples and levels are the most there may be
     TemporalHistoryOptions history;  // none with 0 frames
 
     static constexpr double kRadiusRows = 720.0;
     LevelRange range() const { return {start, start + levels - 1}; }
     PyramidOptions pyramid() const { return {ScreenGather::kExtras, start, range().last}; }
     bool keeps() const { return history.frames > 0; }
+    bool plans() const { return autoError > 0.0f; }
     // GBufferNeeds.
     std::uint32_t needs() const { return kNeedsDirectRadiance | kNeedsReceiveMask | (keeps() ? std::uint32_t(kNeedsMotion) : 0u); }
     // The radius in texels of every level, for an image of so many rows.
@@ -36,13 +39,17 @@ struct ScreenSpaceOptions {
 // The passes of a technique; its pictures share them.
 struct ScreenSpacePasses {
     ScreenSpacePasses(Device& device, const ScreenSpaceOptions& options)
-        : pyramid(device, ScreenGather::kExtras), gather(device, options.interleave),
-          combine(device, {options.interleave, 1u << options.start, options.levels > 1, options.cameras, options.keeps()}) {
+        : pyramid(device, ScreenGather::kExtras), gather(device, options.interleave, options.plans()),
+          combine(device, {options.interleave, 1u << options.start, options.levels > 1, options.cameras, options.keeps(), options.plans()}) {
+        if (options.plans())
+            plan.emplace(device, ScreenPlanOptions{options.autoError, options.start, options.samples, options.levels, options.interleave,
+                                                       options.bounded});
         if (options.keeps()) history.emplace(device, options.history);
     }
     MipPyramid pyramid;
     ScreenGather gather;
     ScreenCombine combine;
+    std::optional<ScreenPlanPass> plan;
     std::optional<TemporalHistory> history;
 };
 
@@ -63,6 +70,7 @@ public:
     // Once per update. `forget`: what the picture showed before is no history.
     void startFrame(bool forget) {
         isLit_ = false;
+        if (plan_ && forget) plan_->forget();
         if (history_) history_->view.startFrame(forget);
     }
     bool isLit() const { return isLit_; }
@@ -85,8 +93,9 @@ private:
     GBufferInput gbuffer_;
     PyramidLevels pyramid_;
     ScreenLevels levels_;
-    Buffer patterns_[2];  // of the first level's disc, and of the others' ring
-    bool alike_[2] = {};  // the patterns of each
+    Buffer patterns_[2];  // of the first level's disc, and of the others' ring; with a plan of all numbers of samples that it chooses from
+    std::uint32_t alike_[2] = {};  // of each, the sum of the numbers of samples of which all patterns are alike
+    std::optional<ScreenPlan> plan_;
     std::uint32_t patternRows_ = 0, patternTurn_ = 0;
     Buffer counts_;
     // Of the light at the first level's resolution.

@@ -28,6 +28,7 @@ ScreenSpaceOptions optionsOf(const LWScreenSpaceDesc& desc) {
     options.bounded = desc.bounded != 0;
     options.cameras = desc.cameras != 0;
     options.seed = desc.seed;
+    options.autoError = desc.autoError;
     options.history = {desc.history, desc.historyClamp, 1};
     return options;
 }

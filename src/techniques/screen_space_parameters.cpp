@@ -42,7 +42,9 @@ const std::vector<LWParameter>& screenSpaceParameters() {
                   offsetof(LWScreenSpaceDesc, cameras), 0, 1, 0),
         parameter("seed", "another set of samples; 0: unshifted", LW_PARAMETER_UINT, offsetof(LWScreenSpaceDesc, seed), 0, 4294967295.0, 0),
         historyParameter(offsetof(LWScreenSpaceDesc, history)),
-        historyClampParameter(offsetof(LWScreenSpaceDesc, historyClamp))};
+        historyClampParameter(offsetof(LWScreenSpaceDesc, historyClamp)),
+        parameter("auto_error", "relative error of the picture for which samples and levels may be fewer and start coarser, frame by frame: time falls as it is raised; 0: always the most",
+                  LW_PARAMETER_FLOAT, offsetof(LWScreenSpaceDesc, autoError), 0, 1, 0)};
     return table;
 }
 
