@@ -51,7 +51,7 @@ __kernel void lpv_sweep_gather(__global const float* position, int4 positionLayo
     mask saturated = splat_mask(0);
     for (int c = 0; c < LW_SWEEP_COLOURS; ++c) {
         const real value = select_(none, load(light[c], 0), has);
-        saturated = or_(saturated, value > LW_LARGEST_IRRADIANCE);
+        saturated = or_(saturated, not_(value <= LW_LARGEST_IRRADIANCE));  // beyond float's range it is not a number
         store(fmin(value, (real)LW_LARGEST_IRRADIANCE), irradiance, e + c * irradianceLayout.z);
     }
     saturated = and_(saturated, shown);

@@ -6,6 +6,9 @@
 
 #include "lpv_sweep_types.h"
 
+// Of the cells' centres above the surface, in cells; just below 0, so that rounding does not choose where they lie on it.
+#define SWEEP_LEAST_HEIGHT -1e-3f
+
 // A coordinate in cells, from the first one's centre, to the lower of the two cells around it and the upper one's share.
 LW_FN float sweep_split(float g, int size, int* lower) {
     const float inside = clamp(g, 0.0f, (float)(size - 1));
@@ -16,14 +19,22 @@ LW_FN float sweep_split(float g, int size, int* lower) {
 // E of a surface of unit normal n from the cells about the point (x, y, z), in cells from the grid's corner:
 // E(n) = sum over axes of n_i^2 q(side that n_i faces), exact along the axes. Of each cell all six sides are loaded: a pixel
 // that picked its three would load longer.
-LW_FN float4 sweep_irradiance(__global const float16* cells, int size, float x, float y, float z, float nx, float ny, float nz) {
+//
+// above: how far the point is off its surface, in cells. Cells whose centres lie behind the surface do not count. Which of the
+// two cells at a sheet is closed depends on the side that its own normal faces; where that is the reader's, the open one lies
+// beyond the sheet, and the reader would get the other side's light.
+LW_FN float4 sweep_irradiance(__global const float16* cells, int size, float x, float y, float z, float nx, float ny, float nz,
+                              float above) {
     int ix, iy, iz;
     const float fx = sweep_split(x - 0.5f, size, &ix), fy = sweep_split(y - 0.5f, size, &iy), fz = sweep_split(z - 0.5f, size, &iz);
     __global const float16* corner = cells + 2 * ((iz * size + iy) * size + ix);
     float16 xy = (float16)(0.0f);
     float8 zz = (float8)(0.0f);
     _Pragma("unroll") for (int k = 0; k < 8; ++k) {
-        const float w = ((k & 1) ? fx : 1.0f - fx) * ((k & 2) ? fy : 1.0f - fy) * ((k & 4) ? fz : 1.0f - fz);
+        const float height = above + ((k & 1) ? 1.0f - fx : -fx) * nx + ((k & 2) ? 1.0f - fy : -fy) * ny +
+                             ((k & 4) ? 1.0f - fz : -fz) * nz;
+        const float share = ((k & 1) ? fx : 1.0f - fx) * ((k & 2) ? fy : 1.0f - fy) * ((k & 4) ? fz : 1.0f - fz);
+        const float w = height > SWEEP_LEAST_HEIGHT ? share : 0.0f;
         __global const float16* cell = corner + 2 * (((k & 1) ? 1 : 0) + ((k & 2) ? size : 0) + ((k & 4) ? size * size : 0));
         xy += w * cell[0];
         zz += w * *(__global const float8*)(cell + 1);
@@ -38,8 +49,8 @@ LW_FN float4 sweep_irradiance(__global const float16* cells, int size, float x, 
 // Light and readers are half a cell off their surfaces, which makes every distance a cell shorter. What light loses over one more
 // cell is what it lost over the last: E1 at half a cell, E2 at one and a half, E = E1 min(1, E1 / E2).
 LW_FN float4 sweep_read_twice(__global const float16* cells, int size, float x, float y, float z, float nx, float ny, float nz) {
-    const float4 e1 = sweep_irradiance(cells, size, x + 0.5f * nx, y + 0.5f * ny, z + 0.5f * nz, nx, ny, nz);
-    const float4 e2 = sweep_irradiance(cells, size, x + 1.5f * nx, y + 1.5f * ny, z + 1.5f * nz, nx, ny, nz);
+    const float4 e1 = sweep_irradiance(cells, size, x + 0.5f * nx, y + 0.5f * ny, z + 0.5f * nz, nx, ny, nz, 0.5f);
+    const float4 e2 = sweep_irradiance(cells, size, x + 1.5f * nx, y + 1.5f * ny, z + 1.5f * nz, nx, ny, nz, 1.5f);
     // Where e2 is not above e1 the quotient is not below 1, or 0 / 0.
     return e1 * select((float4)(1.0f), e1 / e2, e2 > e1);
 }

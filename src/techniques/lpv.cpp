@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <tuple>
 
 #include "compute/device.h"
 #include "inputs/gbuffer_input.h"
@@ -27,18 +28,21 @@ std::uint32_t stepsOf(const LWLpvDesc& desc) { return desc.steps ? desc.steps : 
 
 constexpr std::size_t kCountBytes = LpvRead::kCounts * sizeof(cl_int);
 
-// The box around the triangles' vertices; read again when the geometry's version, pointer or count changes.
+// The box around the triangles; read again when the geometry's version, a pointer or a count changes.
 class TriangleBox {
 public:
     void look(const LWGeometry* geometry) {
-        const bool some = geometry && geometry->triangleCount;
-        if (some && vertices_ == geometry->vertices && count_ == geometry->vertexCount && version_ == geometry->version) return;
+        const Key key = geometry && geometry->triangleCount
+                            ? Key{geometry->vertices, geometry->indices, geometry->triangleCount, geometry->vertexCount, geometry->version}
+                            : Key{};
+        if (key == key_) return;
         GeometryInput().check(geometry);
-        vertices_ = some ? geometry->vertices : nullptr;
-        count_ = some ? geometry->vertexCount : 0;
-        version_ = some ? geometry->version : 0;
+        key_ = key;
         isSome_ = false;
-        for (std::uint32_t i = 0; i < count_; ++i) add(vertices_ + 3 * std::size_t(i));
+        if (key == Key{}) return;
+        // A vertex that no triangle has is none of the scene's: hosts share buffers among meshes.
+        for (std::size_t i = 0; i < 3 * std::size_t(geometry->triangleCount); ++i)
+            add(geometry->vertices + 3 * (geometry->indices ? geometry->indices[i] : i));
     }
     void putInto(LpvPlacement& placement) const {
         placement.hasBox = isSome_;
@@ -57,9 +61,9 @@ private:
         }
         isSome_ = true;
     }
-    const float* vertices_ = nullptr;
-    std::uint32_t count_ = 0;
-    std::uint64_t version_ = 0;
+    // vertices, indices, triangles, vertices' count, version
+    using Key = std::tuple<const float*, const std::uint32_t*, std::uint32_t, std::uint32_t, std::uint64_t>;
+    Key key_{};
     bool isSome_ = false;
     float low_[3] = {}, high_[3] = {};
 };

@@ -41,20 +41,21 @@ void LpvSweepVolume::check(const LWFrame& frame) const {
 }
 
 void LpvSweepVolume::record(Executor& executor, const LWFrame& frame, const RsmInput& rsms, const LpvGrid& grid, bool restart) {
-    const Source source = sourceOf(frame);
-    if (source != source_) restart = true;  // revisions count within a source
-    source_ = source;
+    Source source = sourceOf(frame);
     SurfelSet set;
     if (source == Source::triangles) {
         triangles_.import(executor, frame.geometry);
         sampling_.record(executor, triangles_, sampledCount(desc_));
         set = sampling_.surfels();
+        if (triangles_.triangleCount == 0) source = Source::none;
     } else if (source == Source::surfels) {
         surfels_.import(executor, frame.geometry);
         set = surfels_.surfels();
     }
+    restart = restart || source != source_;  // revisions count within a source
     sweep_.record(executor, {rsms, grid.authored(), frame.vplCount, grid.place(), set,
                              source == Source::triangles ? kSampledArea : 1.0f, restart});
+    source_ = source;
 }
 
 std::vector<LWChoice> LpvSweepVolume::choices(const LWFrame& frame) const {
@@ -64,6 +65,8 @@ std::vector<LWChoice> LpvSweepVolume::choices(const LWFrame& frame) const {
                                                   : "the texels of all RSMs: what no light sees blocks nothing"}};
     if (source_ == Source::none && desc_.bounces > 1)
         choices.push_back({"bounces", "one: without triangles and surfels there is nothing to send light on"});
+    if (source_ == Source::none && frame.geometry && sourceOf(frame) == Source::triangles)
+        choices.push_back({"frame.geometry", "not used: no triangle has an area and lies within reach"});
     if (source_ == Source::triangles && frame.geometry->surfelCount)
         choices.push_back({"frame.geometry.surfels", "not used: the triangles are"});
     return choices;
@@ -79,7 +82,7 @@ void LpvSweepVolume::report(Report& report) const {
 }
 
 std::uint64_t LpvSweepVolume::estimateBytes(const LWLpvDesc& desc, const FrameShape& shape) {
-    std::uint64_t total = LpvSweep::estimateBytes(optionsOf(desc));
+    std::uint64_t total = LpvSweep::estimateBytes(optionsOf(checked(desc)));
     const Source source = sourceOf(shape.surfels, shape.triangles);
     if (source == Source::triangles)
         total += GeometryInput::estimateBytes(shape.triangles) + SurfelSampling::estimateBytes(shape.triangles, sampledCount(desc));

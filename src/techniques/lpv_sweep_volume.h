@@ -45,7 +45,7 @@ private:
 
     Device& device_;
     LWLpvDesc desc_;
-    Source source_ = Source::none;
+    Source source_ = Source::none;  // of the last record's surfaces
     int hidden_ = 0;
     GeometryInput triangles_;
     SurfelInput surfels_;

@@ -1,0 +1,202 @@
+// Technique lpv, both ways of transport, where inputs are at their ends: what must still be true of the light, and of what is said.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <string>
+
+#include "support/lit_room.h"
+#include "support/packed_light.h"
+#include "support/scoped_api.h"
+
+using namespace lightwell::test;
+using lightwell::reference::Vec;
+
+namespace {
+
+constexpr std::uint32_t kWidth = 45, kHeight = 16;
+
+double evenProfile(double, double) { return 1.0; }
+
+LWLpvDesc descOf(LWLpvTransport transport, std::uint32_t bounces = 1) {
+    LWLpvDesc desc;
+    lwDefaultLpv(&desc);
+    desc.size = 16;
+    desc.transport = transport;
+    desc.directions = 96;
+    desc.bounces = bounces;
+    return desc;
+}
+
+// Floor, back wall and ceiling of the room, as the host's triangles. turned: the other way round.
+struct Room {
+    std::vector<float> vertices;
+    LWGeometry geometry{};
+    explicit Room(double scale = 1.0, bool turned = false) {
+        quad({-0.5, 0, 0}, {0, 0, 1}, {1, 0, 0}, scale, turned);
+        quad({-0.5, 0, 0}, {1, 0, 0}, {0, 1, 0}, scale, turned);
+        quad({-0.5, 1, 0}, {1, 0, 0}, {0, 0, 1}, scale, turned);
+        geometry.structSize = sizeof geometry;
+        geometry.vertices = vertices.data();
+        geometry.vertexCount = std::uint32_t(vertices.size() / 3);
+        geometry.triangleCount = geometry.vertexCount / 3;
+    }
+    Room(const Room&) = delete;
+    void quad(Vec p, Vec u, Vec v, double scale, bool turned) {
+        if (turned) std::swap(u, v);
+        for (const Vec corner : {p, p + u, p + u + v, p, p + u + v, p + v})
+            for (const double x : {corner.x, corner.y, corner.z}) vertices.push_back(float(x * scale));
+    }
+};
+
+LWFrame frameOf(const std::vector<LWLight>& lights, const LWGeometry* geometry, const std::vector<LWVpl>& vpls = {}) {
+    LWFrame frame{};
+    frame.structSize = sizeof frame;
+    frame.lights = lights.data();
+    frame.lightCount = std::uint32_t(lights.size());
+    frame.vpls = vpls.data();
+    frame.vplCount = std::uint32_t(vpls.size());
+    frame.geometry = geometry;
+    return frame;
+}
+
+std::string choiceOf(TestTechnique& technique, const std::string& name) {
+    const LWStats stats = technique.stats();
+    for (std::uint32_t i = 0; i < stats.choiceCount; ++i)
+        if (name == stats.choices[i].name) return stats.choices[i].reason;
+    return "";
+}
+
+}  // namespace
+
+TEST_CASE("neither the unit of length nor that of light changes more than rounding", "[lpv]") {
+    TestDevice device(16);
+    const LWLpvDesc desc = descOf(GENERATE(LW_LPV_TRANSPORT_PROPAGATE, LW_LPV_TRANSPORT_SWEEP), 2);
+    const auto at = [&](double scale, double exitance) {
+        LitFloor floor(48, [&](double, double) { return exitance; }, scale);
+        WallAndCeiling scene(kWidth, kHeight, scale);
+        const Room room(scale);
+        const std::vector<LWLight> lights = {floor.light};
+        TestTechnique technique(device, "lpv", &desc);
+        TestView view(device, kWidth, kHeight);
+        technique.update(frameOf(lights, &room.geometry));
+        std::vector<float> light = technique.render(view, scene.gbuffer);
+        for (float& value : light) value = float(double(value) / exitance);
+        return light;
+    };
+    const auto one = at(1.0, 1.0);
+    CHECK(meanOf(one) > 0.01);
+    for (const double scale : {1e-6, 1e-3, 1.0, 1e3, 1e6})
+        for (const double exitance : {1e-20, 1.0, 1e20}) {
+            CAPTURE(scale, exitance);
+            CHECK(difference(at(scale, exitance), one) < 3e-6);
+        }
+}
+
+TEST_CASE("light that is beyond float's range is brought down, and counted", "[lpv]") {
+    TestDevice device(GENERATE(1u, 16u));
+    const LWLpvDesc desc = descOf(GENERATE(LW_LPV_TRANSPORT_PROPAGATE, LW_LPV_TRANSPORT_SWEEP), 2);
+    const double scale = 1e-3;
+    WallAndCeiling scene(kWidth, kHeight, scale);
+    const Room room(scale);
+    std::vector<LWVpl> vpls(70000);
+    for (std::size_t i = 0; i < vpls.size(); ++i) {
+        vpls[i].position[0] = float(scale * (double(i % 100) / 100 - 0.5));
+        vpls[i].position[2] = float(scale * (double(i / 100 % 100) / 100));
+        vpls[i].normal[1] = 1.0f;
+        for (float& flux : vpls[i].flux) flux = 1e30f;
+    }
+    TestTechnique technique(device, "lpv", &desc);
+    TestView view(device, kWidth, kHeight);
+    technique.update(frameOf({}, &room.geometry, vpls));
+    std::uint64_t full = 0;
+    const std::vector<float> light = technique.render(view, scene.gbuffer);
+    for (std::size_t i = 0; i < light.size(); ++i) {
+        CHECK((light[i] >= 0.0f && light[i] <= 1e36f));
+        full += i < kWidth * kHeight && light[i] == 1e36f ? 1 : 0;
+    }
+    CHECK(full > 0);
+    CHECK(technique.count("saturated_pixels") == full);
+}
+
+TEST_CASE("sweeps: triangles may face either way", "[lpv]") {
+    TestDevice device(16);
+    LitFloor floor(96, evenProfile);
+    WallAndCeiling scene(kWidth, kHeight);
+    const std::vector<LWLight> lights = {floor.light};
+    const Room room(1.0, GENERATE(false, true));
+    LWLpvDesc desc = descOf(LW_LPV_TRANSPORT_SWEEP);
+    desc.size = 32;
+    desc.directions = 384;
+    TestTechnique technique(device, "lpv", &desc);
+    TestView view(device, kWidth, kHeight);
+    technique.update(frameOf(lights, &room.geometry));
+    const auto light = technique.render(view, scene.gbuffer);
+    double squared = 0.0, truths = 0.0;
+    for (std::uint32_t y = kHeight / 2; y < kHeight; ++y)
+        for (std::uint32_t x = 1; x < kWidth; ++x) {
+            const double truth = polygonIrradiance({{-0.5, 0, 0}, {-0.5, 0, 1}, {0.5, 0, 1}, {0.5, 0, 0}}, scene.position.get(x, y),
+                                                   {0, -1, 0}, 1.0);
+            squared += std::pow(double(light[y * kWidth + x]) - truth, 2.0);
+            truths += truth * truth;
+        }
+    CHECK(std::sqrt(squared / truths) < 0.05);
+}
+
+TEST_CASE("sweeps: triangles without area are not what blocks, and the stats say so", "[lpv]") {
+    TestDevice device(16);
+    LitFloor floor(48, evenProfile);
+    WallAndCeiling scene(kWidth, kHeight);
+    const std::vector<LWLight> lights = {floor.light};
+    TestView view(device, kWidth, kHeight);
+    const float flat[9] = {0, 0, 0, 0, 0, 0, 0.5f, 1, 1};
+    LWGeometry geometry{};
+    geometry.structSize = sizeof geometry;
+    geometry.vertices = flat;
+    geometry.vertexCount = 3;
+    geometry.triangleCount = 1;
+    const LWLpvDesc desc = descOf(LW_LPV_TRANSPORT_SWEEP, 2);
+    TestTechnique technique(device, "lpv", &desc);
+    const Room room;
+    technique.update(frameOf(lights, &room.geometry));
+    CHECK(choiceOf(technique, "blockers").find("triangles") == 0);
+    CHECK(choiceOf(technique, "frame.geometry") == "");
+    technique.update(frameOf(lights, &geometry));
+    CHECK(meanOf(technique.render(view, scene.gbuffer)) > 0.01);
+    CHECK(choiceOf(technique, "blockers").find("the texels of all RSMs") == 0);
+    CHECK(choiceOf(technique, "bounces").find("one") == 0);
+    CHECK(choiceOf(technique, "frame.geometry").find("no triangle has an area") != std::string::npos);
+}
+
+TEST_CASE("the grid is fitted to triangles, not to vertices that none of them has", "[lpv]") {
+    TestDevice device(16);
+    LitFloor floor(48, evenProfile);
+    WallAndCeiling scene(kWidth, kHeight);
+    const std::vector<LWLight> lights = {floor.light};
+    TestView view(device, kWidth, kHeight);
+    const LWLpvDesc desc = descOf(GENERATE(LW_LPV_TRANSPORT_PROPAGATE, LW_LPV_TRANSPORT_SWEEP));
+    const Room room;
+    std::vector<float> shared = {1000, 1000, 1000};
+    shared.insert(shared.end(), room.vertices.begin(), room.vertices.end());
+    std::vector<std::uint32_t> indices;
+    for (std::uint32_t i = 0; i < 3 * room.geometry.triangleCount; ++i) indices.push_back(i + 1);
+    LWGeometry geometry = room.geometry;
+    geometry.vertices = shared.data();
+    geometry.vertexCount += 1;
+    geometry.indices = indices.data();
+    TestTechnique own(device, "lpv", &desc), of_many(device, "lpv", &desc);
+    own.update(frameOf(lights, &room.geometry));
+    of_many.update(frameOf(lights, &geometry));
+    CHECK(of_many.render(view, scene.gbuffer) == own.render(view, scene.gbuffer));
+}
+
+TEST_CASE("memory is not estimated of sweeps that cannot be made", "[lpv]") {
+    TestDevice device(16);
+    LWLpvDesc desc = descOf(LW_LPV_TRANSPORT_SWEEP);
+    desc.size = 128;
+    LWViewDesc size{};
+    size.structSize = sizeof size;
+    size.maxWidth = kWidth;
+    size.maxHeight = kHeight;
+    std::uint64_t estimate = 0;
+    CHECK(lwEstimateMemory(device, "lpv", &desc, &size, 1000, &estimate) == LW_ERROR_INVALID_ARGUMENT);
+    CHECK(lastError(device).find("size") != std::string::npos);
+}
