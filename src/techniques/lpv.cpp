@@ -44,6 +44,8 @@ public:
         for (std::size_t i = 0; i < 3 * std::size_t(geometry->triangleCount); ++i)
             add(geometry->vertices + 3 * (geometry->indices ? geometry->indices[i] : i));
     }
+    // No grid that is fitted to it has shorter sides.
+    float longest() const { return std::max({high_[0] - low_[0], high_[1] - low_[1], high_[2] - low_[2]}); }
     void putInto(LpvPlacement& placement) const {
         placement.hasBox = isSome_;
         for (int a = 0; a < 3; ++a) {
@@ -187,7 +189,8 @@ private:
         volume_->grid.recordPlace(executor, rsms_, frame.vpls, frame.vplCount, placement_);
         sweep_->record(executor, frame, rsms_, volume_->grid, placement_.refit);
         unused_ = unusedInputs(frame, desc_.extent == 0.0f, true);
-        for (const LWChoice& choice : sweep_->choices(frame)) unused_.push_back(choice);
+        const float side = desc_.extent > 0.0f ? desc_.extent : box_.longest();
+        for (const LWChoice& choice : sweep_->choices(frame, double(side))) unused_.push_back(choice);
     }
     // A frame of VPLs, which exerciseTechnique's have none of.
     void prewarmVpls(Executor& executor) {

@@ -11,6 +11,10 @@ constexpr std::uint32_t kSurfelsPerSide = 256;
 // Of sampled surfels' areas, so that the chance of the draw leaves no holes in a wall. More: half covered cells are closed.
 constexpr float kSampledArea = 1.25f;
 
+// Of triangles' area, in faces of the grid: from there on fewer than 6.4 surfels come to a cell's side. A closed wall lets
+// through 1 to 2 % of the light then, 4 to 6 % with half as many, 40 % with a tenth.
+constexpr double kMostFaces = 40.0;
+
 std::uint32_t sampledCount(const LWLpvDesc& desc) { return kSurfelsPerSide * desc.size * desc.size; }
 
 LpvSweepOptions optionsOf(const LWLpvDesc& desc) {
@@ -58,7 +62,7 @@ void LpvSweepVolume::record(Executor& executor, const LWFrame& frame, const RsmI
     source_ = source;
 }
 
-std::vector<LWChoice> LpvSweepVolume::choices(const LWFrame& frame) const {
+std::vector<LWChoice> LpvSweepVolume::choices(const LWFrame& frame, double side) const {
     std::vector<LWChoice> choices = {
         {"blockers", source_ == Source::triangles ? "triangles, sampled to surfels by area"
                      : source_ == Source::surfels ? "the host's surfels"
@@ -67,6 +71,8 @@ std::vector<LWChoice> LpvSweepVolume::choices(const LWFrame& frame) const {
         choices.push_back({"bounces", "one: without triangles and surfels there is nothing to send light on"});
     if (source_ == Source::none && frame.geometry && sourceOf(frame) == Source::triangles)
         choices.push_back({"frame.geometry", "not used: no triangle has an area and lies within reach"});
+    if (source_ == Source::triangles && triangles_.area > kMostFaces * side * side)
+        choices.push_back({"blockers.holes", "triangles of more than 40 faces of the grid: too few surfels for each cell to be closed"});
     if (source_ == Source::triangles && frame.geometry->surfelCount)
         choices.push_back({"frame.geometry.surfels", "not used: the triangles are"});
     return choices;

@@ -27,8 +27,8 @@ public:
     static constexpr int kSources = 3;
     void hide(int count) { hidden_ = count; }
 
-    // What of the frame's surfaces is used, and what is not.
-    std::vector<LWChoice> choices(const LWFrame& frame) const;
+    // What of the frame's surfaces is used, and what is not. side: of the grid, or less.
+    std::vector<LWChoice> choices(const LWFrame& frame, double side) const;
     void report(Report& report) const;
     std::uint64_t bytes() const { return sweep_.bytes() + triangles_.bytes() + surfels_.bytes() + sampling_.bytes(); }
     static std::uint64_t estimateBytes(const LWLpvDesc& desc, const FrameShape& shape);

@@ -200,3 +200,24 @@ TEST_CASE("memory is not estimated of sweeps that cannot be made", "[lpv]") {
     CHECK(lwEstimateMemory(device, "lpv", &desc, &size, 1000, &estimate) == LW_ERROR_INVALID_ARGUMENT);
     CHECK(lastError(device).find("size") != std::string::npos);
 }
+
+TEST_CASE("sweeps: the stats say when triangles are too many for the surfels that they are drawn as", "[lpv]") {
+    TestDevice device(16);
+    LitFloor floor(48, evenProfile);
+    const std::vector<LWLight> lights = {floor.light};
+    LWLpvDesc desc = descOf(LW_LPV_TRANSPORT_SWEEP);
+    desc.extent = 1.125f;
+    desc.center[1] = desc.center[2] = 0.5f;
+    // Floor, wall and ceiling of area 1, and far from the grid a wall of so much.
+    for (const double area : {40.0, 60.0}) {
+        Room room;
+        room.quad({1000, 0, 0}, {std::sqrt(area), 0, 0}, {0, std::sqrt(area), 0}, 1.0, false);
+        room.geometry.vertices = room.vertices.data();
+        room.geometry.vertexCount = std::uint32_t(room.vertices.size() / 3);
+        room.geometry.triangleCount = room.geometry.vertexCount / 3;
+        TestTechnique technique(device, "lpv", &desc);
+        technique.update(frameOf(lights, &room.geometry));
+        CAPTURE(area);
+        CHECK((choiceOf(technique, "blockers.holes") != "") == (area + 3.0 > 40.0 * 1.125 * 1.125));
+    }
+}
