@@ -30,11 +30,18 @@ LW_FN float4 sweep_irradiance(__global const float16* cells, int size, float x, 
     __global const float16* corner = cells + 2 * ((iz * size + iy) * size + ix);
     float16 xy = (float16)(0.0f);
     float8 zz = (float8)(0.0f);
+    // Cells are numbered by x (1), y (2), z (4).
+    const int8 byX = (int8)(0, -1, 0, -1, 0, -1, 0, -1), byY = (int8)(0, 0, -1, -1, 0, 0, -1, -1),
+               byZ = (int8)(0, 0, 0, 0, -1, -1, -1, -1);
+    const float8 shares = select((float8)(1.0f - fx), (float8)(fx), byX) * select((float8)(1.0f - fy), (float8)(fy), byY) *
+                          select((float8)(1.0f - fz), (float8)(fz), byZ);
+    const float8 heights = (above - (fx * nx + fy * ny + fz * nz)) -
+                           (convert_float8(byX) * nx + convert_float8(byY) * ny + convert_float8(byZ) * nz);
+    float weights[8];
+    // From above 1.5 only a corner of next to no share can lie behind.
+    vstore8(above < 1.5f ? select((float8)(0.0f), shares, heights > SWEEP_LEAST_HEIGHT) : shares, 0, weights);
     _Pragma("unroll") for (int k = 0; k < 8; ++k) {
-        const float height = above + ((k & 1) ? 1.0f - fx : -fx) * nx + ((k & 2) ? 1.0f - fy : -fy) * ny +
-                             ((k & 4) ? 1.0f - fz : -fz) * nz;
-        const float share = ((k & 1) ? fx : 1.0f - fx) * ((k & 2) ? fy : 1.0f - fy) * ((k & 4) ? fz : 1.0f - fz);
-        const float w = height > SWEEP_LEAST_HEIGHT ? share : 0.0f;
+        const float w = weights[k];
         __global const float16* cell = corner + 2 * (((k & 1) ? 1 : 0) + ((k & 2) ? size : 0) + ((k & 4) ? size * size : 0));
         xy += w * cell[0];
         zz += w * *(__global const float8*)(cell + 1);
