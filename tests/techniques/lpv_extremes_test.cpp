@@ -221,3 +221,91 @@ TEST_CASE("sweeps: the stats say when triangles are too many for the surfels tha
         CHECK((choiceOf(technique, "blockers.holes") != "") == (area + 3.0 > 40.0 * 1.125 * 1.125));
     }
 }
+
+TEST_CASE("sweeps: the host's surfels and VPLs alone need nothing that lwPrewarm did not build", "[lpv]") {
+    TestDevice device(GENERATE(1u, 16u));
+    WallAndCeiling scene(kWidth, kHeight);
+    LWLpvDesc desc = descOf(LW_LPV_TRANSPORT_SWEEP, 2);
+    desc.frames = 2;
+    TestTechnique technique(device, "lpv", &desc);
+    TestView view(device, kWidth, kHeight);
+    REQUIRE(lwPrewarm(technique, view) == LW_SUCCESS);
+    const LWDeviceInfo before = device.info();
+    std::vector<LWVpl> vpls(70);
+    for (LWVpl& vpl : vpls) {
+        vpl.position[2] = 0.5f;
+        vpl.normal[1] = vpl.flux[0] = vpl.flux[1] = vpl.flux[2] = 1.0f;
+    }
+    // A plate half way up.
+    constexpr std::uint32_t kSide = 20, kCount = kSide * kSide;
+    PlanarPixels position(kCount, 1, 3), normal(kCount, 1, 3), area(kCount, 1, 1);
+    for (std::uint32_t i = 0; i < kCount; ++i) {
+        position.set(i, 0, {(i % kSide + 0.5) / kSide - 0.5, 0.5, (i / kSide + 0.5) / kSide});
+        normal.set(i, 0, {0, -1, 0});
+        area.at(i, 0, 0) = 1.25f / kCount;
+    }
+    LWGeometry geometry{};
+    geometry.structSize = sizeof geometry;
+    geometry.surfelCount = kCount;
+    geometry.surfelPosition = position.image();
+    geometry.surfelNormal = normal.image();
+    geometry.surfelArea = area.image();
+    desc.extent = 1.125f;
+    desc.center[1] = desc.center[2] = 0.5f;
+    TestTechnique placed(device, "lpv", &desc);
+    placed.update(frameOf({}, nullptr, vpls));
+    const double open = meanOf(placed.render(view, scene.gbuffer));
+    const LWFrame frame = frameOf({}, &geometry, vpls);
+    placed.update(frame);
+    const double shadowed = meanOf(placed.render(view, scene.gbuffer));
+    CHECK(choiceOf(placed, "blockers") == "the host's surfels");
+    CHECK(placed.count("surfels") == kCount);
+    CHECK(shadowed < 0.5 * open);
+    technique.update(frame);
+    technique.update(frame);
+    technique.update(frameOf({}, nullptr, vpls));
+    technique.render(view, scene.gbuffer);
+    CHECK(device.info().programsBuilt == before.programsBuilt);
+    CHECK(device.info().kernelsSpecialised == before.kernelsSpecialised);
+    LWViewDesc size{};
+    size.structSize = sizeof size;
+    size.maxWidth = kWidth;
+    size.maxHeight = kHeight;
+    std::uint64_t estimate = 0;
+    REQUIRE(lwEstimateFrameMemory(device, "lpv", &desc, &size, &frame, &estimate) == LW_SUCCESS);
+    CHECK(placed.stats().deviceBytes <= estimate);
+}
+
+TEST_CASE("frames of nothing, of one point, and grids of any extent: light is finite, and dark without light", "[lpv]") {
+    TestDevice device(GENERATE(1u, 16u));
+    WallAndCeiling scene(kWidth, kHeight);
+    TestView view(device, kWidth, kHeight);
+    LitFloor dark(16, [](double, double) { return 0.0; });
+    const std::vector<LWLight> unlit = {dark.light};
+    const Room room;
+    const LWLpvTransport transport = GENERATE(LW_LPV_TRANSPORT_PROPAGATE, LW_LPV_TRANSPORT_SWEEP);
+    const auto check = [&](TestTechnique& technique, const LWFrame& frame, bool isLit) {
+        technique.update(frame);
+        for (const float value : technique.render(view, scene.gbuffer)) REQUIRE((value >= 0.0f && value <= 1e36f && (isLit || value == 0.0f)));
+    };
+    std::vector<LWVpl> point(100);
+    for (LWVpl& vpl : point) vpl.normal[1] = vpl.flux[1] = 1.0f;
+    for (const float extent : {0.0f, 1e-30f, 1e-17f, 1e-6f, 1.0f, 1e9f}) {
+        LWLpvDesc desc = descOf(transport, 2);
+        desc.extent = extent;
+        CAPTURE(extent, int(transport));
+        TestTechnique technique(device, "lpv", &desc);
+        check(technique, frameOf({}, nullptr), false);
+        check(technique, frameOf({}, nullptr, point), true);
+        check(technique, frameOf(unlit, nullptr), false);
+        check(technique, frameOf(unlit, &room.geometry), false);
+        check(technique, frameOf({}, &room.geometry, point), true);
+        check(technique, frameOf({}, nullptr), false);
+    }
+    for (const float extent : {-1.0f, INFINITY, NAN}) {
+        LWLpvDesc desc = descOf(transport);
+        desc.extent = extent;
+        LWTechnique none = nullptr;
+        CHECK(lwCreateLpv(device, &desc, &none) == LW_ERROR_INVALID_ARGUMENT);
+    }
+}
