@@ -562,6 +562,15 @@ typedef struct LWAoDesc {
 
 LW_API void lwDefaultAo(LWAoDesc* desc);
 
+/** What blocks light between the cells of technique "lpv". Asking for what a frame does not bring is an error of lwUpdate. */
+typedef enum LWGeometryVolume {
+    LW_GEOMETRY_VOLUME_OFF = 0,       /**< nothing: light goes through walls */
+    LW_GEOMETRY_VOLUME_AUTO = 1,      /**< the frame's triangles, else its surfels, else as SCREEN; the stats say which */
+    LW_GEOMETRY_VOLUME_TRIANGLES = 2, /**< LWGeometry's triangles, sampled to surfels */
+    LW_GEOMETRY_VOLUME_SURFELS = 3,   /**< LWGeometry's surfels; without any, its triangles sampled to surfels */
+    LW_GEOMETRY_VOLUME_SCREEN = 4     /**< the texels of all RSMs and the pixels of LWFrame::sourceViews */
+} LWGeometryVolume;
+
 /** Technique "lpv": the light of RSMs and authored VPLs spread through a cubic grid of cells, as two bands of spherical
  *  harmonics, step by step (light propagation volumes). Pixels outside of the grid have validity 0. */
 typedef struct LWLpvDesc {
@@ -572,6 +581,8 @@ typedef struct LWLpvDesc {
                            VPLs and the vertices of the frame's triangles. A fitted grid stays from frame to frame as long as
                            they lie in it and fill three quarters of it; LWFrame::reset fits anew */
     float center[3];  /**< of the grid where `extent` is above 0 */
+    LWGeometryVolume geometryVolume; /**< what blocks light between cells */
+    uint32_t damping; /**< 1: light that grows weaker away from a surface is taken for light from behind it, and damped */
 } LWLpvDesc;
 
 LW_API void lwDefaultLpv(LWLpvDesc* desc);

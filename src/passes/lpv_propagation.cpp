@@ -10,6 +10,7 @@
 namespace lightwell {
 namespace {
 
+constexpr const char* kProgram = "lpv_propagation/lpv_propagation";
 constexpr double kPi = 3.14159265358979323846;
 constexpr std::uint32_t kCalibrationLayers = 4;
 
@@ -21,10 +22,15 @@ constexpr std::uint32_t kLeastWaveSteps = 2, kMostWaveSteps = 16;
 }  // namespace
 
 LpvPropagation::LpvPropagation(Device& device, std::uint32_t size, std::uint32_t units)
-    : size_(size),
+    : device_(device),
+      size_(size),
       units_(units ? units : device.computeUnits()),
-      step_(device.programs().kernel("lpv_propagation/lpv_propagation", "lpv_propagation_step")),
-      wave_(device.programs().kernel("lpv_propagation/lpv_propagation", "lpv_propagation_wave")) {}
+      step_(device.programs().kernel(kProgram, "lpv_propagation_step")),
+      wave_(device.programs().kernel(kProgram, "lpv_propagation_wave")) {}
+
+Kernel& LpvPropagation::blocked(const char* kernel) const {
+    return device_.programs().kernel("lpv_propagation/lpv_blocked", kernel);
+}
 
 std::uint64_t LpvPropagation::gridBytes(std::uint32_t size) {
     return std::uint64_t(LW_LPV_PLANES) * std::uint64_t(lpv_plane(lw_int(size))) * sizeof(float);
@@ -36,40 +42,63 @@ Buffer LpvPropagation::makeGrid(Executor& executor, std::uint32_t size, const ch
     return grid;
 }
 
-const Buffer& LpvPropagation::record(Executor& executor, const Buffer& injected, std::uint32_t steps) {
+const Buffer& LpvPropagation::record(Executor& executor, const Buffer& injected, std::uint32_t steps, const LpvBlockers* blockers) {
     if (steps == 0) return injected;
     for (std::uint32_t i = 0; i < std::min(steps, 2u); ++i)
         if (!grids_[i]) grids_[i] = makeGrid(executor, size_, "propagated light");
-    return step_.width() == 1 || steps == 1 ? recordSteps(executor, injected, steps) : recordWaves(executor, injected, steps);
+    if (blockers) {
+        if (!spread_) spread_ = makeGrid(executor, size_, "injected light, spread once");
+        Range group;
+        const Range all = rows(group);
+        executor.run("lpv_propagation.first", blocked("lpv_propagation_first"), all, group, injected, spread_, cl_int(size_),
+                     blockers->faces, blockers->runs);
+    }
+    const Start start{blockers ? spread_ : injected, injected, blockers};
+    return step_.width() == 1 || steps == 1 ? recordSteps(executor, start, steps) : recordWaves(executor, start, steps);
 }
 
-const Buffer& LpvPropagation::recordSteps(Executor& executor, const Buffer& injected, std::uint32_t steps) {
+Range LpvPropagation::rows(Range& group) const {
     const std::size_t vectors = size_ / step_.width();
-    const Range group{vectors, std::min<std::size_t>(size_, std::max<std::size_t>(256 / vectors, 1))};
-    const Buffer* from = &injected;
+    group = {vectors, std::min<std::size_t>(size_, std::max<std::size_t>(256 / vectors, 1))};
+    return {vectors, std::size_t(LW_LPV_COLOURS) * size_ * size_};
+}
+
+const Buffer& LpvPropagation::recordSteps(Executor& executor, Start start, std::uint32_t steps) {
+    Range group;
+    const Range all = rows(group);
+    const Buffer* from = &start.from;
     for (std::uint32_t i = 0; i < steps; ++i) {
-        executor.run("lpv_propagation.step", step_, {vectors, std::size_t(LW_LPV_COLOURS) * size_ * size_}, group, injected, *from,
-                     grids_[i % 2], cl_int(size_));
-        from = &grids_[i % 2];
+        const Buffer& to = grids_[i % 2];
+        if (start.blockers)
+            executor.run("lpv_propagation.step", blocked("lpv_propagation_blocked_step"), all, group, start.source, *from,
+                         to, cl_int(size_), start.blockers->faces, start.blockers->runs);
+        else
+            executor.run("lpv_propagation.step", step_, all, group, start.source, *from, to, cl_int(size_));
+        from = &to;
     }
     return *from;
 }
 
-const Buffer& LpvPropagation::recordWaves(Executor& executor, const Buffer& injected, std::uint32_t steps) {
+const Buffer& LpvPropagation::recordWaves(Executor& executor, Start start, std::uint32_t steps) {
     // Two work-items for each compute unit, and no more parts than keep two slices a step.
     std::uint32_t parts = 1;
     while (parts * LW_LPV_COLOURS < 2 * units_ && parts * 8 <= size_) parts *= 2;
     const std::size_t sliceBytes = std::size_t(LW_LPV_BANDS) * std::size_t(lpv_slice(lw_int(size_))) * sizeof(float);
     const auto fits = std::uint32_t(kWaveBytes / (3 * sliceBytes));
     const std::uint32_t most = std::min(std::clamp(fits, kLeastWaveSteps, kMostWaveSteps), size_ / (2 * parts));
-    const Buffer* from = &injected;
+    const Buffer* from = &start.from;
     std::uint32_t left = steps, at = 0;
     while (left > 0) {
         const std::uint32_t taken = std::min(left, most);
         const Buffer &first = grids_[at], &second = grids_[1 - at];
         const auto wave = [&](std::uint32_t items, int atCuts) {
-            executor.run("lpv_propagation.wave", wave_, {items, 1}, {1, 1}, injected, *from, first, second, cl_int(size_),
-                         cl_int(taken), cl_int(parts), cl_int(atCuts));
+            if (start.blockers)
+                executor.run("lpv_propagation.wave", blocked("lpv_propagation_blocked_wave"), {items, 1}, {1, 1}, start.source,
+                             *from, first, second, cl_int(size_), cl_int(taken), cl_int(parts), cl_int(atCuts),
+                             start.blockers->faces, start.blockers->runs);
+            else
+                executor.run("lpv_propagation.wave", wave_, {items, 1}, {1, 1}, start.source, *from, first, second, cl_int(size_),
+                             cl_int(taken), cl_int(parts), cl_int(atCuts));
         };
         wave(LW_LPV_COLOURS * parts, 0);
         if (parts > 1 && taken > 1) wave(LW_LPV_COLOURS * (parts - 1), 1);

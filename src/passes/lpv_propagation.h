@@ -9,6 +9,12 @@
 
 namespace lightwell {
 
+// What blocks light between cells: LpvBlocking's.
+struct LpvBlockers {
+    const Buffer& faces;  // LW_LPV_FACE_PLANES planes, laid out as a grid's
+    const Buffer& runs;   // an int for each LW_LPV_BLOCK_RUN cells of a row, by y and z: whether anything blocks there
+};
+
 class LpvPropagation {
 public:
     // size: cells a side, a power of two from 16 on. units: compute units that the work is cut up for; 0: the device's. The
@@ -18,12 +24,13 @@ public:
     // Pass "lpv_propagation.wave", or ".step" where work-items hold one cell. `injected`: a grid laid out as
     // shared/lpv_types.h has it. Returns the sum of what was injected and of all that `steps` steps make of it; `injected` itself
     // for none.
-    const Buffer& record(Executor& executor, const Buffer& injected, std::uint32_t steps);
+    // blockers: none, or what takes light away from the second step on (pass "lpv_propagation.first" as well).
+    const Buffer& record(Executor& executor, const Buffer& injected, std::uint32_t steps, const LpvBlockers* blockers = nullptr);
 
-    std::uint64_t bytes() const { return grids_[0].bytes() + grids_[1].bytes(); }
+    std::uint64_t bytes() const { return grids_[0].bytes() + grids_[1].bytes() + spread_.bytes(); }
     static std::uint64_t gridBytes(std::uint32_t size);
-    static std::uint64_t estimateBytes(std::uint32_t size, std::uint32_t steps) {
-        return (steps < 2 ? steps : 2) * gridBytes(size);
+    static std::uint64_t estimateBytes(std::uint32_t size, std::uint32_t steps, bool isBlocked = false) {
+        return ((steps < 2 ? steps : 2) + (isBlocked && steps > 0 ? 1 : 0)) * gridBytes(size);
     }
     // A grid whose borders are empty, as steps want them.
     static Buffer makeGrid(Executor& executor, std::uint32_t size, const char* what);
@@ -35,12 +42,22 @@ public:
     static double calibration(std::uint32_t size, std::uint32_t steps);
 
 private:
-    const Buffer& recordSteps(Executor& executor, const Buffer& injected, std::uint32_t steps);
-    const Buffer& recordWaves(Executor& executor, const Buffer& injected, std::uint32_t steps);
+    // What every step adds to, and what the first one reads.
+    struct Start {
+        const Buffer &source, &from;
+        const LpvBlockers* blockers;
+    };
+    const Buffer& recordSteps(Executor& executor, Start start, std::uint32_t steps);
+    const Buffer& recordWaves(Executor& executor, Start start, std::uint32_t steps);
+    Range rows(Range& group) const;  // a work-item to each vector of a row
 
+    Kernel& blocked(const char* kernel) const;  // built when the first frame with blockers asks for it
+
+    Device& device_;
     std::uint32_t size_, units_;
     Kernel &step_, &wave_;
     Buffer grids_[2];
+    Buffer spread_;  // injected light with what blockers would take of its first step put back
 };
 
 }  // namespace lightwell

@@ -14,6 +14,7 @@
 #include "passes/lpv_propagation.h"
 #include "passes/lpv_read.h"
 #include "shared/input_limits.h"
+#include "techniques/lpv_geometry.h"
 #include "techniques/lpv_parameters.h"
 #include "techniques/prewarm.h"
 #include "techniques/technique_entry.h"
@@ -63,14 +64,10 @@ private:
     float low_[3] = {}, high_[3] = {};
 };
 
-std::vector<LWChoice> unusedInputs(const LWFrame& frame, bool fitted) {
+// Geometry and source views apart, which LpvGeometry speaks of.
+std::vector<LWChoice> unusedInputs(const LWFrame& frame) {
     constexpr const char* kReason = "not used: technique lpv takes light from RSMs and authored VPLs only";
     std::vector<LWChoice> unused;
-    if (frame.sourceViewCount) unused.push_back({"frame.sourceViews", kReason});
-    if (frame.geometry)
-        unused.push_back({"frame.geometry", fitted && frame.geometry->triangleCount
-                                                ? "triangles: the grid reaches around them; nothing blocks light"
-                                                : "not used: nothing blocks light"});
     if (frame.blockerCount) unused.push_back({"frame.blockers", kReason});
     if (frame.environment[0] > 0.0f || frame.environment[1] > 0.0f || frame.environment[2] > 0.0f)
         unused.push_back({"frame.environment", kReason});
@@ -104,6 +101,7 @@ public:
         : device_(device),
           desc_(desc),
           calibration_(LpvPropagation::calibration(desc.size, stepsOf(desc))),
+          geometry_(device, desc),
           failures_(device.failures()) {
         volume_.emplace(device, desc.size);
         for (int a = 0; a < 3; ++a) placement_.centre[a] = desc.center[a];
@@ -112,16 +110,22 @@ public:
 
     void update(Executor& executor, const LWFrame& frame) override {
         const bool failed = device_.failures() != failures_;
+        geometry_.check(frame);
         box_.look(frame.geometry);
         rsms_.import(executor, frame);
+        if (failed) geometry_.forget();
+        geometry_.import(executor, frame, rsms_);
         failures_ = device_.failures();
         if (failed) volume_.emplace(device_, desc_.size);  // what its memory holds is not known
         box_.putInto(placement_);
         placement_.refit = frame.reset != 0 || failed;
         volume_->grid.record(executor, rsms_, frame.vpls, frame.vplCount, placement_);
-        propagated_ = &volume_->propagation.record(executor, volume_->grid.injected(), stepsOf(desc_));
+        const std::optional<LpvBlockers> blockers = geometry_.record(executor, volume_->grid.place());
+        propagated_ = &volume_->propagation.record(executor, volume_->grid.injected(), stepsOf(desc_),
+                                                   blockers ? &*blockers : nullptr);
         volume_->read.recordPack(executor, *propagated_);
-        unused_ = unusedInputs(frame, desc_.extent == 0.0f);
+        choices_ = unusedInputs(frame);
+        for (const LWChoice& choice : geometry_.choices(frame)) choices_.push_back(choice);
         states_.purge();
         states_.each([](LpvView& state) { state.isRendered = false; });
     }
@@ -135,7 +139,7 @@ public:
         const Planes irradiance = state.irradiance.begin(executor, *view, output.irradiance, 3, "output.irradiance");
         const Planes validity = state.validity.begin(executor, *view, output.validity, 1, "output.validity");
         volume_->read.recordGather(executor, state.gbuffer.position, state.gbuffer.normal, volume_->grid.place(), calibration_,
-                                   irradiance, validity, state.counts);
+                                   desc_.damping != 0, irradiance, validity, state.counts);
         state.irradiance.end(executor);
         state.validity.end(executor);
         state.isRendered = true;
@@ -144,9 +148,16 @@ public:
     void prewarm(Executor& executor, const std::shared_ptr<View>&) override {
         LWLpvDesc desc = desc_;
         desc.steps = std::min(stepsOf(desc), 2u);
+        // Frames may bring all of them or none, and `auto` takes the first there is.
+        for (int source = LW_GEOMETRY_VOLUME_TRIANGLES; source <= LW_GEOMETRY_VOLUME_SCREEN; ++source) {
+            if (desc_.geometryVolume == LW_GEOMETRY_VOLUME_AUTO) desc.geometryVolume = LWGeometryVolume(source);
+            else if (source != LW_GEOMETRY_VOLUME_TRIANGLES) break;
+            LpvTechnique twin(device_, desc);
+            exerciseTechnique(executor, twin);
+        }
+        desc.geometryVolume = LW_GEOMETRY_VOLUME_OFF;
         LpvTechnique twin(device_, desc);
         twin.prewarmVpls(executor);
-        exerciseTechnique(executor, twin);
     }
 
     Report report() override;
@@ -168,6 +179,7 @@ private:
     Device& device_;
     LWLpvDesc desc_;
     double calibration_;
+    LpvGeometry geometry_;
     std::uint64_t failures_;  // that the device had seen when the last update began
     TriangleBox box_;
     LpvPlacement placement_;
@@ -175,13 +187,14 @@ private:
     std::optional<Volume> volume_;
     const Buffer* propagated_ = nullptr;
     PerView<LpvView> states_;
-    std::vector<LWChoice> unused_;  // of the last update
+    std::vector<LWChoice> choices_;  // of the last update
 };
 
 Report LpvTechnique::report() {
     Report report;
     rsms_.report(report);
-    for (const LWChoice& choice : unused_) report.choose(choice.name, choice.reason);
+    geometry_.report(report);
+    for (const LWChoice& choice : choices_) report.choose(choice.name, choice.reason);
     report.counts.push_back({"steps", stepsOf(desc_)});
     for (const char* name : {"lights_outside", "rejected_pixels", "saturated_pixels", "pixels_outside"})
         report.counts.push_back({name, 0});
@@ -214,7 +227,7 @@ std::vector<DebugView> LpvTechnique::debugViews(const View* view) {
 }
 
 std::uint64_t LpvTechnique::bytes() const {
-    std::uint64_t total = rsms_.bytes() + volume_->bytes();
+    std::uint64_t total = rsms_.bytes() + geometry_.bytes() + volume_->bytes();
     states_.each([&](const LpvView& state) {
         total += state.gbuffer.bytes() + state.irradiance.bytes() + state.validity.bytes() + state.counts.bytes();
     });
@@ -226,7 +239,8 @@ std::uint64_t LpvTechnique::bytes() const {
 std::uint64_t estimateBytes(const void* desc, const LWViewDesc& view, const FrameShape& shape) {
     const LWLpvDesc& lpv = *static_cast<const LWLpvDesc*>(desc);
     return RsmInput::estimateBytes(shape) + LpvGrid::estimateBytes(lpv.size, shape.vplCount) +
-           LpvPropagation::estimateBytes(lpv.size, stepsOf(lpv)) + LpvRead::estimateBytes(lpv.size) +
+           LpvPropagation::estimateBytes(lpv.size, stepsOf(lpv), lpv.geometryVolume != LW_GEOMETRY_VOLUME_OFF) +
+           LpvGeometry::estimateBytes(lpv, shape) + LpvRead::estimateBytes(lpv.size) +
            GBufferInput::estimateBytes(view, 0, shape.uploads) + OutputTarget::estimateBytes(view, 3, shape.uploads) +
            OutputTarget::estimateBytes(view, 1, shape.uploads) + kCountBytes;
 }
@@ -235,7 +249,7 @@ std::uint64_t estimateBytes(const void* desc, const LWViewDesc& view, const Fram
 
 const TechniqueEntry& lpvEntry() {
     static const TechniqueEntry entry = techniqueEntry<LpvTechnique, LWLpvDesc, lwDefaultLpv>(
-        "lpv", "light propagation volumes: RSMs' light spread from cell to cell of a grid, without visibility", 1, lpvParameters(),
+        "lpv", "light propagation volumes: RSMs' light spread from cell to cell of a grid", 1, lpvParameters(),
         lpvSettings(), estimateBytes);
     return entry;
 }

@@ -11,6 +11,7 @@ namespace {
 constexpr double kSizeValues[] = {16, 32, 64, 128};
 constexpr double kSizeSweep[] = {16, 32, 64};
 constexpr double kStepSweep[] = {0, 8, 16, 32};
+constexpr const char* kVolumeNames[] = {"off", "auto", "triangles", "surfels", "screen", nullptr};
 
 LWParameter centre(const char* name, std::size_t axis) {
     return parameter(name, "of the grid; with an extent only", LW_PARAMETER_FLOAT,
@@ -34,7 +35,18 @@ const std::vector<LWParameter>& lpvParameters() {
               kStepSweep),
         parameter("extent", "length of the grid's sides, in units of length; 0: fitted to what the lights and the triangles reach",
                   LW_PARAMETER_FLOAT, offsetof(LWLpvDesc, extent), 0, 1e9, 0),
-        centre("center_x", 0), centre("center_y", 1), centre("center_z", 2)};
+        centre("center_x", 0),
+        centre("center_y", 1),
+        centre("center_z", 2),
+        choosing(parameter("geometry_volume",
+                           "what blocks light between cells: nothing, the best that the frame has, its triangles, its surfels "
+                           "(or else its triangles), or what RSMs and source views see; walls leak less, steps take longer",
+                           LW_PARAMETER_ENUM, offsetof(LWLpvDesc, geometryVolume), 0, 4, LW_GEOMETRY_VOLUME_OFF),
+                 kVolumeNames),
+        parameter("damping",
+                  "of light that grows weaker away from the surface it is read at, which comes from behind: less of it leaks, and "
+                  "reading takes twice as long",
+                  LW_PARAMETER_BOOL, offsetof(LWLpvDesc, damping), 0, 1, 0)};
     return table;
 }
 
