@@ -2,8 +2,9 @@
 // each A / s^2 lobe(n) at the corner of cells that is nearest to it, so that a wall stands between the cells it parts and not in
 // one of them; light that a surface sends is injected into the cell above that corner. Of a face, the mean B of its four corners
 // lets through
-//   T(d) = 1 - clamp(4/3 max(B(d), B(-d)), 0, 1):
-// from both sides alike, and 4/3 because a wall that fills a cell has a lobe of 0.75 along its normal.
+//   T(d) = 1 - clamp(max(B(d), B(-d)) / B_full, 0, 1),
+// from both sides alike. B_full = 1/4 + 1/sqrt(5) is what a wall that fills its cells has on the obliquest way through, 2/sqrt(5)
+// along its normal: no way through such a wall is open. (With 3/4, its lobe straight on, each sheet lets 2.1 % through.)
 //
 // Sums are whole numbers, the same bits in any order. Several views of one surface are not added up but merged: of each corner,
 // the view whose first coefficient is larger is taken whole.
@@ -17,7 +18,7 @@
 #define LPV_Y1 0.4886025119f
 #define LPV_LOBE0 0.8862269255f
 #define LPV_LOBE1 1.0233267079f
-#define LPV_FULL 1.3333333333f  // 1 / 0.75, see above. Less: walls leak however thick; more: what is half open is closed
+#define LPV_FULL 1.4342807f  // 1 / B_full. Less: walls leak however thick; more: what is half open is closed
 #define LPV_ROOT5 2.2360679775f
 // Surfels of a work-item, which adds up those of one corner before it touches memory that others write as well.
 #define LPV_RUN 64
@@ -27,7 +28,7 @@
 #define LPV_MOST 4.0f
 
 // Surfaces block from both sides, so that a normal's sign says nothing; but where a thin wall has surfels on both of its sides,
-// opposite ones would leave no more than the first coefficient, and 1/3 of the light would get through. So all point to one
+// opposite ones would leave no more than the first coefficient, and 28 % of the light would get through. So all point to one
 // side of a plane, which no axis and no diagonal of the cells lies in, as walls like to.
 #define LPV_SIDE(x, y, z) ((x) + 1.8f * (y) + 3.4f * (z))
 

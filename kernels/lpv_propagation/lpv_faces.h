@@ -16,31 +16,29 @@
 #define LPV_SIDE1 0.0589025138f   // w_side Y1 2 / sqrt(5)
 #define LPV_SIDE_U 0.0294512569f  // w_side Y1 1 / sqrt(5)
 
-LW_FN real let(__global const float* way, int taken) { return taken ? 1.0f - load_whole(way) : load_whole(way); }
-
 // From the neighbour `offset` floats away along e, up (sign 1) or down (-1): flux over pi in all, and net along e, u and v. way:
-// the face's first plane. taken: what is blocked instead of what is let through.
+// the face's first plane.
 LW_FN void add_neighbour(real* all, real* alongE, real* alongU, real* alongV, __global const float* c0, __global const float* ce,
                          __global const float* cu, __global const float* cv, int offset, float sign, __global const float* way,
-                         int plane, int taken) {
+                         int plane) {
     const real s0 = load_whole(c0 + offset), se = load_whole(ce + offset);
     const real su = load_whole(cu + offset), sv = load_whole(cv + offset);
     const int plus = sign > 0.0f ? plane : 2 * plane, minus = 3 * plane - plus;
-    const real front = let(way, taken) * fma_(sign * LPV_FRONT1, se, LPV_FRONT0 * s0);
+    const real front = load_whole(way) * fma_(sign * LPV_FRONT1, se, LPV_FRONT0 * s0);
     const real side = fma_(sign * LPV_SIDE1, se, LPV_SIDE0 * s0);
-    const real uPlus = let(way + plus, taken) * fma_(LPV_SIDE_U, su, side);
-    const real uMinus = let(way + minus, taken) * fma_(-LPV_SIDE_U, su, side);
-    const real vPlus = let(way + 2 * plane + plus, taken) * fma_(LPV_SIDE_U, sv, side);
-    const real vMinus = let(way + 2 * plane + minus, taken) * fma_(-LPV_SIDE_U, sv, side);
+    const real uPlus = load_whole(way + plus) * fma_(LPV_SIDE_U, su, side);
+    const real uMinus = load_whole(way + minus) * fma_(-LPV_SIDE_U, su, side);
+    const real vPlus = load_whole(way + 2 * plane + plus) * fma_(LPV_SIDE_U, sv, side);
+    const real vMinus = load_whole(way + 2 * plane + minus) * fma_(-LPV_SIDE_U, sv, side);
     *all += front + ((uPlus + uMinus) + (vPlus + vMinus));
     *alongE += sign * front;
     *alongU += uPlus - uMinus;
     *alongV += vPlus - vMinus;
 }
 
-// LW_WIDTH cells as free_cells takes them; faces: at the first of them. taken: source plus what is blocked of the step.
+// LW_WIDTH cells as free_cells takes them; faces: at the first of them.
 LW_FN void blocked_cells(__global const float* source, __global const float* from, __global float* to, int at, lpv_strides d,
-                         __global const float* faces, int taken) {
+                         __global const float* faces) {
     __global const float* c0 = from + at;
     __global const float* cx = c0 + d.plane;
     __global const float* cy = cx + d.plane;
@@ -48,12 +46,12 @@ LW_FN void blocked_cells(__global const float* source, __global const float* fro
     __global const float* fy = faces + LW_LPV_WAYS * d.plane;
     __global const float* fz = fy + LW_LPV_WAYS * d.plane;
     real all = (real)(0.0f), x = all, y = all, z = all;
-    add_neighbour(&all, &x, &y, &z, c0, cx, cy, cz, -1, 1.0f, faces, d.plane, taken);
-    add_neighbour(&all, &x, &y, &z, c0, cx, cy, cz, 1, -1.0f, faces + 1, d.plane, taken);
-    add_neighbour(&all, &y, &x, &z, c0, cy, cx, cz, -d.row, 1.0f, fy, d.plane, taken);
-    add_neighbour(&all, &y, &x, &z, c0, cy, cx, cz, d.row, -1.0f, fy + d.row, d.plane, taken);
-    add_neighbour(&all, &z, &x, &y, c0, cz, cx, cy, -d.slice, 1.0f, fz, d.plane, taken);
-    add_neighbour(&all, &z, &x, &y, c0, cz, cx, cy, d.slice, -1.0f, fz + d.slice, d.plane, taken);
+    add_neighbour(&all, &x, &y, &z, c0, cx, cy, cz, -1, 1.0f, faces, d.plane);
+    add_neighbour(&all, &x, &y, &z, c0, cx, cy, cz, 1, -1.0f, faces + 1, d.plane);
+    add_neighbour(&all, &y, &x, &z, c0, cy, cx, cz, -d.row, 1.0f, fy, d.plane);
+    add_neighbour(&all, &y, &x, &z, c0, cy, cx, cz, d.row, -1.0f, fy + d.row, d.plane);
+    add_neighbour(&all, &z, &x, &y, c0, cz, cx, cy, -d.slice, 1.0f, fz, d.plane);
+    add_neighbour(&all, &z, &x, &y, c0, cz, cx, cy, d.slice, -1.0f, fz + d.slice, d.plane);
     store(fma_(LPV_LOBE0, all, load_whole(source + at)), to, at);
     at += d.plane;
     store(fma_(LPV_LOBE1, x, load_whole(source + at)), to, at);

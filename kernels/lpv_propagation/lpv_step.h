@@ -79,7 +79,7 @@ LW_FN void step_cells(lpv_steps s, __global const float* from, __global float* t
     const lpv_strides d = strides_of(s.size);
     const int cell = lpv_cell(s.size, x, y, z), at = LW_LPV_BANDS * colour * d.plane + cell;
     if (s.isBlocked && s.runs[(z * s.size + y) * (s.size / LW_LPV_BLOCK_RUN) + x / LW_LPV_BLOCK_RUN])
-        blocked_cells(s.source, from, to, at, d, s.faces + cell, 0);
+        blocked_cells(s.source, from, to, at, d, s.faces + cell);
     else
         free_cells(s.source, from, to, at, d);
 }

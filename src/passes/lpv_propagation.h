@@ -24,13 +24,13 @@ public:
     // Pass "lpv_propagation.wave", or ".step" where work-items hold one cell. `injected`: a grid laid out as
     // shared/lpv_types.h has it. Returns the sum of what was injected and of all that `steps` steps make of it; `injected` itself
     // for none.
-    // blockers: none, or what takes light away from the second step on (pass "lpv_propagation.first" as well).
+    // blockers: none, or what takes light away between cells.
     const Buffer& record(Executor& executor, const Buffer& injected, std::uint32_t steps, const LpvBlockers* blockers = nullptr);
 
-    std::uint64_t bytes() const { return grids_[0].bytes() + grids_[1].bytes() + spread_.bytes(); }
+    std::uint64_t bytes() const { return grids_[0].bytes() + grids_[1].bytes(); }
     static std::uint64_t gridBytes(std::uint32_t size);
-    static std::uint64_t estimateBytes(std::uint32_t size, std::uint32_t steps, bool isBlocked = false) {
-        return ((steps < 2 ? steps : 2) + (isBlocked && steps > 0 ? 1 : 0)) * gridBytes(size);
+    static std::uint64_t estimateBytes(std::uint32_t size, std::uint32_t steps) {
+        return (steps < 2 ? steps : 2) * gridBytes(size);
     }
     // A grid whose borders are empty, as steps want them.
     static Buffer makeGrid(Executor& executor, std::uint32_t size, const char* what);
@@ -39,25 +39,18 @@ public:
 
     // What irradiance read from the grid is multiplied by: it makes the mean over the four cells above an infinite plane of
     // exitance 1, which fills the grid's lowest layer, 1. No single number does, since the field keeps filling.
-    static double calibration(std::uint32_t size, std::uint32_t steps);
+    // isBlocked: the plane blocks as well, as what LpvBlocking makes of it does.
+    static double calibration(std::uint32_t size, std::uint32_t steps, bool isBlocked = false);
 
 private:
-    // What every step adds to, and what the first one reads.
-    struct Start {
-        const Buffer &source, &from;
-        const LpvBlockers* blockers;
-    };
-    const Buffer& recordSteps(Executor& executor, Start start, std::uint32_t steps);
-    const Buffer& recordWaves(Executor& executor, Start start, std::uint32_t steps);
-    Range rows(Range& group) const;  // a work-item to each vector of a row
-
+    const Buffer& recordSteps(Executor& executor, const Buffer& injected, std::uint32_t steps, const LpvBlockers* blockers);
+    const Buffer& recordWaves(Executor& executor, const Buffer& injected, std::uint32_t steps, const LpvBlockers* blockers);
     Kernel& blocked(const char* kernel) const;  // built when the first frame with blockers asks for it
 
     Device& device_;
     std::uint32_t size_, units_;
     Kernel &step_, &wave_;
     Buffer grids_[2];
-    Buffer spread_;  // injected light with what blockers would take of its first step put back
 };
 
 }  // namespace lightwell

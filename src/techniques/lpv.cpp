@@ -100,7 +100,7 @@ public:
     LpvTechnique(Device& device, const LWLpvDesc& desc)
         : device_(device),
           desc_(desc),
-          calibration_(LpvPropagation::calibration(desc.size, stepsOf(desc))),
+          calibration_(LpvPropagation::calibration(desc.size, stepsOf(desc), desc.geometryVolume != LW_GEOMETRY_VOLUME_OFF)),
           geometry_(device, desc),
           failures_(device.failures()) {
         volume_.emplace(device, desc.size);
@@ -239,7 +239,7 @@ std::uint64_t LpvTechnique::bytes() const {
 std::uint64_t estimateBytes(const void* desc, const LWViewDesc& view, const FrameShape& shape) {
     const LWLpvDesc& lpv = *static_cast<const LWLpvDesc*>(desc);
     return RsmInput::estimateBytes(shape) + LpvGrid::estimateBytes(lpv.size, shape.vplCount) +
-           LpvPropagation::estimateBytes(lpv.size, stepsOf(lpv), lpv.geometryVolume != LW_GEOMETRY_VOLUME_OFF) +
+           LpvPropagation::estimateBytes(lpv.size, stepsOf(lpv)) +
            LpvGeometry::estimateBytes(lpv, shape) + LpvRead::estimateBytes(lpv.size) +
            GBufferInput::estimateBytes(view, 0, shape.uploads) + OutputTarget::estimateBytes(view, 3, shape.uploads) +
            OutputTarget::estimateBytes(view, 1, shape.uploads) + kCountBytes;

@@ -41,7 +41,7 @@ const std::vector<LWParameter>& lpvParameters() {
         choosing(parameter("geometry_volume",
                            "what blocks light between cells: nothing, the best that the frame has, its triangles, its surfels "
                            "(or else its triangles), or what RSMs and source views see; walls leak less, steps take longer",
-                           LW_PARAMETER_ENUM, offsetof(LWLpvDesc, geometryVolume), 0, 4, LW_GEOMETRY_VOLUME_OFF),
+                           LW_PARAMETER_ENUM, offsetof(LWLpvDesc, geometryVolume), 0, 4, LW_GEOMETRY_VOLUME_AUTO),
                  kVolumeNames),
         parameter("damping",
                   "of light that grows weaker away from the surface it is read at, which comes from behind: less of it leaks, and "
@@ -62,4 +62,5 @@ extern "C" void lwDefaultLpv(LWLpvDesc* desc) {
     *desc = LWLpvDesc{};
     desc->structSize = sizeof *desc;
     desc->size = 32;
+    desc->geometryVolume = LW_GEOMETRY_VOLUME_AUTO;
 }

@@ -42,7 +42,7 @@ struct LpvWalls {
         }
         const double pi = 3.14159265358979323846, even = mean[0] / (2.0 * std::sqrt(pi));
         const double odd = std::sqrt(3.0 / (4.0 * pi)) * (mean[1] * d[0] + mean[2] * d[1] + mean[3] * d[2]);
-        const double blocked = std::max(even + odd, even - odd) * 4.0 / 3.0;
+        const double blocked = std::max(even + odd, even - odd) / (0.25 + 1.0 / std::sqrt(5.0));
         return 1.0 - std::min(1.0, std::max(0.0, blocked));
     }
 };
