@@ -45,7 +45,7 @@ const std::vector<LWParameter>& lpvParameters() {
                  kVolumeNames),
         parameter("damping",
                   "of light that grows weaker away from the surface it is read at, which comes from behind: less of it leaks, and "
-                  "reading takes twice as long",
+                  "reading takes 2.5 times as long",
                   LW_PARAMETER_BOOL, offsetof(LWLpvDesc, damping), 0, 1, 0)};
     return table;
 }

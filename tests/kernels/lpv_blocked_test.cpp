@@ -73,7 +73,7 @@ TEST_CASE("blocked steps are those of faces one by one, to the border, at both w
     CHECK(bitDifference(propagated(narrow, cells, std::uint32_t(steps), &same).values, result.values) == "");
 }
 
-TEST_CASE("where nothing blocks, blocked steps give the bits of free ones", "[lpv_blocked]") {
+TEST_CASE("where nothing blocks, blocked steps give the bits of free ones", "[lpv_blocked][large]") {
     const std::uint32_t width = GENERATE(1u, 16u);
     const LpvCells cells = randomLight(16, 0);
     LpvSurfelRig rig(width, 16);
@@ -118,7 +118,7 @@ TEST_CASE("what is sent arrives or is blocked: no light is lost or made", "[lpv_
     }
 }
 
-TEST_CASE("blockers everywhere let nothing arrive", "[lpv_blocked]") {
+TEST_CASE("blockers everywhere let nothing arrive", "[lpv_blocked][large]") {
     std::vector<LpvSurfel> surfels;
     for (int layer = 0; layer <= 16; ++layer)
         for (int axis = 0; axis < 3; ++axis) addLpvWall(surfels, 16, axis, layer, 1.0, 1);

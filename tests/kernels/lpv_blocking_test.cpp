@@ -56,7 +56,7 @@ TEST_CASE("faces let through what sums in double say, in any order, at any width
     CHECK(bitDifference(wide.faces(), faces) == "");
 }
 
-TEST_CASE("a full wall lets nothing through; what it leaves open it lets through", "[lpv_blocking]") {
+TEST_CASE("a full wall lets nothing through; what it leaves open it lets through", "[lpv_blocking][large]") {
     LpvSurfelRig rig(16, kSize);
     const int axis = GENERATE(0, 1, 2);
     const double sign = GENERATE(-1.0, 1.0);
@@ -101,7 +101,7 @@ TEST_CASE("views of one wall are merged, not added up; each corner takes the vie
     CHECK(disagreement(rig.faces(), expectedFaces(merged), kRounding) == "");
 }
 
-TEST_CASE("runs of cells say whether anything is at their corners", "[lpv_blocking]") {
+TEST_CASE("runs of cells say whether anything is at their corners", "[lpv_blocking][large]") {
     LpvSurfelRig rig(16, 32);
     rig.block({{{20.3, 9.8, 11.1}, {1, 0, 0}, 1.0}, {{15.8, 3.0, 4.0}, {0, 1, 0}, 1.0}});
     const std::vector<cl_int> runs = rig.runs();
@@ -118,7 +118,7 @@ TEST_CASE("runs of cells say whether anything is at their corners", "[lpv_blocki
     CHECK(marked == 12);
 }
 
-TEST_CASE("blockers are kept as long as surfels and grid stay, and made anew when either changes", "[lpv_blocking]") {
+TEST_CASE("blockers are kept as long as surfels and grid stay, and made anew when either changes", "[lpv_blocking][large]") {
     LpvSurfelRig rig(16, kSize);
     const std::vector<LpvSurfel> some = randomLpvSurfels(kSize, 500, 2.0);
     std::vector<LpvSurfel> others = some;
