@@ -60,10 +60,7 @@ LpvCells twinPropagated(const LpvCells& cells, int steps, const LpvWalls& walls)
     return result;
 }
 
-}  // namespace
-
-TEST_CASE("blocked steps are those of faces one by one, to the border, at both widths", "[lpv_blocked]") {
-    const int steps = GENERATE(1, 2, 5);
+void compareSteps(int steps) {
     const LpvCells cells = randomLight(16, 0);
     const std::vector<LpvSurfel> surfels = randomLpvSurfels(16, 1500, 1.5);
     LpvSurfelRig wide(16, 16), narrow(1, 16);
@@ -72,6 +69,11 @@ TEST_CASE("blocked steps are those of faces one by one, to the border, at both w
     CHECK(disagreement(result.values, twinPropagated(cells, steps, wallsOf(16, surfels)).values) == "");
     CHECK(bitDifference(propagated(narrow, cells, std::uint32_t(steps), &same).values, result.values) == "");
 }
+
+}  // namespace
+
+TEST_CASE("blocked steps are those of faces one by one, to the border, at both widths", "[lpv_blocked]") { compareSteps(1); }
+TEST_CASE("several blocked steps are as well", "[lpv_blocked][large]") { compareSteps(GENERATE(2, 5)); }
 
 TEST_CASE("where nothing blocks, blocked steps give the bits of free ones", "[lpv_blocked][large]") {
     const std::uint32_t width = GENERATE(1u, 16u);
