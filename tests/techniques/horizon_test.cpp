@@ -38,8 +38,9 @@ const TestCamera kViews[] = {lookAt({2.0, 1.0, 0.3}, {0.5, 0.2, 0.0}, 0.5), look
 
 // Steps are 1/8 of their distance apart and 40 slices wide; sectors are 1/32 of a slice.
 constexpr double kClosedForm = 0.03, kClosedFormMean = 0.012;
-// Of means over directions from 8 to 48.
-constexpr double kContactSpread = 0.01;
+// Within 8 pixels of the wall, of which the steps leave out half of one: 0.003, 0.018 and 0.008 in the three views, and the same at
+// 8 to 48 directions to within 0.003. (With stretches that begin at half of a line's vector: up to 0.052, and 0.026 to 0.036 apart.)
+constexpr double kContactMean = 0.022, kContactSpread = 0.005;
 // Light: a step covers its stretch of the line whole or not at all, 1/8 of its distance at 8 steps to a doubling and 1/2 at
 // 2, and a texel is one pixel of its block; both are right in the mean and differ from pixel to pixel.
 constexpr double kPolygon = 0.07, kPolygonMean = 0.03, kUsual = 0.1, kUsualMean = 0.03;
@@ -49,8 +50,8 @@ struct WallError {
     int count = 0;
 };
 
-// On the floor before an infinite wall, whose radius holds it up to `farthest` of that radius away.
-WallError wallError(LWDevice device, const TestCamera& camera, LWHorizonDesc desc, bool uniform, double farthest) {
+// On the floor before an infinite wall, from `nearest` to `farthest` of the radius away from it.
+WallError wallError(LWDevice device, const TestCamera& camera, LWHorizonDesc desc, bool uniform, double nearest, double farthest) {
     ViewScene scene = wallScene();
     DrawnView drawn(scene, camera, kWidth, kHeight);
     desc.ambientRadius = 0.25f;
@@ -62,7 +63,7 @@ WallError wallError(LWDevice device, const TestCamera& camera, LWHorizonDesc des
             const Vec p = drawn.position.get(x, y), n = drawn.normal.get(x, y);
             const double range = 0.25 * imageHeight(camera) * depthOf(camera, p), t = p.x / range;
             // Floor, with all that its radius holds in the picture: the wall at most so far up and to either side.
-            if (n.y < 0.5 || t > farthest || t < 0.03 || x < kWidth / 3 || x > 2 * kWidth / 3 || y < 35 || y > kHeight - 35) continue;
+            if (n.y < 0.5 || t > farthest || t < nearest || x < kWidth / 3 || x > 2 * kWidth / 3 || y < 35 || y > kHeight - 35) continue;
             const double root = std::sqrt(1.0 - t * t);
             const double truth = uniform ? 0.5 * (1.0 + t) : 1.0 - (std::acos(t) - t * root) / kPi;
             const double error = double(ambient[y * kWidth + x]) - truth;
@@ -98,7 +99,7 @@ TEST_CASE("an infinite wall with a range limit has its closed form at every angl
     TestDevice device(GENERATE(1u, 16u));
     const TestCamera camera = kViews[GENERATE(0, 1, 2)];
     const bool uniform = GENERATE(false, true);
-    const WallError error = wallError(device, camera, limit(), uniform, 0.9);
+    const WallError error = wallError(device, camera, limit(), uniform, 0.03, 0.9);
     CAPTURE(error.count, uniform, error.mean, error.worst);
     REQUIRE(error.count > 100);
     CHECK(std::abs(error.mean) < kClosedFormMean);
@@ -113,10 +114,11 @@ TEST_CASE("contacts are as dark at many directions as at few", "[horizon]") {
     for (const std::uint32_t directions : {8u, 16u, 24u, 40u, 48u}) {
         LWHorizonDesc desc = limit();
         desc.directions = directions;
-        const WallError error = wallError(device, camera, desc, false, 0.25);  // up to 8 pixels from the wall
+        desc.thickness = 0.0f;  // backs would hide what fronts leave out
+        const WallError error = wallError(device, camera, desc, false, 0.03, 0.25);  // up to 8 pixels from the wall
         CAPTURE(directions, error.count, error.mean, error.worst);
         REQUIRE(error.count > 30);
-        CHECK(std::abs(error.mean) < kClosedFormMean);
+        CHECK(std::abs(error.mean) < kContactMean);
         least = std::min(least, error.mean);
         most = std::max(most, error.mean);
     }
