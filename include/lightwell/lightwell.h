@@ -565,8 +565,18 @@ typedef struct LWAoDesc {
 
 LW_API void lwDefaultAo(LWAoDesc* desc);
 
+/** What blocks light between the cells of technique "lpv". Asking for what a frame does not bring is an error of lwUpdate. */
+typedef enum LWGeometryVolume {
+    LW_GEOMETRY_VOLUME_OFF = 0,       /**< nothing: light goes through walls */
+    LW_GEOMETRY_VOLUME_AUTO = 1,      /**< the frame's triangles, else its surfels, else as SCREEN; the stats say which */
+    LW_GEOMETRY_VOLUME_TRIANGLES = 2, /**< LWGeometry's triangles, sampled to surfels */
+    LW_GEOMETRY_VOLUME_SURFELS = 3,   /**< LWGeometry's surfels; without any, its triangles sampled to surfels */
+    LW_GEOMETRY_VOLUME_SCREEN = 4     /**< the texels of all RSMs and the pixels of LWFrame::sourceViews */
+} LWGeometryVolume;
+
+/** How technique "lpv" carries light through its grid. */
 typedef enum LWLpvTransport {
-    LW_LPV_TRANSPORT_PROPAGATE = 0, /**< from cell to cell, as light propagation volumes do: short range, nothing blocks */
+    LW_LPV_TRANSPORT_PROPAGATE = 0, /**< from cell to cell, as light propagation volumes do: short range */
     LW_LPV_TRANSPORT_SWEEP = 1      /**< straight through the grid in a fixed set of directions, stopped by LWGeometry's triangles,
                                          else its surfels, else the RSMs' texels; `size` at most 64 */
 } LWLpvTransport;
@@ -581,7 +591,9 @@ typedef struct LWLpvDesc {
                            VPLs and the vertices of the frame's triangles. A fitted grid stays from frame to frame as long as
                            they lie in it and fill three quarters of it; LWFrame::reset fits anew */
     float center[3];  /**< of the grid where `extent` is above 0 */
-    int32_t transport;   /**< LWLpvTransport */
+    LWGeometryVolume geometryVolume; /**< what blocks light between cells, of propagation; sweeps choose as LWLpvTransport says */
+    uint32_t damping; /**< 1: light that grows weaker away from a surface is taken for light from behind it, and damped */
+    LWLpvTransport transport;
     uint32_t directions; /**< of sweeps: 24, 48, 96, 216, 384, 864, 1536 */
     uint32_t bounces;    /**< of sweeps: 1 .. 8, from the second on by what the triangles or surfels send on */
     uint32_t frames;     /**< that each bounce of a sweep is spread over: 1, 2, 4, 6, 8, 12, 24; the last result shows meanwhile */

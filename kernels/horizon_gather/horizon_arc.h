@@ -74,31 +74,53 @@ LW_FN lw_arc make_arc(real nx, real ny, real nz, real vx, real vy, real vz, floa
     return arc;
 }
 
-// Cosine of the angle at which a side leaves the hemisphere; sine: of gamma, seen from that side.
-LW_FN real horizon_of(real sine) { return -sine; }
+// Sectors of a side: `before` V, and factors of sin^2 and of the segment; the border at which it leaves the hemisphere, where
+// the cosine falls below `horizon`.
+typedef struct {
+    real before, square, segment, horizon;
+    float last;
+} lw_measure;
 
-typedef struct { real square, segment; } lw_measure;  // factors of 1 - c^2 and segment(c), in sectors
-
-LW_FN lw_measure measure_of(const lw_arc arc, real sine) {
+// sign: 1 along the line, -1 against it. rounding: borders are rounded down after adding it.
+LW_FN lw_measure measure_of(const lw_arc arc, float sign, float rounding) {
     const real scale = (0.5f * LW_HORIZON_SECTORS) / arc.total;
-    const lw_measure m = {scale * arc.cosine, scale * sine};
+    // The sine of gamma has the side's sign, too.
+    const lw_measure m = {arc.middle + rounding, sign * scale * arc.cosine, scale * arc.sine, -sign * arc.sine,
+                          sign > 0.0f ? LW_HORIZON_SECTORS + 0.5f : 0.5f};
     return m;
 }
 
-// Sectors between V and the angle of cosine c.
-LW_FN real sectors_to(const lw_measure m, real c) {
-#if LW_UNIFORM
-    return (0.5f * LW_HORIZON_SECTORS) * (1.0f - c);
-#else
-    return fma_(m.square, fma_(-c, c, (real)1.0f), m.segment * segment(c));
-#endif
+// arccos(c) - c s of a direction with cosine c and sine s: s^3 times a polynomial of |c|, which takes no root where the sine
+// is known. Within 8e-6.
+LW_FN real segment_of(real c, real s, real s2) {
+    const real a = fabs(c);
+    real p = fma_((real)0.318432748f, a, (real)-1.210449387f);
+    p = fma_(p, a, (real)2.128059283f);
+    p = fma_(p, a, (real)-2.473754774f);
+    p = fma_(p, a, (real)2.333408837f);
+    p = fma_(p, a, (real)-1.998970950f);
+    p = fma_(p, a, (real)1.570788706f);
+    const real h = s2 * s * p;
+    return select_(h, M_PI_F - h, c < 0.0f);
 }
 
-// The bits of sectors 0 .. n - 1, n in 0 .. 32. (A shift by 32 would be one by 0.)
-LW_FN laneu sectors_below(lanei n) {
-    const laneu all = (laneu)0xffffffffu >> as_laneu_((lanei)LW_HORIZON_SECTORS - n);
-    return selectu_(all, (laneu)0u, n == 0);
+// Number of the sector border nearest to the direction with parts x along V and y >= 0 across it. Always in 0 ..
+// LW_HORIZON_SECTORS: the measure ends at the whole of its side, and the rounding keeps what is added to it off the borders.
+LW_FN lanei border_of(const lw_measure* m, real x, real y) {
+    const real inverse = inverse_root(fma_(x, x, y * y));
+    const real c = x * inverse;
+#if LW_UNIFORM
+    const real sectors = fma_((real)(m->last > 1.0f ? 0.5f * LW_HORIZON_SECTORS : -0.5f * LW_HORIZON_SECTORS), 1.0f - c, m->before);
+#else
+    const real s = y * inverse, s2 = s * s;
+    const real sectors = fma_(m->square, s2, fma_(m->segment, segment_of(c, s, s2), m->before));
+#endif
+    return to_lanei(select_(sectors, (real)m->last, c < m->horizon));
 }
+
+// The bits of the sectors between two borders, whichever is first. A word has a bit more than there are sectors, so that no
+// shift is as long as the word.
+LW_FN laneu sectors_between(lanei a, lanei b) { return ((laneu)0xffffffffu << as_laneu_(a)) ^ ((laneu)0xffffffffu << as_laneu_(b)); }
 
 // Bits in halves, quarters, .. of a word. (popcount of a vector runs lane by lane in some drivers, ten times slower.)
 LW_FN real count_sectors(laneu bits) {

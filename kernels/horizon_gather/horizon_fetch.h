@@ -8,19 +8,15 @@
 
 #include "shared/horizon_types.h"
 
+// Where a step's texels lie; what they hold is taken three planes at a time, most of it only where some lane can use it.
 typedef struct {
-    real px, py, pz, nx, ny, nz;  // unit normal, zero without a surface
-    real r, g, b;                 // radiance
-    mask inside;                  // of the image
-} lw_seen;
-
-// Every plane by name: left to a loop, compilers keep them in memory.
-#if LW_LIGHT
-#define LW_SEEN_RADIANCE(f) f(6), f(7), f(8)
-#else
-#define LW_SEEN_RADIANCE(f) (real)0.0f, (real)0.0f, (real)0.0f
-#endif
-#define LW_SEEN(f, inside) {f(0), f(1), f(2), f(3), f(4), f(5), LW_SEEN_RADIANCE(f), inside}
+    __global const float* p;  // first lane's texel in the first plane
+    __global const float* q;  // coarse levels: the texel below
+    int plane, level;
+    int phase;                // fine levels: how many lanes' worth of that texel lie before the first lane
+    mask x1, x2, x3, second;  // coarse levels: lanes whose texel is at least so many columns to the right; lanes of the row below
+    mask inside;              // of the image
+} lw_place;
 
 // Lane l takes lane (l + phase) >> level.
 #if LW_WIDTH > 1
@@ -63,64 +59,102 @@ LW_SPREADER(fours_2, LW_FOURS_2)
 LW_SPREADER(fours_3, LW_FOURS_3)
 #endif
 
-// Fine levels. p: first lane's texel in the first plane; phase: how many lanes' worth of that texel lie before the first
-// lane. It depends on the step alone, so that the branches are the same for all work-items.
-LW_FN void fetch(lw_seen* seen, __global const float* p, int plane, int level, int phase) {
-#define LW_PLAIN(a) load(p, (a) * plane)
+// Fine levels. The phase depends on the step alone, so that the branches are the same for all work-items. (Every plane by
+// name: left to a loop, compilers keep them in memory.)
+LW_FN void take_fine(const lw_place* at, __global const float* p, real* a, real* b, real* c) {
+    const int plane = at->plane;
+#define LW_TAKE(spread)                  \
+    *a = spread(load(p, 0));             \
+    *b = spread(load(p, plane));         \
+    *c = spread(load(p, 2 * plane));
+#define LW_PLAIN(v) (v)
 #if LW_WIDTH == 1
-    const lw_seen s = LW_SEEN(LW_PLAIN, splat_mask(1));
-    *seen = s;
+    LW_TAKE(LW_PLAIN)
 #else
-#define LW_PAIRS_0_OF(a) pairs_0(load(p, (a) * plane))
-#define LW_PAIRS_1_OF(a) pairs_1(load(p, (a) * plane))
-#define LW_FOURS_0_OF(a) fours_0(load(p, (a) * plane))
-#define LW_FOURS_1_OF(a) fours_1(load(p, (a) * plane))
-#define LW_FOURS_2_OF(a) fours_2(load(p, (a) * plane))
-#define LW_FOURS_3_OF(a) fours_3(load(p, (a) * plane))
-#define LW_CASE(condition, f)                       \
-    if (condition) {                                \
-        const lw_seen s = LW_SEEN(f, splat_mask(1)); \
-        *seen = s;                                  \
-        return;                                     \
+    const int level = at->level, phase = at->phase;
+    if (level == 0) {
+        LW_TAKE(LW_PLAIN)
+    } else if (level == 1 && phase == 0) {
+        LW_TAKE(pairs_0)
+    } else if (level == 1) {
+        LW_TAKE(pairs_1)
+    } else if (phase == 0) {
+        LW_TAKE(fours_0)
+    } else if (phase == 1) {
+        LW_TAKE(fours_1)
+    } else if (phase == 2) {
+        LW_TAKE(fours_2)
+    } else {
+        LW_TAKE(fours_3)
     }
-    LW_CASE(level == 0, LW_PLAIN)
-    LW_CASE(level == 1 && phase == 0, LW_PAIRS_0_OF)
-    LW_CASE(level == 1, LW_PAIRS_1_OF)
-    LW_CASE(phase == 0, LW_FOURS_0_OF)
-    LW_CASE(phase == 1, LW_FOURS_1_OF)
-    LW_CASE(phase == 2, LW_FOURS_2_OF)
-    LW_CASE(1, LW_FOURS_3_OF)
-#undef LW_CASE
 #endif
+#undef LW_TAKE
 }
 
-// Levels from LW_HORIZON_BLEND on: lanes take one of two rows and of up to four columns. first: of the level; column, row:
-// the least that a lane takes, both readable in part only; start: pixel, shifted, of the first lane; y: likewise.
+// Levels from LW_HORIZON_BLEND on: lanes take one of two rows and of three columns, on the first of these levels of four.
+LW_FN real take_coarse(const lw_place* at, __global const float* p, __global const float* q) {
+    real a = select_(select_((real)p[0], (real)p[1], at->x1), (real)p[2], at->x2);
+    real b = select_(select_((real)q[0], (real)q[1], at->x1), (real)q[2], at->x2);
+    if (at->level == LW_HORIZON_BLEND) {
+        a = select_(a, (real)p[3], at->x3);
+        b = select_(b, (real)q[3], at->x3);
+    }
+    return select_(a, b, at->second);
+}
+
+// Three planes from the first given on.
+LW_FN void take(const lw_place* at, int first, real* a, real* b, real* c) {
+    const int plane = at->plane;
+    __global const float* p = at->p + first * plane;
+    if (at->level < LW_HORIZON_BLEND) {
+        take_fine(at, p, a, b, c);
+    } else {
+        __global const float* q = at->q + first * plane;
+        *a = take_coarse(at, p, q);
+        *b = take_coarse(at, p + plane, q + plane);
+        *c = take_coarse(at, p + 2 * plane, q + 2 * plane);
+    }
+}
+
+// Of a work-item at x, y. 0: no lane of it looks into the image.
+LW_FN int place_fine(lw_place* at, __global const float* pyramid, const lw_horizon_step* step, int x, int y) {
+    const int start = x + step->phaseX, level = step->level;
+    const int row = ((y + step->phaseY) >> level) + step->dy, column = (start >> level) + step->dx;
+    const int phase = start & ((1 << level) - 1);
+    if (row < 0 || row >= step->rows || column >= step->columns || column + ((LW_WIDTH - 1 + phase) >> level) < 0) return 0;
+    at->p = at->q = pyramid + step->first + row * step->rowStride + column;
+    at->plane = step->planeStride;
+    at->level = level;
+    at->phase = phase;
+    at->x1 = at->x2 = at->x3 = at->second = splat_mask(0);
+    at->inside = splat_mask(1);
+    return 1;
+}
+
 // columnShift, rowShift: the lanes' own, in sixteenths of a texel. Inside is what lies in the image of width x height pixels that
 // the gather runs on: a texel that its border cuts stands for no more than its part in it.
-LW_FN void fetch_blended(lw_seen* seen, __global const float* first, const lw_horizon_step* step, int start, int y,
-                         lanei columnShift, lanei rowShift, int column, int row, int width, int height) {
-    const int unit = step->level - LW_HORIZON_BLEND, plane = step->planeStride;
-    const lanei pixelX = lanei_iota() + (lanei)start + ((columnShift << unit) >> 1), pixelY = (lanei)y + ((rowShift << unit) >> 1);
-    const lanei x = (pixelX >> step->level) + (lanei)(step->dx - column);
-    const mask second = ((pixelY >> step->level) + (lanei)(step->dy - row)) > (lanei)0;
-    const mask x1 = x > (lanei)0, x2 = x > (lanei)1, x3 = x > (lanei)2;
+LW_FN int place_coarse(lw_place* at, __global const float* pyramid, const lw_horizon_step* step, int x, int y, lanei columnShift,
+                       lanei rowShift, int width, int height) {
+    const int level = step->level, unit = level - LW_HORIZON_BLEND, most = 4 << unit;
+    const int startX = x + step->phaseX, startY = y + step->phaseY;
+    // The least that a lane takes, both readable in part only.
+    const int row = ((startY - most) >> level) + step->dy, column = ((startX - most) >> level) + step->dx;
+    if (row < -1 || row >= step->rows || column >= step->columns || ((startX + LW_WIDTH - 1 + most) >> level) + step->dx < 0) return 0;
+    const lanei pixelX = lanei_iota() + (lanei)startX + ((columnShift << unit) >> 1), pixelY = (lanei)startY + ((rowShift << unit) >> 1);
+    const lanei right = (pixelX >> level) + (lanei)(step->dx - column);
+    const lanei placeX = pixelX + (lanei)(step->dx << level), placeY = pixelY + (lanei)(step->dy << level);
     const int rowA = clamp(row, 0, step->rows - 1), rowB = clamp(row + 1, 0, step->rows - 1);
-    const lanei placeX = pixelX + (lanei)(step->dx << step->level), placeY = pixelY + (lanei)(step->dy << step->level);
-    const mask inside = and_(and_(placeX >= (lanei)0, placeX < (lanei)width), and_(placeY >= (lanei)0, placeY < (lanei)height));
-    __global const float* p = first + rowA * step->rowStride + column;
-    __global const float* q = first + rowB * step->rowStride + column;
-#define LW_THREE(r, a) select_(select_((real)r[(a) * plane], (real)r[(a) * plane + 1], x1), (real)r[(a) * plane + 2], x2)
-#define LW_FOUR(r, a) select_(LW_THREE(r, a), (real)r[(a) * plane + 3], x3)
-#define LW_BLOCK_3(a) select_(LW_THREE(p, a), LW_THREE(q, a), second)
-#define LW_BLOCK_4(a) select_(LW_FOUR(p, a), LW_FOUR(q, a), second)
-    if (unit == 0) {
-        const lw_seen s = LW_SEEN(LW_BLOCK_4, inside);
-        *seen = s;
-    } else {
-        const lw_seen s = LW_SEEN(LW_BLOCK_3, inside);
-        *seen = s;
-    }
+    at->p = pyramid + step->first + rowA * step->rowStride + column;
+    at->q = pyramid + step->first + rowB * step->rowStride + column;
+    at->plane = step->planeStride;
+    at->level = level;
+    at->phase = 0;
+    at->x1 = right > (lanei)0;
+    at->x2 = right > (lanei)1;
+    at->x3 = right > (lanei)2;
+    at->second = ((pixelY >> level) + (lanei)(step->dy - row)) > (lanei)0;
+    at->inside = and_(and_(placeX >= (lanei)0, placeX < (lanei)width), and_(placeY >= (lanei)0, placeY < (lanei)height));
+    return 1;
 }
 
 #endif

@@ -28,121 +28,134 @@ typedef struct {
 
 typedef struct {
     real px, py, pz, nx, ny, nz, vx, vy, vz;
-    real depth, inverseDepth;  // along the camera's axis
-    real slant;                // distance from the eye over depth
-    real range2;               // squared radius of ambient occlusion
+    real inverseDepth;   // along the camera's axis
+    real slant;          // distance from the eye over depth; 1 without perspective
+    real range2;         // squared radius of ambient occlusion
 } lw_receiver;
 
 // A side of a slice.
 typedef struct {
-    float lx, ly, lz;  // world vector of the line, per pixel
-    real along;        // its part along V
-    real horizon;      // cosine of the angle at which the side leaves the hemisphere
+    float lx, ly, lz;     // world vector of the line, per pixel
+    real along, across;   // its part along V and its length across V, over the receiver's slant
     lw_measure measure;
-    float sign;        // 1 along the line, -1 against it
 } lw_side;
 
-LW_FN lanei border_of(real sectors, float side, real middle, float rounding) {
-    const real border = fma_((real)side, sectors, middle) + rounding;
-    return to_lanei(smaller(larger(border, (real)0.0f), (real)LW_HORIZON_SECTORS));
-}
+// From the receiver to the point that a step shows.
+typedef struct {
+    real dx, dy, dz, squared;
+    mask above;  // the receiver's plane
+} lw_way;
 
-// What a step shows from its nearest to its farthest point in angle from V, unnormalised: the point's part along V and
-// the distance on the line that it stands at.
-typedef struct { real firstX, firstS, lastX, lastS, across, back; } lw_piece;
+// What a step shows from its nearest to its farthest point in angle from V, unnormalised, and how much farther along the
+// view its back lies.
+typedef struct {
+    real firstX, firstY, lastX, lastY, behindX, behindY;
+    real towards;  // negative: its front faces the receiver
+    mask shown;    // a surface at all
+} lw_piece;
+
+LW_FN lw_way way_to(const lw_place* at, const lw_receiver* p) {
+    real qx, qy, qz;
+    take(at, 0, &qx, &qy, &qz);
+    lw_way way;
+    way.dx = qx - p->px;
+    way.dy = qy - p->py;
+    way.dz = qz - p->pz;
+    way.squared = squared_length(way.dx, way.dy, way.dz);
+    const real up = fma_(way.dx, p->nx, fma_(way.dy, p->ny, way.dz * p->nz));
+    way.above = and_(at->inside, and_(up > 0.0f, up * up > LW_ABOVE_PLANE * LW_ABOVE_PLANE * way.squared));
+    return way;
+}
 
 // In the slice, with V as one axis and the line across it as the other, the plane of what is seen at a step runs between
 // the rays at step.begin and step.end; directions to both ends need no length, so no division is left:
 //   perspective  depth of the plane at distance s:  z_q m / (m - (s - s_q) n.l),  m = -n.ray
-//   end          p + slant V (1 - z / z_p) + z s l,  all over z_p and times the denominator
-// across: what the distance on the line is multiplied with to be the part across V; back: what the back lies farther
-// along the view. docs/techniques/horizon.md derives it.
-LW_FN void cut(lw_piece* piece, const lw_seen* s, real dx, real dy, real dz, real towards, const lw_receiver* p,
-               const lw_arc* arc, const lw_side* side, const lw_horizon_step* step, const lw_horizon_view* view) {
-    const real facingEye = fma_(p->vx, s->nx, fma_(p->vy, s->ny, p->vz * s->nz));
-    const real tilt = fma_((real)side->lx, s->nx, fma_((real)side->ly, s->ny, side->lz * s->nz));
+//   end          p + slant V (1 - z / z_p) + z s l,  all over z_p slant and times the denominator
+// docs/techniques/horizon.md derives it. The back lies `thickness` farther along the rays of the front.
+LW_FN lw_piece cut(const lw_place* at, const lw_way* way, const lw_receiver* p, const lw_side* side, const lw_horizon_step* step,
+                   const lw_horizon_view* view) {
+    real nx, ny, nz;
+    take(at, 3, &nx, &ny, &nz);
+    const real facingEye = fma_(p->vx, nx, fma_(p->vy, ny, p->vz * nz));
+    const real tilt = fma_((real)side->lx, nx, fma_((real)side->ly, ny, side->lz * nz));
+    lw_piece piece;
+    piece.towards = fma_(way->dx, nx, fma_(way->dy, ny, way->dz * nz));
+    const int perspective = view->eye.w != 0.0f;
     real beginX, endX, scale;
-    if (view->eye.w != 0.0f) {
-        const real deeper = fma_(dx, (real)view->axis.x, fma_(dy, (real)view->axis.y, dz * view->axis.z));
+    if (perspective) {
+        const real deeper = fma_(way->dx, (real)view->axis.x, fma_(way->dy, (real)view->axis.y, way->dz * view->axis.z));
         const real ratio = fma_(deeper, p->inverseDepth, (real)1.0f);
-        const real own = p->slant * facingEye, seenCosine = fma_(-towards, p->inverseDepth, own);
+        const real own = p->slant * facingEye, seenCosine = fma_(-piece.towards, p->inverseDepth, own);
         const real m = larger(seenCosine, LW_LEAST_VIEW_COSINE * ratio);
         const real turn = tilt * ratio, least = LW_EXTENSION * m, start = fma_(own, ratio, m - seenCosine);
         scale = m * ratio;
         const real begin = larger(fma_((real)-step->begin, turn, start), least);
         const real end = larger(fma_((real)-step->end, turn, start), least);
-        beginX = fma_(p->slant, begin - scale, scale * (step->begin * side->along));
-        endX = fma_(p->slant, end - scale, scale * (step->end * side->along));
+        const real along = scale * side->along;
+        beginX = fma_((real)step->begin, along, begin - scale);
+        endX = fma_((real)step->end, along, end - scale);
+        piece.shown = seenCosine != 0.0f;
     } else {
         scale = larger(facingEye, (real)LW_LEAST_VIEW_COSINE);
-        const real along = fma_(scale - facingEye, fma_(dx, p->vx, fma_(dy, p->vy, dz * p->vz)), towards);
+        const real along = fma_(scale - facingEye, fma_(way->dx, p->vx, fma_(way->dy, p->vy, way->dz * p->vz)), piece.towards);
         beginX = fma_((real)-step->begin, tilt, along);
         endX = fma_((real)-step->end, tilt, along);
+        piece.shown = facingEye != 0.0f;
     }
     // Which end is farther from V follows from cotangents alone: both lie at positive distances.
     const mask beginLast = beginX * step->end < endX * step->begin;
-    piece->firstX = select_(beginX, endX, beginLast);
-    piece->lastX = select_(endX, beginX, beginLast);
-    piece->firstS = select_((real)step->begin, (real)step->end, beginLast);
-    piece->lastS = select_((real)step->end, (real)step->begin, beginLast);
-    piece->across = scale * arc->across;
-    piece->back = -view->perI.w * scale;
+    const real across = scale * side->across, back = -view->perI.w * scale;
+    const real firstS = select_((real)step->begin, (real)step->end, beginLast), lastS = select_((real)step->end, (real)step->begin, beginLast);
+    piece.firstX = select_(beginX, endX, beginLast);
+    piece.lastX = select_(endX, beginX, beginLast);
+    piece.firstY = across * firstS;
+    piece.lastY = across * lastS;
+    piece.behindX = fma_(back, perspective ? fma_(-lastS, side->along, (real)1.0f) : (real)1.0f, piece.lastX);
+    piece.behindY = perspective ? piece.lastY * (1.0f + view->perI.w) : piece.lastY;
+    return piece;
 }
 
-// One step. The back lies `thickness` farther along the rays of the front.
-LW_FN void look(lw_found* found, const lw_seen* s, const lw_receiver* p, const lw_arc* arc, const lw_side* side,
-                const lw_horizon_step* step, const lw_horizon_view* view, float rounding) {
-    const real dx = s->px - p->px, dy = s->py - p->py, dz = s->pz - p->pz;
-    const real d2 = squared_length(dx, dy, dz);
-    const real up = fma_(dx, p->nx, fma_(dy, p->ny, dz * p->nz));
-    const real towards = fma_(dx, s->nx, fma_(dy, s->ny, dz * s->nz));
-    lw_piece piece;
-    cut(&piece, s, dx, dy, dz, towards, p, arc, side, step, view);
-    const real firstY = piece.across * piece.firstS, lastY = piece.across * piece.lastS;
-    const int perspective = view->eye.w != 0.0f;
-    const real behindX = fma_(piece.back, perspective ? fma_(-piece.lastS, side->along, p->slant) : (real)1.0f, piece.lastX);
-    const real behindY = perspective ? lastY * (1.0f + view->perI.w) : lastY;
-    const real front = piece.firstX * inverse_root(fma_(piece.firstX, piece.firstX, firstY * firstY));
-    const real back = behindX * inverse_root(fma_(behindX, behindX, behindY * behindY));
-    const real highest = smaller(larger(front, side->horizon), (real)1.0f);
-    const real lowest = smaller(larger(back, side->horizon), highest);
-    const lanei from = border_of(sectors_to(side->measure, highest), side->sign, arc->middle, rounding);
-    const lanei to = border_of(sectors_to(side->measure, lowest), side->sign, arc->middle, rounding);
-    const mask seen = and_(and_(s->inside, squared_length(s->nx, s->ny, s->nz) > 0.25f),
-                           and_(up > 0.0f, up * up > LW_ABOVE_PLANE * LW_ABOVE_PLANE * d2));
-    const laneu bits = selectu_((laneu)0u, sectors_below(from) ^ sectors_below(to), seen);
-    found->near |= selectu_((laneu)0u, bits, d2 < p->range2);
+// One step. Most of a picture's steps lie below the plane or in covered sectors of all lanes: they end early.
+LW_FN void look(lw_found* found, const lw_place* at, const lw_receiver* p, const lw_side* side, const lw_horizon_step* step,
+                const lw_horizon_view* view) {
+    const lw_way way = way_to(at, p);
+    if (!any_(way.above)) return;
+    const lw_piece piece = cut(at, &way, p, side, step, view);
+    const lanei from = border_of(&side->measure, piece.firstX, piece.firstY);
+    const lanei to = border_of(&side->measure, piece.behindX, piece.behindY);
+    const laneu bits = selectu_((laneu)0u, sectors_between(from, to), and_(way.above, piece.shown));
+    found->near |= selectu_((laneu)0u, bits, way.squared < p->range2);
 #if LW_LIGHT
-    const real share = select_((real)0.0f, count_sectors(bits & ~found->covered), towards < 0.0f);
-    found->r = fma_(share, s->r, found->r);
-    found->g = fma_(share, s->g, found->g);
-    found->b = fma_(share, s->b, found->b);
-    found->seen += share;
+    const laneu lit = selectu_((laneu)0u, bits & ~found->covered, piece.towards < 0.0f);
     found->covered |= bits;
+    if (!any_(to_mask(lit))) return;
+    const real share = count_sectors(lit);
+    real r, g, b;
+    take(at, 6, &r, &g, &b);
+    found->r = fma_(share, r, found->r);
+    found->g = fma_(share, g, found->g);
+    found->b = fma_(share, b, found->b);
+    found->seen += share;
 #endif
 }
 
-LW_FN lw_receiver receiver_of(const lw_seen s, const lw_horizon_view view) {
-    lw_receiver p;
-    p.px = s.px;
-    p.py = s.py;
-    p.pz = s.pz;
-    p.nx = s.nx;
-    p.ny = s.ny;
-    p.nz = s.nz;
+LW_FN lw_receiver receiver_of(real px, real py, real pz, real nx, real ny, real nz, mask valid, const lw_horizon_view view) {
     const int perspective = view.eye.w != 0.0f;
-    const real wx = view.eye.x - s.px, wy = view.eye.y - s.py, wz = view.eye.z - s.pz;
+    lw_receiver p = {px, py, pz, nx, ny, nz};
+    // Background stands anywhere before the eye, so that no lane computes with NaN.
+    const real wx = select_((real)-view.axis.x, view.eye.x - px, valid);
+    const real wy = select_((real)-view.axis.y, view.eye.y - py, valid);
+    const real wz = select_((real)-view.axis.z, view.eye.z - pz, valid);
     const real distance = sqrt(squared_length(wx, wy, wz)), inverse = 1.0f / distance;
     // The sign of an orthographic camera's axis is not known: its surfaces face it.
-    const real along = fma_(s.nx, (real)view.axis.x, fma_(s.ny, (real)view.axis.y, s.nz * view.axis.z));
+    const real along = fma_(nx, (real)view.axis.x, fma_(ny, (real)view.axis.y, nz * view.axis.z));
     const real towards = select_((real)-1.0f, (real)1.0f, along > 0.0f);
     p.vx = perspective ? wx * inverse : towards * view.axis.x;
     p.vy = perspective ? wy * inverse : towards * view.axis.y;
     p.vz = perspective ? wz * inverse : towards * view.axis.z;
     const real depth = fma_(-wx, (real)view.axis.x, fma_(-wy, (real)view.axis.y, -wz * view.axis.z));
-    p.depth = depth;
     p.inverseDepth = 1.0f / depth;
-    p.slant = distance * p.inverseDepth;
+    p.slant = perspective ? distance * p.inverseDepth : (real)1.0f;
     p.range2 = sq(view.axis.w * (perspective ? depth * view.perJ.w : (real)view.perJ.w));
     return p;
 }
@@ -159,14 +172,15 @@ __kernel void horizon_gather_gather(__global const float* pyramid, int4 layout, 
                                     lw_horizon_view view, __global float* gathered, int4 gatheredLayout) {
     const int x = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);
     if (x >= width || y >= height) return;
-    lw_seen self;
-    fetch(&self, pyramid + layout.x + y * layout.y + x, layout.z, 0, 0);
-    const mask valid = squared_length(self.nx, self.ny, self.nz) > 0.25f;
+    __global const float* self = pyramid + layout.x + y * layout.y + x;
+    const real nx = load(self, 3 * layout.z), ny = load(self, 4 * layout.z), nz = load(self, 5 * layout.z);
+    const mask valid = squared_length(nx, ny, nz) > 0.25f;
     const real zero = (real)0.0f;
     real sumR = zero, sumG = zero, sumB = zero, sumSeen = zero, sumOpen = zero, sumWeight = zero;
     const int slice0 = (y + view.turn) % view.rows;
     const int sliceCount = any_(valid) ? view.slices : 0;
-    const lw_receiver p = receiver_of(self, view);
+    const lw_receiver p = receiver_of(load(self, 0), load(self, layout.z), load(self, 2 * layout.z), nx, ny, nz, valid, view);
+    const real perSlant = 1.0f / p.slant;
     const float3 across = crossed(view.perI, view.perJ);
     const real crossSection = fabs(fma_(p.vx, (real)across.x, fma_(p.vy, (real)across.y, p.vz * across.z)));
     const lanei at = lanei_iota() + (lanei)x;
@@ -182,33 +196,16 @@ __kernel void horizon_gather_gather(__global const float* pyramid, int4 layout, 
         const float turned = slice.rounding + view.rounding, rounding = turned < 0.95f ? turned : turned - 0.9f;
         lw_found found = {zero, zero, zero, zero, (laneu)0u, (laneu)0u};
         for (int against = 0; against < 2; ++against) {
-            lw_side side;
-            side.sign = against ? -1.0f : 1.0f;
-            side.lx = side.sign * lx;
-            side.ly = side.sign * ly;
-            side.lz = side.sign * lz;
-            side.along = side.sign * arc.along;
-            side.horizon = horizon_of(side.sign * arc.sine);
-            side.measure = measure_of(arc, side.sign * arc.sine);
+            const float sign = against ? -1.0f : 1.0f;
+            const lw_side side = {sign * lx, sign * ly, sign * lz, sign * arc.along * perSlant, arc.across * perSlant,
+                                  measure_of(arc, sign, rounding)};
             for (int k = 0; k < slice.steps; ++k) {
                 const lw_horizon_step step = steps[slice.first[against] + k];
-                const int start = x + step.phaseX, level = step.level;
-                lw_seen s;
-                if (level < LW_HORIZON_BLEND) {
-                    const int row = ((y + step.phaseY) >> level) + step.dy, column = (start >> level) + step.dx;
-                    const int phase = start & ((1 << level) - 1);
-                    if (row < 0 || row >= step.rows || column >= step.columns || column + ((LW_WIDTH - 1 + phase) >> level) < 0)
-                        continue;
-                    fetch(&s, pyramid + step.first + row * step.rowStride + column, step.planeStride, level, phase);
-                } else {
-                    const int most = 4 << (level - LW_HORIZON_BLEND);
-                    const int row = ((y + step.phaseY - most) >> level) + step.dy, column = ((start - most) >> level) + step.dx;
-                    if (row < -1 || row >= step.rows || column >= step.columns ||
-                        ((start + LW_WIDTH - 1 + most) >> level) + step.dx < 0)
-                        continue;
-                    fetch_blended(&s, pyramid + step.first, &step, start, y + step.phaseY, columnShift, rowShift, column, row, width, height);
-                }
-                look(&found, &s, &p, &arc, &side, &step, &view, rounding);
+                lw_place at;
+                const int inside = step.level < LW_HORIZON_BLEND
+                                       ? place_fine(&at, pyramid, &step, x, y)
+                                       : place_coarse(&at, pyramid, &step, x, y, columnShift, rowShift, width, height);
+                if (inside) look(&found, &at, &p, &side, &step, &view);
             }
         }
         const real weight = arc.weight;
@@ -217,7 +214,7 @@ __kernel void horizon_gather_gather(__global const float* pyramid, int4 layout, 
         sumG = fma_(sector, found.g, sumG);
         sumB = fma_(sector, found.b, sumB);
         sumSeen = fma_(sector, found.seen, sumSeen);
-        sumOpen = fma_(sector, count_sectors(~found.near), sumOpen);
+        sumOpen = fma_(sector, LW_HORIZON_SECTORS - count_sectors(found.near), sumOpen);
         sumWeight += weight;
     }
     int out = gatheredLayout.x + y * gatheredLayout.y + x;

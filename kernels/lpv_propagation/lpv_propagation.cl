@@ -1,112 +1,13 @@
-// One step of a light propagation volume (Kaplanyan and Dachsbacher 2010): every cell gathers what its six neighbours send
-// through its five far faces of each, and sends it on as a cosine lobe about the face's normal.
-//
-// A face of normal f, seen from a neighbour's centre in direction d under the solid angle w pi, adds w I(d) lobe(f). I is
-// *not* clamped at 0 (that would make light: 14 % in the first step), so the step is linear, and a neighbour's
-// five faces are one 4 x 4 matrix. For a neighbour on the lower side of axis e, with the other axes u (faces +u and -u under
-// d = (2 e +- u) / sqrt(5)):
-//
-//   c0'   = a c0 + b c_e              a = 1/6: the five faces see a sixth of the sphere
-//   c_e'  = p c0 + q c_e
-//   c_u'  = k c_u
-//
-// and on the upper side with -b and -p. Six neighbours take 36 operations a cell and colour in this form, against 30 faces.
-//
-// The sum over all steps, S_n = g + P g + ... + P^n g, needs no grid to add up in: S_(n+1) = g + P S_n.
-#include "shared/lpv_types.h"
-#include "shared/wide.h"
+// Steps of a light propagation volume that nothing blocks.
+#include "lpv_step.h"
 
-#define LPV_A 0.1666666667f
-#define LPV_B 0.2640291686f  // LOBE0 Y1 (w_front + 8 / sqrt(5) w_side)
-#define LPV_P 0.0368167958f  // LOBE1 Y0 w_front
-#define LPV_Q 0.0637685609f  // LOBE1 Y1 w_front
-#define LPV_K 0.0602765156f  // LOBE1 Y1 w_side * 2 / sqrt(5)
-
-// One load of the whole register. PoCL's vload16 is put together of pairs, and where two loads are only subtracted from each
-// other the compiler subtracts the pairs: the step takes three times as long.
-#if LW_WIDTH > 1 && defined(POCL_DEVICE_ADDRESS_BITS)
-LW_FN real cells(__global const float* p, int i) { return *(__global const lw_loose_real*)(p + i); }
-#else
-LW_FN real cells(__global const float* p, int i) { return load(p, i); }
-#endif
-
-// One band of the linear ones, along an axis whose neighbours are `along` floats away: what the step leaves of it.
-LW_FN real linear_band(__global const float* band, int along, int u, int v, real difference, real source) {
-    const real ahead = cells(band, -along) + cells(band, along);
-    const real beside = (cells(band, -u) + cells(band, u)) + (cells(band, -v) + cells(band, v));
-    return fma_(LPV_P, difference, fma_(LPV_Q, ahead, fma_(LPV_K, beside, source)));
-}
-
-// Distances between cells of a grid, in floats.
-typedef struct {
-    int plane, row, slice;
-} lpv_strides;
-
-// LW_WIDTH cells of a row from the float `at` on, the first of a colour's planes: to = source + the step of `from`.
-LW_FN void step_cells(__global const float* source, __global const float* from, __global float* to, int at, lpv_strides d) {
-    __global const float* c0 = from + at;
-    __global const float* cx = c0 + d.plane;
-    __global const float* cy = cx + d.plane;
-    __global const float* cz = cy + d.plane;
-    const real xl = cells(c0, -1), xh = cells(c0, 1), yl = cells(c0, -d.row), yh = cells(c0, d.row), zl = cells(c0, -d.slice),
-               zh = cells(c0, d.slice);
-    const real sum = ((xl + xh) + (yl + yh)) + (zl + zh);
-    const real flow = ((cells(cx, -1) - cells(cx, 1)) + (cells(cy, -d.row) - cells(cy, d.row))) +
-                      (cells(cz, -d.slice) - cells(cz, d.slice));
-    store(fma_(LPV_A, sum, fma_(LPV_B, flow, cells(source, at))), to, at);
-    at += d.plane;
-    store(linear_band(cx, 1, d.row, d.slice, xl - xh, cells(source, at)), to, at);
-    at += d.plane;
-    store(linear_band(cy, d.row, 1, d.slice, yl - yh, cells(source, at)), to, at);
-    at += d.plane;
-    store(linear_band(cz, d.slice, 1, d.row, zl - zh, cells(source, at)), to, at);
-}
-
-LW_FN lpv_strides strides_of(int size) {
-    const lpv_strides d = {lpv_plane(size), lpv_row(size), lpv_slice(size)};
-    return d;
-}
-
-// One step. One work-item = LW_WIDTH cells of a row; rows are numbered by y, z and colour. size: a power of two. Grids' planes as
-// shared/lpv_types.h lays them out, borders empty: to = source + the step of `from`.
 __kernel void lpv_propagation_step(__global const float* source, __global const float* from, __global float* to, int size) {
-    const int x = (int)get_global_id(0) * LW_WIDTH, line = (int)get_global_id(1), bits = 31 - (int)clz(size);
-    if (x >= size || line >= LW_LPV_COLOURS * size * size) return;
-    const int y = line & (size - 1), z = line >> bits & (size - 1), colour = line >> 2 * bits;
-    const lpv_strides d = strides_of(size);
-    step_cells(source, from, to, LW_LPV_BANDS * colour * d.plane + lpv_cell(size, x, y, z), d);
+    const lpv_steps s = {source, size, 0, 0, 0};
+    one_step(s, from, to);
 }
 
-// Several steps, for processors whose cores have caches of their own. Steps follow each other through the slices, each one
-// slice behind the one before, so that what one leaves the next finds in the cache: step t writes slice z of one
-// grid after step t - 1 has left slice z + 1 in the other, and before step t + 1 writes slice z - 1 there, which nobody needs any
-// more. To share the work out, the grid is cut across z into `parts`, which lose a slice at each cut with every step; what
-// is then missing about the cuts comes after (atCuts = 1), and finds there what it needs: a part stops overwriting a
-// step's slice before it would be missed.
-//
-// One work-item = a part, or a cut, of one colour. The result is in `second` after an odd number of steps, else in `first`; the
-// first step reads `from`, which may be `first`. parts * 2 * steps <= size, or parts = 1.
 __kernel void lpv_propagation_wave(__global const float* source, __global const float* from, __global float* first,
                                    __global float* second, int size, int steps, int parts, int atCuts) {
-    const int item = (int)get_global_id(0), count = atCuts ? parts - 1 : parts;
-    if (item >= LW_LPV_COLOURS * count) return;
-    const int colour = item / count, part = item % count, length = size / parts;
-    const lpv_strides d = strides_of(size);
-    // Step t takes slices low - lowGrowth t .. high + highGrowth t - 1.
-    int low = part * length, high = low + length, lowGrowth = part > 0 ? -1 : 0, highGrowth = part < parts - 1 ? -1 : 0;
-    if (atCuts) {
-        low = high;
-        lowGrowth = highGrowth = 1;
-    }
-    const int start = low - (lowGrowth > 0 ? steps - 1 : 0), end = high + (highGrowth > 0 ? steps - 1 : 0);
-    for (int wave = start; wave < end + steps - 1; ++wave)
-        for (int t = 0; t < steps; ++t) {
-            const int z = wave - t;
-            if (z < low - lowGrowth * t || z >= high + highGrowth * t) continue;
-            __global const float* read = t == 0 ? from : t & 1 ? second : first;
-            __global float* write = t & 1 ? first : second;
-            const int at = LW_LPV_BANDS * colour * d.plane + lpv_cell(size, 0, 0, z);
-            for (int y = 0; y < size; ++y)
-                for (int x = 0; x < size; x += LW_WIDTH) step_cells(source, read, write, at + y * d.row + x, d);
-        }
+    const lpv_steps s = {source, size, 0, 0, 0};
+    wave_of_steps(s, from, first, second, steps, parts, atCuts);
 }

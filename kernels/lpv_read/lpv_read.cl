@@ -3,6 +3,9 @@
 //   E(n) = k / s^2 max(0, LOBE0 c0 - LOBE1 (c1 . n)),
 // light that travels along d lighting what faces -d. k: LpvPropagation::calibration. Here is where the light
 // is clamped at 0, and only here.
+//
+// Damped, it is what is read a cell further off as well, where that is less: light that falls on a surface has come through
+// the cells in front of it, and light that grows weaker away from it has come through the surface, or from it.
 #include "shared/input_limits.h"
 #include "shared/lpv_types.h"
 #include "shared/surface.h"
@@ -45,12 +48,26 @@ LW_FN float16 interpolate(__global const float16* corner, int size, float x, flo
     return light;
 }
 
+// Irradiance, not yet scaled, at a place in cells from the first one's centre; of colours in the first three lanes.
+LW_FN float4 light_at(__global const float16* cells, int size, const float* at, float nx, float ny, float nz) {
+    float share[3];
+    int corner = 0;
+    for (int axis = 2; axis >= 0; --axis) {
+        const float inside = clamp(at[axis], 0.0f, (float)(size - 1));
+        const int lower = min((int)inside, size - 2);
+        share[axis] = inside - (float)lower;
+        corner = corner * size + lower;
+    }
+    const float16 v = interpolate(cells + corner, size, share[0], share[1], share[2]);
+    return v.s0123 * LPV_LOBE0 - (v.s4567 * nx + v.s89ab * ny + v.scdef * nz) * LPV_LOBE1;
+}
+
 // One work-item = LW_WIDTH pixels of a row. hasIrradiance, hasValidity: which are wanted; the other's arguments are not
 // touched. Validity is 1 where the grid has the surface, 0 elsewhere, where irradiance is 0 as well. counts[0]: pixels that are
 // neither surface nor background; counts[1]: whose light was brought down; counts[2]: surfaces that the grid does not have.
 __kernel void lpv_read_gather(__global const float* position, int4 positionLayout, __global const float* normal,
                             int4 normalLayout, int width, int height, __global const LwLpvPlace* grid, int size,
-                            __global const float16* cells, float calibration, int hasIrradiance, int hasValidity,
+                            __global const float16* cells, float calibration, int isDamped, int hasIrradiance, int hasValidity,
                             __global float* irradiance, int4 irradianceLayout, __global float* validity, int4 validityLayout,
                             __global int* counts) {
     const int x = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);
@@ -89,7 +106,13 @@ __kernel void lpv_read_gather(__global const float* position, int4 positionLayou
     store((iz * size + iy) * size + ix, corner, 0);
     for (int l = 0; l < LW_WIDTH; ++l) {
         const float16 v = interpolate(cells + corner[l], size, px[l], py[l], pz[l]);
-        const float4 e = v.s0123 * LPV_LOBE0 - (v.s4567 * nx[l] + v.s89ab * ny[l] + v.scdef * nz[l]) * LPV_LOBE1;
+        float4 e = v.s0123 * LPV_LOBE0 - (v.s4567 * nx[l] + v.s89ab * ny[l] + v.scdef * nz[l]) * LPV_LOBE1;
+        if (isDamped) {
+            const int lower = corner[l];
+            const float further[3] = {(float)(lower % size) + px[l] + nx[l], (float)(lower / size % size) + py[l] + ny[l],
+                                      (float)(lower / (size * size)) + pz[l] + nz[l]};
+            e = fmin(e, light_at(cells, size, further, nx[l], ny[l], nz[l]));
+        }
         light[0][l] = e.x;
         light[1][l] = e.y;
         light[2][l] = e.z;

@@ -7,8 +7,8 @@
 // Levels of the pyramid that a gather may read, the one that it runs on included.
 #define LW_HORIZON_LEVELS 12
 
-// Sectors of a slice: bits of a word.
-#define LW_HORIZON_SECTORS 32
+// Sectors of a slice: bits of a word but one, since borders are made by shifts, and one by all 32 would be one by 0.
+#define LW_HORIZON_SECTORS 31
 
 // On coarse levels the pixels of an 8 x 8 pattern look up texels shifted by up to half a texel, in steps of an eighth, across
 // and down, each pair of shifts once, and every shift once in any eight columns of a row: the mean over eight columns is what

@@ -43,6 +43,26 @@ typedef struct {
 } LwLpvPlace;
 LW_SIZE_CHECK(LwLpvPlace, 32);
 
+// Of the volume that blocks: what gets through the faces between cells, planes laid out as those of light. Light of one cell that
+// reaches a neighbour along axis a leaves it through five far faces, and has five ways through the face between the two: straight
+// on, and towards the sides +u, -u, +v, -v, where u and v are the other axes in the order x, y, z. Plane 5 a + w at a cell: of its
+// face towards the lower neighbour, for way w of light that goes up. Light that goes down takes the same ways backwards: its
+// +u is way -u.
+#define LW_LPV_WAYS 5
+#define LW_LPV_FACE_PLANES (3 * LW_LPV_WAYS)
+// Blockers are kept at the cells' corners, half a cell off; corners of a grid.
+LW_FN lw_int lpv_corners(lw_int size) { return (size + 1) * (size + 1) * (size + 1); }
+// Cells of a row that are told together whether anything blocks about them, at every width.
+#define LW_LPV_BLOCK_RUN 16
+
+// What the corners' blockers were made of, and whether that has changed.
+typedef struct {
+    lw_float4 origin;              // LwLpvPlace's; w: its cells' side
+    lw_uint revision[2];           // of the surfels
+    lw_int stale, surfelsOutside;  // surfels that no corner of the grid is nearest to
+} LwLpvBlockers;
+LW_SIZE_CHECK(LwLpvBlockers, 32);
+
 // How a frame wants its grid placed.
 typedef struct {
     lw_float4 centre;        // xyz; w: length of the grid's sides; 0: fitted to what the RSMs see, the VPLs and the box below

@@ -1,6 +1,5 @@
-// Lines run through pixel centres: every direction is a vector of small integers without a common factor, and a step k
-// lies k of them away. A plane then meets the horizon of its own pixels exactly, at every step and angle of view; rounded
-// places would lie beside the slice and shadow floors seen at grazing angles.
+// Lines run through pixel centres: every direction is a vector of small integers without a common factor, and steps lie
+// whole numbers of them away, but for the nearest: what is curved then shows the points of its slice.
 #include "passes/horizon_pattern.h"
 
 #include <algorithm>
@@ -44,24 +43,31 @@ std::vector<Line> linesOf(std::uint32_t directions) {
 
 double fraction(double x) { return x - std::floor(x); }
 
-// Steps of one side: 1, 2, .. up to twice the density pixels apart, then as many again on each coarser level, as long as the
+// Where the first step's stretch begins, in pixels: at the pixel's own border. Every line begins there, however long its
+// vector: from half of the vector on, as steps of whole vectors would have it, the stretch that is left out grows with the
+// number of directions, and with it the light in contacts.
+constexpr double kOwnPixel = 0.5;
+
+// Steps of one side: 1, 2, .. up to twice the density vectors apart, then as many again on each coarser level, as long as the
 // stretch that a step stands for begins within reach. (Up to the last step that lies within reach itself: a quarter of the
-// distance, and of the light of rooms, is left out at one step to a doubling.) `every`:
-// pixels of the full image per pixel here.
+// distance, and of the light of rooms, is left out at one step to a doubling.) Vectors of two pixels and more begin with
+// fractions of a half, a quarter, .., at the pixels nearest to the line: surfaces are seen as planes, which lie right beside
+// it, too. `every`: pixels of the full image per pixel here.
 void addSteps(HorizonPattern& pattern, const Line& line, int side, std::uint32_t density, double reach, double every) {
     const double length = std::hypot(double(line.x), double(line.y));
-    const int last = 2 * int(density) - 1;
-    for (int doubling = 0; doubling < LW_HORIZON_LEVELS + kFinerLevels; ++doubling)
-        for (int k = doubling == 0 ? 1 : int(density); k <= last; ++k) {
+    const int last = 2 * int(density) - 1, finest = -int(std::log2(length));
+    for (int doubling = finest; doubling < LW_HORIZON_LEVELS + kFinerLevels; ++doubling)
+        for (int k = doubling == finest ? 1 : int(density); k <= last; ++k) {
             const double scale = std::ldexp(length, doubling);
+            const bool nearest = doubling == finest && k == 1;
             // The first step of a doubling follows one of half the width.
-            const double begin = (k - (doubling > 0 && k == int(density) ? 0.25 : 0.5)) * scale;
-            if (begin > reach && !(doubling == 0 && k == 1)) return;
+            const double begin = nearest ? std::min(kOwnPixel, 0.5 * scale) : (k - (doubling > finest && k == int(density) ? 0.25 : 0.5)) * scale;
+            if (begin > reach && !nearest) return;
             lw_horizon_step step{};
             step.level = std::max(0, doubling - kFinerLevels);
-            const int multiple = side * k << (doubling - step.level);
-            step.dx = multiple * line.x;
-            step.dy = multiple * line.y;
+            const double multiple = std::ldexp(double(side * k), doubling - step.level);
+            step.dx = int(std::lround(multiple * line.x));
+            step.dy = int(std::lround(multiple * line.y));
             const double n = double(pattern.steps.size() + 1);  // an additive sequence of two dimensions (Roberts 2018)
             const double shift = std::ldexp(2.0 * kPhaseShare, step.level);
             step.phaseX = int(std::lround((fraction(0.7548776662 * n) - 0.5) * shift));

@@ -10,6 +10,7 @@
 namespace lightwell {
 namespace {
 
+constexpr const char* kProgram = "lpv_propagation/lpv_propagation";
 constexpr double kPi = 3.14159265358979323846;
 constexpr std::uint32_t kCalibrationLayers = 4;
 
@@ -21,10 +22,15 @@ constexpr std::uint32_t kLeastWaveSteps = 2, kMostWaveSteps = 16;
 }  // namespace
 
 LpvPropagation::LpvPropagation(Device& device, std::uint32_t size, std::uint32_t units)
-    : size_(size),
+    : device_(device),
+      size_(size),
       units_(units ? units : device.computeUnits()),
-      step_(device.programs().kernel("lpv_propagation/lpv_propagation", "lpv_propagation_step")),
-      wave_(device.programs().kernel("lpv_propagation/lpv_propagation", "lpv_propagation_wave")) {}
+      step_(device.programs().kernel(kProgram, "lpv_propagation_step")),
+      wave_(device.programs().kernel(kProgram, "lpv_propagation_wave")) {}
+
+Kernel& LpvPropagation::blocked(const char* kernel) const {
+    return device_.programs().kernel("lpv_propagation/lpv_blocked", kernel);
+}
 
 std::uint64_t LpvPropagation::gridBytes(std::uint32_t size) {
     return std::uint64_t(LW_LPV_PLANES) * std::uint64_t(lpv_plane(lw_int(size))) * sizeof(float);
@@ -36,26 +42,34 @@ Buffer LpvPropagation::makeGrid(Executor& executor, std::uint32_t size, const ch
     return grid;
 }
 
-const Buffer& LpvPropagation::record(Executor& executor, const Buffer& injected, std::uint32_t steps) {
+const Buffer& LpvPropagation::record(Executor& executor, const Buffer& injected, std::uint32_t steps, const LpvBlockers* blockers) {
     if (steps == 0) return injected;
     for (std::uint32_t i = 0; i < std::min(steps, 2u); ++i)
         if (!grids_[i]) grids_[i] = makeGrid(executor, size_, "propagated light");
-    return step_.width() == 1 || steps == 1 ? recordSteps(executor, injected, steps) : recordWaves(executor, injected, steps);
+    return step_.width() == 1 || steps == 1 ? recordSteps(executor, injected, steps, blockers)
+                                            : recordWaves(executor, injected, steps, blockers);
 }
 
-const Buffer& LpvPropagation::recordSteps(Executor& executor, const Buffer& injected, std::uint32_t steps) {
+const Buffer& LpvPropagation::recordSteps(Executor& executor, const Buffer& injected, std::uint32_t steps,
+                                          const LpvBlockers* blockers) {
     const std::size_t vectors = size_ / step_.width();
+    const Range all{vectors, std::size_t(LW_LPV_COLOURS) * size_ * size_};
     const Range group{vectors, std::min<std::size_t>(size_, std::max<std::size_t>(256 / vectors, 1))};
     const Buffer* from = &injected;
     for (std::uint32_t i = 0; i < steps; ++i) {
-        executor.run("lpv_propagation.step", step_, {vectors, std::size_t(LW_LPV_COLOURS) * size_ * size_}, group, injected, *from,
-                     grids_[i % 2], cl_int(size_));
-        from = &grids_[i % 2];
+        const Buffer& to = grids_[i % 2];
+        if (blockers)
+            executor.run("lpv_propagation.step", blocked("lpv_propagation_blocked_step"), all, group, injected, *from,
+                         to, cl_int(size_), blockers->faces, blockers->runs);
+        else
+            executor.run("lpv_propagation.step", step_, all, group, injected, *from, to, cl_int(size_));
+        from = &to;
     }
     return *from;
 }
 
-const Buffer& LpvPropagation::recordWaves(Executor& executor, const Buffer& injected, std::uint32_t steps) {
+const Buffer& LpvPropagation::recordWaves(Executor& executor, const Buffer& injected, std::uint32_t steps,
+                                          const LpvBlockers* blockers) {
     // Two work-items for each compute unit, and no more parts than keep two slices a step.
     std::uint32_t parts = 1;
     while (parts * LW_LPV_COLOURS < 2 * units_ && parts * 8 <= size_) parts *= 2;
@@ -68,8 +82,13 @@ const Buffer& LpvPropagation::recordWaves(Executor& executor, const Buffer& inje
         const std::uint32_t taken = std::min(left, most);
         const Buffer &first = grids_[at], &second = grids_[1 - at];
         const auto wave = [&](std::uint32_t items, int atCuts) {
-            executor.run("lpv_propagation.wave", wave_, {items, 1}, {1, 1}, injected, *from, first, second, cl_int(size_),
-                         cl_int(taken), cl_int(parts), cl_int(atCuts));
+            if (blockers)
+                executor.run("lpv_propagation.wave", blocked("lpv_propagation_blocked_wave"), {items, 1}, {1, 1}, injected,
+                             *from, first, second, cl_int(size_), cl_int(taken), cl_int(parts), cl_int(atCuts),
+                             blockers->faces, blockers->runs);
+            else
+                executor.run("lpv_propagation.wave", wave_, {items, 1}, {1, 1}, injected, *from, first, second, cl_int(size_),
+                             cl_int(taken), cl_int(parts), cl_int(atCuts));
         };
         wave(LW_LPV_COLOURS * parts, 0);
         if (parts > 1 && taken > 1) wave(LW_LPV_COLOURS * (parts - 1), 1);
@@ -93,26 +112,55 @@ Planes LpvPropagation::debugPlanes(const Buffer& grid, std::uint32_t size) {
     return planes;
 }
 
+namespace {
+
 // An infinite plane is the same in all of a layer's cells: the step becomes one of layers, c0 and c1 along the plane's normal,
-// with four of six neighbours in the layer itself.
-double LpvPropagation::calibration(std::uint32_t size, std::uint32_t steps) {
-    const double front = LW_LPV_FRONT_ANGLE / kPi, side = LW_LPV_SIDE_ANGLE / kPi, root5 = std::sqrt(5.0);
-    const double a = 1.0 / 6.0, b = LW_LPV_LOBE0 * LW_LPV_Y1 * (front + 8.0 / root5 * side);
-    const double p = LW_LPV_LOBE1 * LW_LPV_Y0 * front, q = 0.5 * front, k = side / root5;
-    const std::size_t layers = size;
-    std::vector<double> c0(layers + 2), c1(layers + 2), n0(layers + 2), n1(layers + 2);
-    for (std::uint32_t i = 0; i <= steps; ++i) {
-        for (std::size_t j = 1; j <= layers; ++j) {
-            n0[j] = a * (4.0 * c0[j] + c0[j - 1] + c0[j + 1]) + b * (c1[j - 1] - c1[j + 1]);
-            n1[j] = p * (c0[j - 1] - c0[j + 1]) + q * (c1[j - 1] + c1[j + 1]) + 4.0 * k * c1[j];
+// with four of six neighbours in the layer itself. Layers 0 and last are the empty borders.
+struct PlaneLayers {
+    explicit PlaneLayers(std::size_t count) : c0(count + 2), c1(count + 2) {}
+    std::vector<double> c0, c1;
+
+    // isBlocked: the lowest layer lies on a surface that fills its cells. Between its cells are two corners of that surface and two
+    // of none: max(B(d), B(-d)) is 1/8 + 1/4 |d.n|, of the 1/4 + 1/sqrt(5) that let nothing through.
+    PlaneLayers stepped(bool isBlocked) const {
+        const double front = LW_LPV_FRONT_ANGLE / kPi, side = LW_LPV_SIDE_ANGLE / kPi, root5 = std::sqrt(5.0);
+        const double full = 0.25 + 1.0 / root5;
+        const double a = 1.0 / 6.0, b = LW_LPV_LOBE0 * LW_LPV_Y1 * (front + 8.0 / root5 * side);
+        const double p = LW_LPV_LOBE1 * LW_LPV_Y0 * front, q = 0.5 * front;
+        PlaneLayers next(c0.size() - 2);
+        for (std::size_t j = 1; j + 1 < c0.size(); ++j) {
+            const bool passes = !isBlocked || j > 1;
+            const double along = passes ? 1.0 : 1.0 - 0.125 / full;
+            const double oblique = passes ? 1.0 : 1.0 - (0.125 + 0.25 / root5) / full;
+            // Of each neighbour beside: straight on and to two sides along the layer, to two sides out of it.
+            const double kept0 = LW_LPV_LOBE0 * LW_LPV_Y0 * (along * (front + 2.0 * side) + oblique * 2.0 * side);
+            const double kept1 = LW_LPV_LOBE1 * LW_LPV_Y1 * oblique * side * 2.0 / root5;
+            next.c0[j] = 4.0 * kept0 * c0[j] + a * (c0[j - 1] + c0[j + 1]) + b * (c1[j - 1] - c1[j + 1]);
+            next.c1[j] = 4.0 * kept1 * c1[j] + p * (c0[j - 1] - c0[j + 1]) + q * (c1[j - 1] + c1[j + 1]);
         }
-        n0[1] += LW_LPV_LOBE0 / kPi;  // of the flux of a cell's side, 1
-        n1[1] += LW_LPV_LOBE1 / kPi;
-        c0.swap(n0);
-        c1.swap(n1);
+        return next;
+    }
+    void add(const PlaneLayers& other) {
+        for (std::size_t j = 0; j < c0.size(); ++j) {
+            c0[j] += other.c0[j];
+            c1[j] += other.c1[j];
+        }
+    }
+};
+
+}  // namespace
+
+double LpvPropagation::calibration(std::uint32_t size, std::uint32_t steps, bool isBlocked) {
+    PlaneLayers injected(size);
+    injected.c0[1] = LW_LPV_LOBE0 / kPi;  // of the flux of a cell's side, 1
+    injected.c1[1] = LW_LPV_LOBE1 / kPi;
+    PlaneLayers light = injected;
+    for (std::uint32_t i = 0; i < steps; ++i) {
+        light = light.stepped(isBlocked);
+        light.add(injected);
     }
     double sum = 0.0;
-    for (std::size_t j = 2; j < 2 + kCalibrationLayers; ++j) sum += LW_LPV_LOBE0 * c0[j] + LW_LPV_LOBE1 * c1[j];
+    for (std::size_t j = 2; j < 2 + kCalibrationLayers; ++j) sum += LW_LPV_LOBE0 * light.c0[j] + LW_LPV_LOBE1 * light.c1[j];
     return sum > 0.0 ? kCalibrationLayers / sum : 0.0;
 }
 

@@ -9,6 +9,12 @@
 
 namespace lightwell {
 
+// What blocks light between cells: LpvBlocking's.
+struct LpvBlockers {
+    const Buffer& faces;  // LW_LPV_FACE_PLANES planes, laid out as a grid's
+    const Buffer& runs;   // an int for each LW_LPV_BLOCK_RUN cells of a row, by y and z: whether anything blocks there
+};
+
 class LpvPropagation {
 public:
     // size: cells a side, a power of two from 16 on. units: compute units that the work is cut up for; 0: the device's. The
@@ -18,7 +24,8 @@ public:
     // Pass "lpv_propagation.wave", or ".step" where work-items hold one cell. `injected`: a grid laid out as
     // shared/lpv_types.h has it. Returns the sum of what was injected and of all that `steps` steps make of it; `injected` itself
     // for none.
-    const Buffer& record(Executor& executor, const Buffer& injected, std::uint32_t steps);
+    // blockers: none, or what takes light away between cells.
+    const Buffer& record(Executor& executor, const Buffer& injected, std::uint32_t steps, const LpvBlockers* blockers = nullptr);
 
     std::uint64_t bytes() const { return grids_[0].bytes() + grids_[1].bytes(); }
     static std::uint64_t gridBytes(std::uint32_t size);
@@ -32,12 +39,15 @@ public:
 
     // What irradiance read from the grid is multiplied by: it makes the mean over the four cells above an infinite plane of
     // exitance 1, which fills the grid's lowest layer, 1. No single number does, since the field keeps filling.
-    static double calibration(std::uint32_t size, std::uint32_t steps);
+    // isBlocked: the plane blocks as well, as what LpvBlocking makes of it does.
+    static double calibration(std::uint32_t size, std::uint32_t steps, bool isBlocked = false);
 
 private:
-    const Buffer& recordSteps(Executor& executor, const Buffer& injected, std::uint32_t steps);
-    const Buffer& recordWaves(Executor& executor, const Buffer& injected, std::uint32_t steps);
+    const Buffer& recordSteps(Executor& executor, const Buffer& injected, std::uint32_t steps, const LpvBlockers* blockers);
+    const Buffer& recordWaves(Executor& executor, const Buffer& injected, std::uint32_t steps, const LpvBlockers* blockers);
+    Kernel& blocked(const char* kernel) const;  // built when the first frame with blockers asks for it
 
+    Device& device_;
     std::uint32_t size_, units_;
     Kernel &step_, &wave_;
     Buffer grids_[2];

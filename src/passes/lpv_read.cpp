@@ -23,13 +23,14 @@ void LpvRead::recordPack(Executor& executor, const Buffer& grid) {
 }
 
 void LpvRead::recordGather(Executor& executor, const Planes& position, const Planes& normal, const Buffer& place,
-                         double calibration, const Planes& irradiance, const Planes& validity, const Buffer& counts) {
+                           double calibration, bool isDamped, const Planes& irradiance, const Planes& validity,
+                           const Buffer& counts) {
     // A kernel's argument must be some memory, also where it is not touched.
     const auto orElse = [&](const Planes& planes) { return planes ? planes : position; };
     const Range items{(position.width + gather_.width() - 1) / gather_.width(), position.height};
     executor.run("lpv_read.gather", gather_, items, gather_.width() == 1 ? Range{64, 1} : Range{8, 1}, position, normal,
                  cl_int(position.width), cl_int(position.height), place, cl_int(size_), cells_, cl_float(calibration),
-                 cl_int(irradiance ? 1 : 0), cl_int(validity ? 1 : 0), orElse(irradiance), orElse(validity), counts);
+                 cl_int(isDamped ? 1 : 0), cl_int(irradiance ? 1 : 0), cl_int(validity ? 1 : 0), orElse(irradiance), orElse(validity), counts);
 }
 
 std::uint64_t LpvRead::estimateBytes(std::uint32_t size) {

@@ -14,12 +14,12 @@ public:
 
     // Pass "lpv_read.pack", once a frame. `grid`: of LpvPropagation's.
     void recordPack(Executor& executor, const Buffer& grid);
-    // Pass "lpv_read.gather". place: LpvGrid's. irradiance, validity: none where not wanted. counts: kCounts ints, raised by
-    // the number of pixels that are neither surface nor background, of those whose light was brought down, and of surfaces that
-    // the grid does not have.
+    // Pass "lpv_read.gather". place: LpvGrid's. isDamped: no more light than a cell further off. irradiance, validity: none where
+    // not wanted. counts: kCounts ints, raised by the number of pixels that are neither surface nor background, of those whose
+    // light was brought down, and of surfaces that the grid does not have.
     static constexpr std::size_t kCounts = 3;
     void recordGather(Executor& executor, const Planes& position, const Planes& normal, const Buffer& place, double calibration,
-                    const Planes& irradiance, const Planes& validity, const Buffer& counts);
+                      bool isDamped, const Planes& irradiance, const Planes& validity, const Buffer& counts);
 
     std::uint64_t bytes() const { return cells_.bytes(); }
     static std::uint64_t estimateBytes(std::uint32_t size);

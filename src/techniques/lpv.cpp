@@ -2,19 +2,17 @@
 #include "techniques/lpv.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
-#include <tuple>
 
 #include "compute/device.h"
 #include "inputs/gbuffer_input.h"
-#include "inputs/geometry_input.h"
+#include "inputs/geometry_box.h"
 #include "inputs/output_target.h"
 #include "inputs/rsm_input.h"
 #include "passes/lpv_grid.h"
 #include "passes/lpv_propagation.h"
 #include "passes/lpv_read.h"
-#include "shared/input_limits.h"
+#include "techniques/lpv_geometry.h"
 #include "techniques/lpv_parameters.h"
 #include "techniques/lpv_sweep_volume.h"
 #include "techniques/prewarm.h"
@@ -28,58 +26,19 @@ std::uint32_t stepsOf(const LWLpvDesc& desc) { return desc.steps ? desc.steps : 
 
 constexpr std::size_t kCountBytes = LpvRead::kCounts * sizeof(cl_int);
 
-// The box around the triangles; read again when the geometry's version, a pointer or a count changes.
-class TriangleBox {
-public:
-    void look(const LWGeometry* geometry) {
-        const Key key = geometry && geometry->triangleCount
-                            ? Key{geometry->vertices, geometry->indices, geometry->triangleCount, geometry->vertexCount, geometry->version}
-                            : Key{};
-        if (key == key_) return;
-        GeometryInput().check(geometry);
-        key_ = key;
-        isSome_ = false;
-        if (key == Key{}) return;
-        // A vertex that no triangle has is none of the scene's: hosts share buffers among meshes.
-        for (std::size_t i = 0; i < 3 * std::size_t(geometry->triangleCount); ++i)
-            add(geometry->vertices + 3 * (geometry->indices ? geometry->indices[i] : i));
-    }
-    // No grid that is fitted to it has shorter sides.
-    float longest() const { return std::max({high_[0] - low_[0], high_[1] - low_[1], high_[2] - low_[2]}); }
-    void putInto(LpvPlacement& placement) const {
-        placement.hasBox = isSome_;
-        for (int a = 0; a < 3; ++a) {
-            placement.low[a] = low_[a];
-            placement.high[a] = high_[a];
-        }
-    }
-
-private:
-    void add(const float* p) {
-        if (!(std::hypot(p[0], p[1], p[2]) <= LW_LARGEST_DISTANCE)) return;
-        for (int a = 0; a < 3; ++a) {
-            low_[a] = isSome_ ? std::min(low_[a], p[a]) : p[a];
-            high_[a] = isSome_ ? std::max(high_[a], p[a]) : p[a];
-        }
-        isSome_ = true;
-    }
-    // vertices, indices, triangles, vertices' count, version
-    using Key = std::tuple<const float*, const std::uint32_t*, std::uint32_t, std::uint32_t, std::uint64_t>;
-    Key key_{};
-    bool isSome_ = false;
-    float low_[3] = {}, high_[3] = {};
-};
 
 bool sweeps(const LWLpvDesc& desc) { return desc.transport == LW_LPV_TRANSPORT_SWEEP; }
 
-std::vector<LWChoice> unusedInputs(const LWFrame& frame, bool fitted, bool blocks) {
+// What steps take; sweeps choose their own blockers.
+LWLpvDesc ofSteps(LWLpvDesc desc) {
+    if (sweeps(desc)) desc.geometryVolume = LW_GEOMETRY_VOLUME_OFF;
+    return desc;
+}
+
+// Geometry and source views apart, which LpvGeometry and LpvSweepVolume speak of.
+std::vector<LWChoice> unusedInputs(const LWFrame& frame) {
     constexpr const char* kReason = "not used: technique lpv takes light from RSMs and authored VPLs only";
     std::vector<LWChoice> unused;
-    if (frame.sourceViewCount) unused.push_back({"frame.sourceViews", kReason});
-    if (frame.geometry && !blocks)
-        unused.push_back({"frame.geometry", fitted && frame.geometry->triangleCount
-                                                ? "triangles: the grid reaches around them; nothing blocks light"
-                                                : "not used: nothing blocks light"});
     if (frame.blockerCount) unused.push_back({"frame.blockers", kReason});
     if (frame.environment[0] > 0.0f || frame.environment[1] > 0.0f || frame.environment[2] > 0.0f)
         unused.push_back({"frame.environment", kReason});
@@ -112,7 +71,8 @@ public:
     LpvTechnique(Device& device, const LWLpvDesc& desc)
         : device_(device),
           desc_(desc),
-          calibration_(LpvPropagation::calibration(desc.size, stepsOf(desc))),
+          calibration_(LpvPropagation::calibration(desc.size, stepsOf(desc), desc.geometryVolume != LW_GEOMETRY_VOLUME_OFF)),
+          geometry_(device, ofSteps(desc)),
           failures_(device.failures()) {
         volume_.emplace(device, desc.size);
         if (sweeps(desc)) sweep_.emplace(device, desc);
@@ -122,15 +82,22 @@ public:
 
     void update(Executor& executor, const LWFrame& frame) override {
         const bool failed = device_.failures() != failures_;
+        geometry_.check(frame);
         box_.look(frame.geometry);
         if (sweep_) sweep_->check(frame);
         rsms_.import(executor, frame);
+        if (failed) geometry_.forget();
+        geometry_.import(executor, frame, rsms_);
         failures_ = device_.failures();
         if (failed) {  // what their memory holds is not known
             volume_.emplace(device_, desc_.size);
             if (sweep_) sweep_.emplace(device_, desc_);
         }
-        box_.putInto(placement_);
+        placement_.hasBox = box_.isSome();
+        for (int a = 0; a < 3; ++a) {
+            placement_.low[a] = box_.low()[a];
+            placement_.high[a] = box_.high()[a];
+        }
         placement_.refit = frame.reset != 0 || failed;
         if (sweep_)
             recordSweep(executor, frame);
@@ -153,7 +120,7 @@ public:
                                          state.counts);
         else
             volume_->read.recordGather(executor, state.gbuffer.position, state.gbuffer.normal, volume_->grid.place(), calibration_,
-                                       irradiance, validity, state.counts);
+                                       desc_.damping != 0, irradiance, validity, state.counts);
         state.irradiance.end(executor);
         state.validity.end(executor);
         state.isRendered = true;
@@ -162,16 +129,10 @@ public:
     void prewarm(Executor& executor, const std::shared_ptr<View>&) override {
         LWLpvDesc desc = desc_;
         desc.steps = std::min(stepsOf(desc), 2u);
-        if (sweep_) {  // the same kernels, in less memory
-            desc.size = 16;
-            desc.directions = 24;
-        }
-        for (int hidden = 0; hidden < (sweep_ ? LpvSweepVolume::kSources : 1); ++hidden) {
-            LpvTechnique twin(device_, desc);
-            if (twin.sweep_) twin.sweep_->hide(hidden);
-            twin.prewarmVpls(executor);
-            exerciseTechnique(executor, twin);
-        }
+        if (sweep_)
+            prewarmSweep(executor, desc);
+        else
+            prewarmSteps(executor, desc);
     }
 
     Report report() override;
@@ -181,16 +142,41 @@ public:
 private:
     void recordSteps(Executor& executor, const LWFrame& frame) {
         volume_->grid.record(executor, rsms_, frame.vpls, frame.vplCount, placement_);
-        propagated_ = &volume_->propagation.record(executor, volume_->grid.injected(), stepsOf(desc_));
+        const std::optional<LpvBlockers> blockers = geometry_.record(executor, volume_->grid.place());
+        propagated_ = &volume_->propagation.record(executor, volume_->grid.injected(), stepsOf(desc_),
+                                                   blockers ? &*blockers : nullptr);
         volume_->read.recordPack(executor, *propagated_);
-        unused_ = unusedInputs(frame, desc_.extent == 0.0f, false);
+        choices_ = unusedInputs(frame);
+        for (const LWChoice& choice : geometry_.choices(frame)) choices_.push_back(choice);
     }
     void recordSweep(Executor& executor, const LWFrame& frame) {
         volume_->grid.recordPlace(executor, rsms_, frame.vpls, frame.vplCount, placement_);
         sweep_->record(executor, frame, rsms_, volume_->grid, placement_.refit);
-        unused_ = unusedInputs(frame, desc_.extent == 0.0f, true);
-        const float side = desc_.extent > 0.0f ? desc_.extent : box_.longest();
-        for (const LWChoice& choice : sweep_->choices(frame, double(side))) unused_.push_back(choice);
+        choices_ = unusedInputs(frame);
+        const double side = desc_.extent > 0.0f ? double(desc_.extent) : double(box_.longest());
+        for (const LWChoice& choice : sweep_->choices(frame, side)) choices_.push_back(choice);
+    }
+
+    // Frames may bring all of the sources or none, and `auto` takes the first there is.
+    void prewarmSteps(Executor& executor, LWLpvDesc desc) {
+        for (int source = LW_GEOMETRY_VOLUME_TRIANGLES; source <= LW_GEOMETRY_VOLUME_SCREEN; ++source) {
+            if (desc_.geometryVolume == LW_GEOMETRY_VOLUME_AUTO) desc.geometryVolume = LWGeometryVolume(source);
+            else if (source != LW_GEOMETRY_VOLUME_TRIANGLES) break;
+            LpvTechnique twin(device_, desc);
+            exerciseTechnique(executor, twin);
+        }
+        desc.geometryVolume = LW_GEOMETRY_VOLUME_OFF;
+        LpvTechnique(device_, desc).prewarmVpls(executor);
+    }
+    void prewarmSweep(Executor& executor, LWLpvDesc desc) {
+        desc.size = 16;  // the same kernels, in less memory
+        desc.directions = 24;
+        for (int hidden = 0; hidden < LpvSweepVolume::kSources; ++hidden) {
+            LpvTechnique twin(device_, desc);
+            twin.sweep_->hide(hidden);
+            twin.prewarmVpls(executor);
+            exerciseTechnique(executor, twin);
+        }
     }
     // A frame of VPLs, which exerciseTechnique's have none of.
     void prewarmVpls(Executor& executor) {
@@ -206,21 +192,23 @@ private:
     Device& device_;
     LWLpvDesc desc_;
     double calibration_;
+    LpvGeometry geometry_;
     std::uint64_t failures_;  // that the device had seen when the last update began
-    TriangleBox box_;
+    GeometryBox box_;
     LpvPlacement placement_;
     RsmInput rsms_;
     std::optional<Volume> volume_;
     std::optional<LpvSweepVolume> sweep_;  // with transport=sweep; of `volume_` only the grid's place is used then
     const Buffer* propagated_ = nullptr;
     PerView<LpvView> states_;
-    std::vector<LWChoice> unused_;  // of the last update
+    std::vector<LWChoice> choices_;  // of the last update
 };
 
 Report LpvTechnique::report() {
     Report report;
     rsms_.report(report);
-    for (const LWChoice& choice : unused_) report.choose(choice.name, choice.reason);
+    geometry_.report(report);
+    for (const LWChoice& choice : choices_) report.choose(choice.name, choice.reason);
     if (sweep_)
         sweep_->report(report);
     else
@@ -257,7 +245,7 @@ std::vector<DebugView> LpvTechnique::debugViews(const View* view) {
 }
 
 std::uint64_t LpvTechnique::bytes() const {
-    std::uint64_t total = rsms_.bytes() + volume_->bytes() + (sweep_ ? sweep_->bytes() : 0);
+    std::uint64_t total = rsms_.bytes() + geometry_.bytes() + volume_->bytes() + (sweep_ ? sweep_->bytes() : 0);
     states_.each([&](const LpvView& state) {
         total += state.gbuffer.bytes() + state.irradiance.bytes() + state.validity.bytes() + state.counts.bytes();
     });
@@ -273,7 +261,7 @@ std::uint64_t estimateBytes(const void* desc, const LWViewDesc& view, const Fram
         volume = LpvGrid::estimatePlaceBytes(shape.vplCount) + LpvSweepVolume::estimateBytes(lpv, shape);
     else
         volume = LpvGrid::estimateBytes(lpv.size, shape.vplCount) + LpvPropagation::estimateBytes(lpv.size, stepsOf(lpv)) +
-                 LpvRead::estimateBytes(lpv.size);
+                 LpvRead::estimateBytes(lpv.size) + LpvGeometry::estimateBytes(lpv, shape);
     return RsmInput::estimateBytes(shape) + volume +
            GBufferInput::estimateBytes(view, 0, shape.uploads) + OutputTarget::estimateBytes(view, 3, shape.uploads) +
            OutputTarget::estimateBytes(view, 1, shape.uploads) + kCountBytes;
@@ -283,7 +271,7 @@ std::uint64_t estimateBytes(const void* desc, const LWViewDesc& view, const Fram
 
 const TechniqueEntry& lpvEntry() {
     static const TechniqueEntry entry = techniqueEntry<LpvTechnique, LWLpvDesc, lwDefaultLpv>(
-        "lpv", "light propagation volumes: RSMs' light spread from cell to cell of a grid, without visibility", 1, lpvParameters(),
+        "lpv", "light propagation volumes: RSMs' light spread from cell to cell of a grid", 1, lpvParameters(),
         lpvSettings(), estimateBytes);
     return entry;
 }

@@ -11,6 +11,7 @@ namespace {
 constexpr double kSizeValues[] = {16, 32, 64, 128};
 constexpr double kSizeSweep[] = {16, 32, 64};
 constexpr double kStepSweep[] = {0, 8, 16, 32};
+constexpr const char* kVolumeNames[] = {"off", "auto", "triangles", "surfels", "screen", nullptr};
 constexpr const char* kTransports[] = {"propagate", "sweep", nullptr};
 constexpr double kDirectionValues[] = {24, 48, 96, 216, 384, 864, 1536};
 constexpr double kFrameValues[] = {1, 2, 4, 6, 8, 12, 24};
@@ -37,7 +38,18 @@ const std::vector<LWParameter>& lpvParameters() {
               kStepSweep),
         parameter("extent", "length of the grid's sides, in units of length; 0: fitted to what the lights and the triangles reach",
                   LW_PARAMETER_FLOAT, offsetof(LWLpvDesc, extent), 0, 1e9, 0),
-        centre("center_x", 0), centre("center_y", 1), centre("center_z", 2),
+        centre("center_x", 0),
+        centre("center_y", 1),
+        centre("center_z", 2),
+        choosing(parameter("geometry_volume",
+                           "what blocks light between cells: nothing, the best that the frame has, its triangles, its surfels "
+                           "(or else its triangles), or what RSMs and source views see; walls leak less, steps take longer",
+                           LW_PARAMETER_ENUM, offsetof(LWLpvDesc, geometryVolume), 0, 4, LW_GEOMETRY_VOLUME_AUTO),
+                 kVolumeNames),
+        parameter("damping",
+                  "of light that grows weaker away from the surface it is read at, which comes from behind: less of it leaks, and "
+                  "reading takes 2.5 times as long",
+                  LW_PARAMETER_BOOL, offsetof(LWLpvDesc, damping), 0, 1, 0),
         choosing(parameter("transport",
                            "propagate: from cell to cell; sweep: straight, in a fixed set of directions, stopped by surfaces, to 64 cells "
                            "a side",
@@ -57,7 +69,8 @@ const std::vector<LWParameter>& lpvParameters() {
 }
 
 const std::vector<LWSetting>& lpvSettings() {
-    static const std::vector<LWSetting> settings = {{"fast", "size=16 steps=16"}, {"fine", "size=64 steps=32"}, {"sweep", "transport=sweep size=16"}};
+    static const std::vector<LWSetting> settings = {{"fast", "size=16 steps=16"}, {"fine", "size=64 steps=32"}, {"sweep", "transport=sweep size=16"},
+                                                   {"sweep fine", "transport=sweep size=32"}};
     return settings;
 }
 
@@ -68,6 +81,7 @@ extern "C" void lwDefaultLpv(LWLpvDesc* desc) {
     *desc = LWLpvDesc{};
     desc->structSize = sizeof *desc;
     desc->size = 32;
+    desc->geometryVolume = LW_GEOMETRY_VOLUME_AUTO;
     desc->transport = LW_LPV_TRANSPORT_PROPAGATE;
     desc->directions = 384;
     desc->bounces = desc->frames = 1;

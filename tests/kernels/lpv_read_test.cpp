@@ -37,13 +37,30 @@ struct Pixels {
     }
 };
 
+// Irradiance at `g`, in cells from the first one's centre, on surfaces of normal n; before it is scaled and clamped.
+double lightAt(const LpvCells& cells, int colour, const double* g, const double* n) {
+    double f[3], light[4] = {};
+    int low[3];
+    for (int a = 0; a < 3; ++a) {
+        const double inside = std::min(std::max(g[a], 0.0), double(kSize - 1));
+        low[a] = std::min(int(inside), kSize - 2);
+        f[a] = inside - low[a];
+    }
+    for (int k = 0; k < 8; ++k) {
+        const double w = (k & 1 ? f[0] : 1 - f[0]) * (k & 2 ? f[1] : 1 - f[1]) * (k & 4 ? f[2] : 1 - f[2]);
+        for (int b = 0; b < 4; ++b)
+            light[b] += w * double(cells.at(4 * colour + b, low[0] + (k & 1), low[1] + (k >> 1 & 1), low[2] + (k >> 2)));
+    }
+    const double pi = 3.14159265358979323846;
+    return std::sqrt(pi) / 2 * light[0] - std::sqrt(pi / 3) * (light[1] * n[0] + light[2] * n[1] + light[3] * n[2]);
+}
+
 // Irradiance and validity (the fourth), packed.
-std::vector<float> expectedOf(const Pixels& pixels, const LpvCells& cells) {
+std::vector<float> expectedOf(const Pixels& pixels, const LpvCells& cells, bool isDamped) {
     const std::size_t count = std::size_t(pixels.width) * pixels.height;
     std::vector<float> result(4 * count);
     for (std::size_t i = 0; i < count; ++i) {
-        double n[3], g[3], f[3];
-        int low[3];
+        double n[3], g[3], further[3];
         bool inside = true, surface = false;
         for (std::size_t a = 0; a < 3; ++a) {
             n[a] = double(pixels.normal[a * count + i]);
@@ -51,20 +68,12 @@ std::vector<float> expectedOf(const Pixels& pixels, const LpvCells& cells) {
             const double cornered = (double(pixels.position[a * count + i]) - kOrigin[a]) / kCell + 0.5 * n[a];
             inside = inside && cornered >= 0.0 && cornered <= kSize;
             g[a] = std::min(std::max(cornered - 0.5, 0.0), double(kSize - 1));
-            low[a] = std::min(int(g[a]), kSize - 2);
-            f[a] = g[a] - low[a];
+            further[a] = g[a] + n[a];
         }
         if (!inside || !surface) continue;
         for (int c = 0; c < 3; ++c) {
-            double light[4] = {};
-            for (int k = 0; k < 8; ++k) {
-                const double w = (k & 1 ? f[0] : 1 - f[0]) * (k & 2 ? f[1] : 1 - f[1]) * (k & 4 ? f[2] : 1 - f[2]);
-                for (int b = 0; b < 4; ++b)
-                    light[b] += w * double(cells.at(4 * c + b, low[0] + (k & 1), low[1] + (k >> 1 & 1), low[2] + (k >> 2)));
-            }
-            const double pi = 3.14159265358979323846;
-            const double along = light[1] * n[0] + light[2] * n[1] + light[3] * n[2];
-            const double e = std::sqrt(pi) / 2 * light[0] - std::sqrt(pi / 3) * along;
+            double e = lightAt(cells, c, g, n);
+            if (isDamped) e = std::min(e, lightAt(cells, c, further, n));
             result[std::size_t(c) * count + i] = float(kCalibration / (kCell * kCell) * std::max(0.0, e));
         }
         result[3 * count + i] = 1.0f;
@@ -76,6 +85,7 @@ std::vector<float> expectedOf(const Pixels& pixels, const LpvCells& cells) {
 
 TEST_CASE("pixels read what a trilinear sum in double gives them; outside there is nothing", "[lpv_read]") {
     const std::uint32_t width = GENERATE(1u, 16u);
+    const bool isDamped = GENERATE(false, true);
     KernelRig rig(width);
     const LpvCells cells = randomLight(kSize, 0);
     const Pixels pixels(45, 13);
@@ -91,12 +101,12 @@ TEST_CASE("pixels read what a trilinear sum in double gives them; outside there 
     const Planes p = rig.planes(position, 45, 13, 3), n = rig.planes(normal, 45, 13, 3), e = rig.planes(irradiance, 45, 13, 3),
                  v = rig.planes(validity, 45, 13, 1);
     pass.recordPack(rig.executor(), grid);
-    pass.recordGather(rig.executor(), p, n, placed, kCalibration, e, v, counts);
+    pass.recordGather(rig.executor(), p, n, placed, kCalibration, isDamped, e, v, counts);
     rig.device().finish();
     std::vector<float> got = rig.downloadPlanes(e);
     const std::vector<float> valid = rig.downloadPlanes(v);
     got.insert(got.end(), valid.begin(), valid.end());
-    const std::vector<float> expected = expectedOf(pixels, cells);
+    const std::vector<float> expected = expectedOf(pixels, cells, isDamped);
     CHECK(disagreement(got, expected) == "");
     cl_int missing = 0, valids = 0;
     for (std::size_t i = 0; i < 45 * 13; ++i) {
@@ -110,13 +120,13 @@ TEST_CASE("pixels read what a trilinear sum in double gives them; outside there 
 
     // One output at a time gives the same; without a grid there is no light.
     const Guarded alone = rig.makePlanes(45, 13, 3), other = rig.makePlanes(45, 13, 1);
-    pass.recordGather(rig.executor(), p, n, placed, kCalibration, rig.planes(alone, 45, 13, 3), {}, counts);
-    pass.recordGather(rig.executor(), p, n, placed, kCalibration, {}, rig.planes(other, 45, 13, 1), counts);
+    pass.recordGather(rig.executor(), p, n, placed, kCalibration, isDamped, rig.planes(alone, 45, 13, 3), {}, counts);
+    pass.recordGather(rig.executor(), p, n, placed, kCalibration, isDamped, {}, rig.planes(other, 45, 13, 1), counts);
     rig.device().finish();
     CHECK(bitDifference(rig.downloadPlanes(rig.planes(alone, 45, 13, 3)), rig.downloadPlanes(e)) == "");
     CHECK(bitDifference(rig.downloadPlanes(rig.planes(other, 45, 13, 1)), valid) == "");
     const Guarded none = rig.upload(std::vector<LwLpvPlace>(1));
-    pass.recordGather(rig.executor(), p, n, none, kCalibration, e, v, counts);
+    pass.recordGather(rig.executor(), p, n, none, kCalibration, isDamped, e, v, counts);
     rig.device().finish();
     CHECK(rig.downloadPlanes(e) == std::vector<float>(3 * 45 * 13));
     CHECK(rig.downloadPlanes(v) == std::vector<float>(45 * 13));

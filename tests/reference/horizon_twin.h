@@ -54,7 +54,7 @@ inline double angleOf(glm::dvec3 d, const HorizonSlice& s, double side) {
 inline std::vector<float> horizonGather(const std::vector<HorizonLevel>& levels, const HorizonPattern& pattern, const Camera& camera,
                                         const HorizonRanges& ranges, const HorizonPatternOptions& options, std::uint32_t fullHeight,
                                         bool light, bool uniform, std::uint32_t turn) {
-    constexpr double kHalfPi = 1.5707963267948966;
+    constexpr double kHalfPi = 1.5707963267948966, kSectors = LW_HORIZON_SECTORS;
     const HorizonLevel& base = levels[0];
     const std::size_t plane = std::size_t(base.width) * base.height, open = light ? 4 : 0;
     std::vector<float> out(plane * (light ? 6 : 2), 0.0f);
@@ -74,7 +74,7 @@ inline std::vector<float> horizonGather(const std::vector<HorizonLevel>& levels,
                 const glm::dvec3 line = double(slice.dx) * perI + double(slice.dy) * perJ;
                 const HorizonSlice s = sliceOf(n, v, line, uniform);
                 const double turned = double(slice.rounding) + 0.9 * std::fmod(0.6180339887 * turn, 1.0), rounding = turned < 0.95 ? turned : turned - 0.9;
-                std::array<bool, 32> covered{}, near{};
+                std::array<bool, LW_HORIZON_SECTORS> covered{}, near{};
                 std::array<double, 4> found{};
                 for (int against = 0; against < 2; ++against)
                     for (int k = 0; k < slice.steps; ++k) {
@@ -118,8 +118,8 @@ inline std::vector<float> horizonGather(const std::vector<HorizonLevel>& levels,
                         const double gamma = sign * s.gamma, horizon = kHalfPi + gamma;
                         const double front = std::fmin(least, horizon), back = std::fmax(front, std::fmin(angleOf(farthest, s, sign), horizon));
                         const auto border = [&](double angle) {
-                            const double sectors = 32.0 * (s.before + sign * measureTo(angle, gamma, uniform)) / s.total;
-                            return int(std::floor(std::fmin(std::fmax(sectors + rounding, 0.0), 32.0)));
+                            const double sectors = kSectors * (s.before + sign * measureTo(angle, gamma, uniform)) / s.total;
+                            return int(std::floor(std::fmin(std::fmax(sectors + rounding, 0.0), kSectors)));
                         };
                         const int lo = std::min(border(front), border(back)), hi = std::max(border(front), border(back));
                         for (int b = lo; b < hi; ++b) {
@@ -127,8 +127,8 @@ inline std::vector<float> horizonGather(const std::vector<HorizonLevel>& levels,
                             near[at] = near[at] || glm::length(d) < radius;
                             if (light && !covered[at] && glm::dot(d, m) < 0.0) {
                                 const glm::dvec3 l = level.get(tx, ty, 6);
-                                for (int a = 0; a < 3; ++a) found[std::size_t(a)] += l[a] / 32.0;
-                                found[3] += 1.0 / 32.0;
+                                for (int a = 0; a < 3; ++a) found[std::size_t(a)] += l[a] / kSectors;
+                                found[3] += 1.0 / kSectors;
                             }
                             covered[at] = true;
                         }
@@ -138,7 +138,7 @@ inline std::vector<float> horizonGather(const std::vector<HorizonLevel>& levels,
                 double weight = double(slice.share) * std::fabs(glm::dot(glm::cross(perI, perJ), v)) / glm::dot(across, across);
                 if (!uniform) weight *= s.projected * s.total;
                 for (std::size_t a = 0; a < 4; ++a) sum[a] += weight * found[a];
-                for (const bool b : near) sum[4] += weight * (b ? 0.0 : 1.0 / 32.0);
+                for (const bool b : near) sum[4] += weight * (b ? 0.0 : 1.0 / kSectors);
                 sum[5] += weight;
             }
             const std::size_t i = std::size_t(y) * base.width + std::size_t(x);

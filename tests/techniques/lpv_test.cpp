@@ -25,6 +25,7 @@ double spotProfile(double x, double z) { return x * x + (z - 0.4) * (z - 0.4) < 
 LWLpvDesc descOf(std::uint32_t size, std::uint32_t steps, double extent = 0.0, Vec centre = {}) {
     LWLpvDesc desc;
     lwDefaultLpv(&desc);
+    desc.geometryVolume = LW_GEOMETRY_VOLUME_OFF;
     desc.size = size;
     desc.steps = steps;
     desc.extent = float(extent);

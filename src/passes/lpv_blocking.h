@@ -1,0 +1,43 @@
+// What blocks light between the cells of a light propagation volume, made of surfels (kernels/lpv_blocking): the geometry volume of
+// Kaplanyan and Dachsbacher 2010.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "compute/buffer.h"
+#include "compute/executor.h"
+#include "inputs/surfel_set.h"
+#include "passes/lpv_propagation.h"
+
+namespace lightwell {
+
+// Surfels that one view has seen, `count` from `first` on: they add up. What several views have seen is merged.
+struct SurfelRange {
+    std::uint32_t first, count;
+};
+
+class LpvBlocking {
+public:
+    LpvBlocking(Device& device, std::uint32_t size);
+
+    // Passes "lpv_blocking.*". place: LpvGrid's. Made anew where the grid has moved or the surfels' revision is another.
+    void record(Executor& executor, const SurfelSet& surfels, const std::vector<SurfelRange>& views, const Buffer& place);
+    void forget() { isKept_ = false; }  // the next record() makes all anew, whatever the revision
+
+    LpvBlockers blockers() const { return {faces_, runs_}; }
+    const Buffer& state() const { return state_; }  // LwLpvBlockers
+    std::uint64_t bytes() const;
+    static std::uint64_t estimateBytes(std::uint32_t size);
+
+private:
+    void reserve(Executor& executor);
+
+    Device& device_;
+    std::uint32_t size_;
+    Kernel &begin_, &inject_, &merge_, &faceWays_, &markRuns_;
+    Buffer sums_, merged_, faces_, runs_, state_;
+    bool isKept_ = false;
+};
+
+}  // namespace lightwell

@@ -1,0 +1,54 @@
+// Technique lpv's geometry volume: what blocks, from which of the host's inputs.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "inputs/geometry_input.h"
+#include "inputs/rsm_input.h"
+#include "inputs/screen_surfels.h"
+#include "inputs/surfel_input.h"
+#include "passes/lpv_blocking.h"
+#include "passes/surfel_sampling.h"
+#include "techniques/technique.h"
+
+namespace lightwell {
+
+class LpvGeometry {
+public:
+    // Where a frame's blockers come from.
+    enum class Source { none, triangles, surfels, screen };
+
+    LpvGeometry(Device& device, const LWLpvDesc& desc);
+
+    // Throws what import() would say of this frame, whose RSMs are RsmInput's to check.
+    void check(const LWFrame& frame) const;
+    void import(Executor& executor, const LWFrame& frame, const RsmInput& rsms);
+    // After commands failed on the device: the next import() and record() do all anew.
+    void forget();
+    // What blocks in the grid that lies at `place`; none where the parameter is off.
+    std::optional<LpvBlockers> record(Executor& executor, const Buffer& place);
+
+    // What of the frame's geometry and views is used, and what is not.
+    std::vector<LWChoice> choices(const LWFrame& frame) const;
+    void report(Report& report) const;
+    std::uint64_t bytes() const;
+    static std::uint64_t estimateBytes(const LWLpvDesc& desc, const FrameShape& shape);
+
+private:
+    Source sourceOf(const LWFrame& frame) const;
+    void importScreen(Executor& executor, const LWFrame& frame, const RsmInput& rsms);
+
+    Device& device_;
+    LWLpvDesc desc_;
+    Source source_ = Source::none;
+    GeometryInput triangles_;
+    SurfelInput hostSurfels_;
+    ScreenSurfels screen_;
+    std::optional<SurfelSampling> sampling_;
+    std::optional<LpvBlocking> blocking_;
+    std::vector<SurfelRange> views_;  // of what the screen shows
+};
+
+}  // namespace lightwell
