@@ -81,11 +81,12 @@ public:
     }
 
     void update(Executor& executor, const LWFrame& frame) override {
-        const bool failed = device_.failures() != failures_;
+        const bool failed = device_.failures() != failures_ || isCut_;
         geometry_.check(frame);
         box_.look(frame.geometry);
         if (sweep_) sweep_->check(frame);
         rsms_.import(executor, frame);
+        isCut_ = true;
         if (failed) geometry_.forget();
         geometry_.import(executor, frame, rsms_);
         failures_ = device_.failures();
@@ -103,6 +104,7 @@ public:
             recordSweep(executor, frame);
         else
             recordSteps(executor, frame);
+        isCut_ = false;
         states_.purge();
         states_.each([](LpvView& state) { state.isRendered = false; });
     }
@@ -194,6 +196,7 @@ private:
     double calibration_;
     LpvGeometry geometry_;
     std::uint64_t failures_;  // that the device had seen when the last update began
+    bool isCut_ = false;      // the last update was not recorded to its end: what is kept from frame to frame may be half made
     GeometryBox box_;
     LpvPlacement placement_;
     RsmInput rsms_;

@@ -6,7 +6,8 @@
 namespace lightwell {
 namespace {
 
-// Surfels that triangles are drawn as, for each cell of a face of the grid: what covers a cell is then known to some percent. Fewer: walls of a cell's size leak; more: time, when triangles change.
+// Surfels that triangles are drawn as, for each cell of a face of the grid: what covers a cell is then known to some percent.
+// Fewer: walls of a cell's size leak; more: time, when triangles change.
 constexpr std::uint32_t kSurfelsPerSide = 256;
 // Of sampled surfels' areas, so that the chance of the draw leaves no holes in a wall. More: half covered cells are closed.
 constexpr float kSampledArea = 1.25f;
@@ -68,7 +69,8 @@ std::vector<LWChoice> LpvSweepVolume::choices(const LWFrame& frame, double side)
                      : source_ == Source::surfels ? "the host's surfels"
                                                   : "the texels of all RSMs: what no light sees blocks nothing"}};
     if (frame.sourceViewCount)
-        choices.push_back({"frame.sourceViews", "not used: they block nothing, and technique lpv takes light from RSMs and authored VPLs only"});
+        choices.push_back({"frame.sourceViews", "not used: they block nothing, and technique lpv takes light from RSMs and "
+                                                "authored VPLs only"});
     if (source_ == Source::none && desc_.bounces > 1)
         choices.push_back({"bounces", "one: without triangles and surfels there is nothing to send light on"});
     if (source_ == Source::none && frame.geometry && sourceOf(frame) == Source::triangles)

@@ -52,10 +52,11 @@ TEST_CASE("whichever OpenCL call of an lpv frame fails, it is told, and the next
     desc.size = 16;
     desc.steps = 4;
     desc.directions = 24;
-    const std::uint32_t frames = GENERATE(0u, 4u);
+    const std::uint32_t frames = GENERATE(0u, 1u, 4u);
     desc.transport = frames ? LW_LPV_TRANSPORT_SWEEP : LW_LPV_TRANSPORT_PROPAGATE;
     desc.frames = frames ? frames : 1;
     desc.bounces = 2;
+    desc.extent = 3.0f;
     Whole scene;
     // Faces down, or nothing would arrive.
     for (std::uint32_t y = 0; y < scene.position.height(); ++y)
@@ -66,6 +67,12 @@ TEST_CASE("whichever OpenCL call of an lpv frame fails, it is told, and the next
                 scene.normal.set(x, y, 0, -1, 0);
             }
     ApiRig rig(makeDevice(16, [](void*, LWLogLevel, const char*) {}), scene);
+    // Before the frame that fails the scene is another, so that all that is kept from frame to frame has to be made anew.
+    Whole before;
+    before.geometry.triangleCount = 1;
+    before.geometry.vertexCount = 3;
+    scene.geometry.version = 1;
+    scene.frame.reset = frames > 1 ? 1 : 0;  // or the picture is the last one's
     const auto create = [&] {
         lwReleaseTechnique(rig.technique);
         REQUIRE(lwCreateLpv(rig.device, &desc, &rig.technique) == LW_SUCCESS);
@@ -79,12 +86,12 @@ TEST_CASE("whichever OpenCL call of an lpv frame fails, it is told, and the next
     for (int call = 0; call < kMostCalls; ++call) {
         create();
         const bool again = call % 2 == 0;  // the fault in the second frame, or in the first
-        if (again) rig.frame(scene);
+        if (again) rig.frame(before);
         LWStatus updated, rendered, finished;
         bool happened;
         std::string function;
         {
-            const ClFault fault(call / 2 * 3, CL_OUT_OF_RESOURCES);  // some of many alike
+            const ClFault fault(call / 2 * 5, CL_OUT_OF_RESOURCES);  // some of many alike
             updated = lwUpdate(rig.technique, &scene.frame);
             rendered = lwRender(rig.technique, rig.view, &scene.gbuffer, &scene.output);
             finished = lwFinish(rig.device);
