@@ -11,6 +11,11 @@
 #define LW_SCREEN_NOISE 0.3f
 // log2(4/3): a disc to 2 r has 4/3 of the texels of the ring from r on. In halvings of samples, between whose losses it lies.
 #define LW_SCREEN_DISC_HALVINGS 0.415f
+// Outer radius, in texels that are asked, of the smallest ring whose light receivers tell: what the default radius has on 40 rows. Smaller:
+// hardly a texel's middle lies in it, and light that is there looks like none.
+#define LW_SCREEN_LEAST_RING 2.2f
+// Error of what nobody can tell: above any target. Its square is a number that float has.
+#define LW_SCREEN_UNTOLD 1e15f
 
 // 1 in lanes whose texel has one of its own surface among the 3 x 3 of a level `shift` steps coarser that it would take its light from.
 LW_FN mask has_coarse_texel(__global const float* coarse, int4 layout, int rows, const lw_edges e, lanei x, int y, int shift) {
@@ -87,6 +92,9 @@ LW_FN float probed_light(__global const float* probed, float* brightest) {
     return light;
 }
 
+// Whether the receivers tell the light of level k's ring, and of all that are larger. A disc's is that of all rings in it, so that the finest counts.
+LW_FN int is_told(LwScreenRings rings, int k) { return rings.outer2[k] >= squared(LW_SCREEN_LEAST_RING); }
+
 // Sums over receivers: squares of what is lost, by choice; of the level's share; and how much texels differ.
 typedef struct { float lost2[LW_SCREEN_CHOICES], share2, spread; } lw_level_sums;
 
@@ -129,4 +137,13 @@ __kernel void screen_plan_errors(__global const float* probed, LwScreenRings rin
     // Without a level its share of the hemisphere is gone, too, of which validity is made.
     const int none = LW_ERROR_AT(start, k, LW_ERROR_LOST) + LW_SCREEN_CHOICES - 1;
     if (k > start) errors[none] = fmax(errors[none], sqrt(sum.share2 * each));
+    // Where the most takes a ring whole, its light is not filtered; that of fewer samples is, and blurred by a filter that with so few texels is
+    // about as wide as the ring.
+    const int wholeAlready = patterns > 1 ? (k == 0 ? wholeDisc : wholeRing) & samples : 0;
+    for (int c = start > 0 && k == start ? 0 : 1; c < LW_SCREEN_CHOICES; ++c) {
+        const int count = c > LW_SCREEN_HALVINGS ? 0 : samples >> c, whole = (k == start ? wholeDisc : wholeRing) & count;
+        const int isBlurred = wholeAlready && count > 0 && !whole;
+        if (most > 0.0f && (isBlurred || !is_told(rings, k == start ? 0 : k)))
+            errors[LW_ERROR_AT(start, k, LW_ERROR_LOST) + c] = LW_SCREEN_UNTOLD;
+    }
 }

@@ -168,3 +168,42 @@ TEST_CASE("a linear ramp over a plane comes back as it was", "[joint_bilateral]"
     CHECK(checked > int(w - 5) * int(h - 5));
     CHECK(worst < kLinearTolerance);
 }
+
+TEST_CASE("five channels are three and two of one, and outputs that nobody wants are left out", "[joint_bilateral]") {
+    const auto width = GENERATE(1u, 16u);
+    const auto size = testSize(GENERATE(std::make_pair(1u, 2u), std::make_pair(77u, 1u), std::make_pair(33u, 7u)));
+    const std::uint32_t w = size.first, h = size.second, hw = JointBilateral::halved(w), hh = JointBilateral::halved(h);
+    CAPTURE(width, w, h);
+    KernelRig rig(width);
+    Image position(w, h), normal(w, h);
+    reference::fillCorner(position, normal);
+    const Half half = downsampleOn(rig, position, normal);
+    const Image light = reference::randomImage(hw, hh, 4), more = reference::randomImage(hw, hh, 5);
+    int fallbacks = 0;
+    const Image first = upsampleOn(rig, position, normal, half, light, fallbacks);
+    const Image second = upsampleOn(rig, position, normal, half, more, fallbacks);
+    std::vector<float> all = light.planes;
+    all.insert(all.end(), more.planes.begin(), more.planes.begin() + std::ptrdiff_t(2) * hw * hh);
+    const Guarded p = rig.uploadPlanes(position.planes, w, h, 3, kNaN), n = rig.uploadPlanes(normal.planes, w, h, 3, 1.0f);
+    const Guarded hp = rig.uploadPlanes(half.position.planes, hw, hh, 3, kNaN), hn = rig.uploadPlanes(half.normal.planes, hw, hh, 3, 1.0f);
+    const Guarded e = rig.uploadPlanes(all, hw, hh, 5, kNaN);
+    JointBilateral pass(rig.device(), 5);
+    for (const int wanted : {7, 1, 2, 4, 0}) {
+        const Guarded out = rig.makePlanes(w, h, 3), fourth = rig.makePlanes(w, h, 1), fifth = rig.makePlanes(w, h, 1);
+        const Guarded counts = rig.upload(std::vector<cl_int>{0, 0});
+        const Planes planes = rig.planes(out, w, h, 3), four = rig.planes(fourth, w, h, 1), five = rig.planes(fifth, w, h, 1);
+        pass.recordUpsampleAll(rig.executor(), rig.planes(p, w, h, 3), rig.planes(n, w, h, 3), rig.planes(hp, hw, hh, 3),
+                               rig.planes(hn, hw, hh, 3), rig.planes(e, hw, hh, 5), wanted & 1 ? planes : Planes{},
+                               wanted & 2 ? four : Planes{}, wanted & 4 ? five : Planes{}, counts);
+        rig.device().finish();
+        CAPTURE(wanted);
+        const std::size_t pixels = std::size_t(w) * h;
+        const auto part = [&](std::size_t plane) {
+            return std::vector<float>(second.planes.begin() + std::ptrdiff_t(plane * pixels), second.planes.begin() + std::ptrdiff_t((plane + 1) * pixels));
+        };
+        if (wanted & 1) CHECK(bitDifference(rig.downloadPlanes(planes), first.planes) == "");
+        if (wanted & 2) CHECK(bitDifference(rig.downloadPlanes(four), part(0)) == "");
+        if (wanted & 4) CHECK(bitDifference(rig.downloadPlanes(five), part(1)) == "");
+        CHECK(rig.download<cl_int>(counts)[1] == fallbacks);
+    }
+}

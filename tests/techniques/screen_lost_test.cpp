@@ -61,6 +61,7 @@ TEST_CASE("what failed frames did not bring to the device the next one does", "[
     lwDefaultScreenSpace(&screenSpace);
     ao.packing = 0;
     screenSpace.start = LW_START_FULL;
+    screenSpace.autoError = GENERATE(0.0f, 0.1f);
     horizon.history = ao.history = screenSpace.history = history;
     const void* desc = name == "horizon" ? static_cast<const void*>(&horizon) : name == "ao" ? static_cast<const void*>(&ao) : &screenSpace;
     LWTechnique failed = nullptr, fresh = nullptr;

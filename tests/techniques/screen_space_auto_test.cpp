@@ -92,6 +92,40 @@ TEST_CASE("the picture is within the target of that with the most samples", "[sc
     CHECK(last != Choice{std::uint64_t(start), 256, 5});
 }
 
+TEST_CASE("rings too small for the receivers to tell keep the most", "[screen_space_auto]") {
+    TestDevice device(16);
+    const LWStart start = GENERATE(LW_START_FULL, LW_START_HALF, LW_START_QUARTER);
+    Picture picture(kWidth, kHeight, 0.45, kEye, litPart(1.0));
+    for (const float radius : {1.0f, 2.0f, 4.0f, 8.0f}) {
+        LWScreenSpaceDesc desc = descOf(start, 6, 64, radius);
+        const Result full = render(device, desc, picture);
+        desc.autoError = 1e-6f;
+        const Result same = render(device, desc, picture);
+        CAPTURE(start, radius);
+        CHECK(same.irradiance == full.irradiance);
+        CHECK(same.validity == full.validity);
+    }
+}
+
+TEST_CASE("rings that the most takes whole are not blurred for the sake of fewer samples", "[screen_space_auto]") {
+    TestDevice device(16);
+    Picture picture(2 * kWidth, 2 * kHeight, 0.45, kEye, litPart(GENERATE(0.4, 1.0)));
+    TestView view(device, 2 * kWidth, 2 * kHeight);
+    const std::uint32_t samples = GENERATE(64u, 256u);
+    const LWStart start = GENERATE(LW_START_HALF, LW_START_QUARTER);
+    for (const float radius : {3.0f, 5.0f, 8.0f}) {
+        LWScreenSpaceDesc desc = descOf(start, 5, samples, radius);
+        const Result full = render(device, desc, picture);
+        for (const float error : {0.05f, 0.1f}) {
+            desc.autoError = error;
+            TestTechnique technique(device, "screen_space", &desc);
+            const double off = nrmse(render(technique, view, picture.gbuffer, device).irradiance, full.irradiance);
+            CAPTURE(samples, start, radius, error);
+            CHECK(off <= 1.5 * double(error));
+        }
+    }
+}
+
 TEST_CASE("a dark picture and an empty one take the least", "[screen_space_auto]") {
     TestDevice device(GENERATE(1u, 16u));
     const LWScreenSpaceDesc desc = autoDesc(0.1f);
