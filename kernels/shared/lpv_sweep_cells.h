@@ -13,13 +13,10 @@ LW_FN float sweep_split(float g, int size, int* lower) {
     return inside - (float)*lower;
 }
 
-// E of a surface of unit normal n from the cells about the point (x, y, z), in cells from the grid's corner:
-// E(n) = sum over axes of n_i^2 q(side that n_i faces), exact along the axes. Of each cell all six sides are loaded: a pixel
-// that picked its three would load longer.
-LW_FN float4 sweep_irradiance(__global const float16* cells, int size, float x, float y, float z, float nx, float ny, float nz) {
-    int ix, iy, iz;
-    const float fx = sweep_split(x - 0.5f, size, &ix), fy = sweep_split(y - 0.5f, size, &iy), fz = sweep_split(z - 0.5f, size, &iz);
-    __global const float16* corner = cells + 2 * ((iz * size + iy) * size + ix);
+// What the six sides of the eight cells from `corner` on, at the shares f of the upper ones, are to a surface: nx, ny, nz are the
+// squares of its normal's coordinates, of the positive (first) and the negative ones. In the fourth number: of how much is open. Of
+// each cell all six sides are loaded: a pixel that picked its three would load longer.
+LW_FN float4 sweep_sides(__global const float16* corner, int size, float fx, float fy, float fz, float2 nx, float2 ny, float2 nz) {
     float16 xy = (float16)(0.0f);
     float8 zz = (float8)(0.0f);
     _Pragma("unroll") for (int k = 0; k < 8; ++k) {
@@ -28,20 +25,34 @@ LW_FN float4 sweep_irradiance(__global const float16* cells, int size, float x, 
         xy += w * cell[0];
         zz += w * *(__global const float8*)(cell + 1);
     }
-    const float px = fmax(nx, 0.0f), py = fmax(ny, 0.0f), pz = fmax(nz, 0.0f), mx = fmin(nx, 0.0f), my = fmin(ny, 0.0f),
-                mz = fmin(nz, 0.0f);
-    const float4 sum = px * px * xy.s0123 + mx * mx * xy.s4567 + py * py * xy.s89ab + my * my * xy.scdef + pz * pz * zz.s0123 +
-                       mz * mz * zz.s4567;
-    return sum / sum.w;
+    return nx.x * xy.s0123 + nx.y * xy.s4567 + ny.x * xy.s89ab + ny.y * xy.scdef + nz.x * zz.s0123 + nz.y * zz.s4567;
 }
 
 // Light and readers are half a cell off their surfaces, which makes every distance a cell shorter. What light loses over one more
-// cell is what it lost over the last: E1 at half a cell, E2 at one and a half, E = E1 min(1, E1 / E2).
-LW_FN float4 sweep_read_twice(__global const float16* cells, int size, float x, float y, float z, float nx, float ny, float nz) {
-    const float4 e1 = sweep_irradiance(cells, size, x + 0.5f * nx, y + 0.5f * ny, z + 0.5f * nz, nx, ny, nz);
-    const float4 e2 = sweep_irradiance(cells, size, x + 1.5f * nx, y + 1.5f * ny, z + 1.5f * nz, nx, ny, nz);
+// cell is what it lost over the last: E1 at half a cell, E2 at one and a half, E = E1 min(1, E1 / E2). Of their sweep_sides.
+LW_FN float4 sweep_less(float4 near, float4 far) {
+    const float4 e1 = near / near.w, e2 = far / far.w;
     // Where e2 is not above e1 the quotient is not below 1, or 0 / 0.
     return e1 * select((float4)(1.0f), e1 / e2, e2 > e1);
+}
+
+LW_FN float2 sweep_squares(float n) {
+    const float2 parts = (float2)(fmax(n, 0.0f), fmin(n, 0.0f));
+    return parts * parts;
+}
+
+// E of a surface of unit normal n at (x, y, z), in cells from the grid's corner, read twice:
+// E(n) = sum over axes of n_i^2 q(side that n_i faces), exact along the axes.
+LW_FN float4 sweep_read_twice(__global const float16* cells, int size, float x, float y, float z, float nx, float ny, float nz) {
+    const float2 sx = sweep_squares(nx), sy = sweep_squares(ny), sz = sweep_squares(nz);
+    float4 light[2];
+    for (int i = 0; i < 2; ++i) {
+        int ix, iy, iz;
+        const float off = (float)i + 0.5f, fx = sweep_split(x + off * nx - 0.5f, size, &ix),
+                    fy = sweep_split(y + off * ny - 0.5f, size, &iy), fz = sweep_split(z + off * nz - 0.5f, size, &iz);
+        light[i] = sweep_sides(cells + 2 * ((iz * size + iy) * size + ix), size, fx, fy, fz, sx, sy, sz);
+    }
+    return sweep_less(light[0], light[1]);
 }
 
 #endif
