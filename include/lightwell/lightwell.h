@@ -597,6 +597,7 @@ typedef struct LWLpvDesc {
     uint32_t directions; /**< of sweeps: 24, 48, 96, 216, 384, 864, 1536 */
     uint32_t bounces;    /**< of sweeps: 1 .. 8, from the second on by what the triangles or surfels send on */
     uint32_t frames;     /**< that each bounce of a sweep is spread over: 1, 2, 4, 6, 8, 12, 24; the last result shows meanwhile */
+    LWResolution resolution; /**< HALF: light is read on every second pixel and row, then up-sampled; validity of every pixel */
 } LWLpvDesc;
 
 LW_API void lwDefaultLpv(LWLpvDesc* desc);

@@ -5,6 +5,13 @@
 #include "shared/surface.h"
 #include "shared/wide.h"
 
+// As sweep_split, of LW_WIDTH pixels.
+LW_FN real split(real g, int size, lanei* lower) {
+    const real inside = clamp(g, (real)0.0f, (real)(float)(size - 1));
+    *lower = min(to_lanei(inside), (lanei)(size - 2));
+    return inside - to_real(*lower);
+}
+
 // One work-item = LW_WIDTH pixels of a row. hasIrradiance, hasValidity: which are wanted; the other's arguments are not
 // touched. Validity is 1 where the grid has the surface, 0 elsewhere, where irradiance is 0 as well. counts[0]: pixels that are
 // neither surface nor background; counts[1]: whose light was brought down; counts[2]: surfaces that the grid does not have.
@@ -33,16 +40,34 @@ __kernel void lpv_sweep_gather(__global const float* position, int4 positionLayo
 
     // Pixel by pixel: one load takes all of a cell's side, where lanes of pixels would gather every number alone.
     const real none = (real)0.0f;
-    float p[3][LW_WIDTH], n[3][LW_WIDTH], light[LW_SWEEP_COLOURS][LW_WIDTH];
-    store(select_(none, gx, has), p[0], 0);
-    store(select_(none, gy, has), p[1], 0);
-    store(select_(none, gz, has), p[2], 0);
     // Any unit normal where there is none, so that nothing is divided by 0.
-    store(select_((real)1.0f, s.nx, has), n[0], 0);
-    store(select_(none, s.ny, has), n[1], 0);
-    store(select_(none, s.nz, has), n[2], 0);
+    const real p[3] = {select_(none, gx, has), select_(none, gy, has), select_(none, gz, has)},
+               n[3] = {select_((real)1.0f, s.nx, has), select_(none, s.ny, has), select_(none, s.nz, has)};
+    float weights[2][8][LW_WIDTH], plus[3][LW_WIDTH], minus[3][LW_WIDTH], light[LW_SWEEP_COLOURS][LW_WIDTH];
+    int corner[2][LW_WIDTH];
+    for (int i = 0; i < 2; ++i) {
+        const float above = (float)i + 0.5f;
+        real f[3];
+        lanei at = 0;
+        for (int axis = 2; axis >= 0; --axis) {
+            lanei lower;
+            f[axis] = split(p[axis] + above * n[axis] - 0.5f, size, &lower);
+            at = at * size + lower;
+        }
+        store(at * 2, corner[i], 0);
+#define SWEEP_KEEP(k, weight) store(weight, weights[i][k], 0)
+        SWEEP_WEIGH(real, SWEEP_KEEP, select_, f, n, above)
+#undef SWEEP_KEEP
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        store(sq(fmax(n[axis], none)), plus[axis], 0);
+        store(sq(fmin(n[axis], none)), minus[axis], 0);
+    }
     for (int l = 0; l < LW_WIDTH; ++l) {
-        const float4 e = sweep_read_twice(cells, size, p[0][l], p[1][l], p[2][l], n[0][l], n[1][l], n[2][l]);
+        const float2 nx = (float2)(plus[0][l], minus[0][l]), ny = (float2)(plus[1][l], minus[1][l]), nz = (float2)(plus[2][l], minus[2][l]);
+        const float4 near = sweep_sides(cells + corner[0][l], size, &weights[0][0][l], LW_WIDTH, nx, ny, nz),
+                     far = sweep_sides(cells + corner[1][l], size, &weights[1][0][l], LW_WIDTH, nx, ny, nz);
+        const float4 e = sweep_less(near, far);
         light[0][l] = e.x;
         light[1][l] = e.y;
         light[2][l] = e.z;

@@ -16,50 +16,73 @@ LW_FN float sweep_split(float g, int size, int* lower) {
     return inside - (float)*lower;
 }
 
-// E of a surface of unit normal n from the cells about the point (x, y, z), in cells from the grid's corner:
-// E(n) = sum over axes of n_i^2 q(side that n_i faces), exact along the axes. Of each cell all six sides are loaded: a pixel
-// that picked its three would load longer.
+// What the eight cells around a point count, numbered by x (1), y (2), z (4): shares f of the upper ones. n: the surface's unit normal;
+// above: how far the point is off the surface, in cells.
 //
-// above: how far the point is off its surface, in cells. Cells whose centres lie behind the surface do not count. Which of the
-// two cells at a sheet is closed depends on the side that its own normal faces; where that is the reader's, the open one lies
-// beyond the sheet, and the reader would get the other side's light.
-LW_FN float4 sweep_irradiance(__global const float16* cells, int size, float x, float y, float z, float nx, float ny, float nz,
-                              float above) {
-    int ix, iy, iz;
-    const float fx = sweep_split(x - 0.5f, size, &ix), fy = sweep_split(y - 0.5f, size, &iy), fz = sweep_split(z - 0.5f, size, &iz);
-    __global const float16* corner = cells + 2 * ((iz * size + iy) * size + ix);
+// Cells whose centres lie behind the surface do not count. Which of the two cells at a sheet is closed depends on the side that its
+// own normal faces; where that is the reader's, the open one lies beyond the sheet, and the reader would get the other side's light.
+// number, keep, choose: floats of one reader, or lanes of several.
+#define SWEEP_WEIGH(number, keep, choose, f, n, above)                                                                       \
+    {                                                                                                                        \
+        const number height_ = (above) - ((f)[0] * (n)[0] + (f)[1] * (n)[1] + (f)[2] * (n)[2]);                              \
+        _Pragma("unroll") for (int k = 0; k < 8; ++k) {                                                                      \
+            const number share_ = ((k & 1) ? (f)[0] : 1.0f - (f)[0]) * ((k & 2) ? (f)[1] : 1.0f - (f)[1]) *                  \
+                                  ((k & 4) ? (f)[2] : 1.0f - (f)[2]);                                                        \
+            const number at_ = height_ + (((k & 1) ? 1.0f : 0.0f) * (n)[0] + ((k & 2) ? 1.0f : 0.0f) * (n)[1] +              \
+                                          ((k & 4) ? 1.0f : 0.0f) * (n)[2]);                                                 \
+            keep(k, (above) < 1.5f ? choose((number)(0.0f), share_, at_ > SWEEP_LEAST_HEIGHT) : share_);                     \
+        }                                                                                                                    \
+    }
+// (From 1.5 cells above only a corner of next to no share can lie behind.)
+
+// What the six sides of the eight cells from `corner` on, at weights[k * stride], are to a surface: nx, ny, nz are the squares of
+// its normal's coordinates, of the positive (first) and the negative ones. In the fourth number: of how much is open. Of each cell
+// all six sides are loaded: a pixel that picked its three would load longer.
+LW_FN float4 sweep_sides(__global const float16* corner, int size, const float* weights, int stride, float2 nx, float2 ny, float2 nz) {
     float16 xy = (float16)(0.0f);
     float8 zz = (float8)(0.0f);
-    // Cells are numbered by x (1), y (2), z (4).
-    const int8 byX = (int8)(0, -1, 0, -1, 0, -1, 0, -1), byY = (int8)(0, 0, -1, -1, 0, 0, -1, -1),
-               byZ = (int8)(0, 0, 0, 0, -1, -1, -1, -1);
-    const float8 shares = select((float8)(1.0f - fx), (float8)(fx), byX) * select((float8)(1.0f - fy), (float8)(fy), byY) *
-                          select((float8)(1.0f - fz), (float8)(fz), byZ);
-    const float8 heights = (above - (fx * nx + fy * ny + fz * nz)) -
-                           (convert_float8(byX) * nx + convert_float8(byY) * ny + convert_float8(byZ) * nz);
-    float weights[8];
-    // From above 1.5 only a corner of next to no share can lie behind.
-    vstore8(above < 1.5f ? select((float8)(0.0f), shares, heights > SWEEP_LEAST_HEIGHT) : shares, 0, weights);
     _Pragma("unroll") for (int k = 0; k < 8; ++k) {
-        const float w = weights[k];
+        const float w = weights[k * stride];
         __global const float16* cell = corner + 2 * (((k & 1) ? 1 : 0) + ((k & 2) ? size : 0) + ((k & 4) ? size * size : 0));
         xy += w * cell[0];
         zz += w * *(__global const float8*)(cell + 1);
     }
-    const float px = fmax(nx, 0.0f), py = fmax(ny, 0.0f), pz = fmax(nz, 0.0f), mx = fmin(nx, 0.0f), my = fmin(ny, 0.0f),
-                mz = fmin(nz, 0.0f);
-    const float4 sum = px * px * xy.s0123 + mx * mx * xy.s4567 + py * py * xy.s89ab + my * my * xy.scdef + pz * pz * zz.s0123 +
-                       mz * mz * zz.s4567;
-    return sum / sum.w;
+    return nx.x * xy.s0123 + nx.y * xy.s4567 + ny.x * xy.s89ab + ny.y * xy.scdef + nz.x * zz.s0123 + nz.y * zz.s4567;
 }
 
 // Light and readers are half a cell off their surfaces, which makes every distance a cell shorter. What light loses over one more
-// cell is what it lost over the last: E1 at half a cell, E2 at one and a half, E = E1 min(1, E1 / E2).
-LW_FN float4 sweep_read_twice(__global const float16* cells, int size, float x, float y, float z, float nx, float ny, float nz) {
-    const float4 e1 = sweep_irradiance(cells, size, x + 0.5f * nx, y + 0.5f * ny, z + 0.5f * nz, nx, ny, nz, 0.5f);
-    const float4 e2 = sweep_irradiance(cells, size, x + 1.5f * nx, y + 1.5f * ny, z + 1.5f * nz, nx, ny, nz, 1.5f);
+// cell is what it lost over the last: E1 at half a cell, E2 at one and a half, E = E1 min(1, E1 / E2). Of their sweep_sides.
+LW_FN float4 sweep_less(float4 near, float4 far) {
+    const float4 e1 = near / near.w, e2 = far / far.w;
     // Where e2 is not above e1 the quotient is not below 1, or 0 / 0.
     return e1 * select((float4)(1.0f), e1 / e2, e2 > e1);
+}
+
+LW_FN float2 sweep_squares(float n) {
+    const float2 parts = (float2)(fmax(n, 0.0f), fmin(n, 0.0f));
+    return parts * parts;
+}
+
+// E of a surface of unit normal n at (x, y, z), in cells from the grid's corner, read twice:
+// E(n) = sum over axes of n_i^2 q(side that n_i faces), exact along the axes.
+LW_FN float4 sweep_read_twice(__global const float16* cells, int size, float x, float y, float z, float nx, float ny, float nz) {
+    const float2 sx = sweep_squares(nx), sy = sweep_squares(ny), sz = sweep_squares(nz);
+    const float n[3] = {nx, ny, nz};
+    float4 light[2];
+    for (int i = 0; i < 2; ++i) {
+        int ix, iy, iz;
+        const float above = (float)i + 0.5f;
+        const float f[3] = {sweep_split(x + above * nx - 0.5f, size, &ix), sweep_split(y + above * ny - 0.5f, size, &iy),
+                            sweep_split(z + above * nz - 0.5f, size, &iz)};
+        float weights[8];
+#define SWEEP_KEEP(k, weight) weights[k] = (weight)
+#define SWEEP_CHOOSE(otherwise, value, condition) ((condition) ? (value) : (otherwise))
+        SWEEP_WEIGH(float, SWEEP_KEEP, SWEEP_CHOOSE, f, n, above)
+#undef SWEEP_KEEP
+#undef SWEEP_CHOOSE
+        light[i] = sweep_sides(cells + 2 * ((iz * size + iy) * size + ix), size, weights, 1, sx, sy, sz);
+    }
+    return sweep_less(light[0], light[1]);
 }
 
 #endif

@@ -5,9 +5,7 @@
 #include <optional>
 
 #include "compute/device.h"
-#include "inputs/gbuffer_input.h"
 #include "inputs/geometry_box.h"
-#include "inputs/output_target.h"
 #include "inputs/rsm_input.h"
 #include "passes/lpv_grid.h"
 #include "passes/lpv_propagation.h"
@@ -15,6 +13,7 @@
 #include "techniques/lpv_geometry.h"
 #include "techniques/lpv_parameters.h"
 #include "techniques/lpv_sweep_volume.h"
+#include "techniques/lpv_view.h"
 #include "techniques/prewarm.h"
 #include "techniques/technique_entry.h"
 
@@ -24,8 +23,7 @@ namespace {
 // Light crosses a cell in a step at best (Kaplanyan and Dachsbacher 2010 take as many as the grid is long, twice over).
 std::uint32_t stepsOf(const LWLpvDesc& desc) { return desc.steps ? desc.steps : 2 * desc.size; }
 
-constexpr std::size_t kCountBytes = LpvRead::kCounts * sizeof(cl_int);
-
+bool isHalf(const LWLpvDesc& desc) { return desc.resolution == LW_RESOLUTION_HALF; }
 
 bool sweeps(const LWLpvDesc& desc) { return desc.transport == LW_LPV_TRANSPORT_SWEEP; }
 
@@ -59,13 +57,6 @@ struct Volume {
     LpvRead read;
 };
 
-struct LpvView {
-    GBufferInput gbuffer;
-    OutputTarget irradiance, validity;
-    Buffer counts;
-    bool isRendered = false;
-};
-
 class LpvTechnique final : public Technique {
 public:
     LpvTechnique(Device& device, const LWLpvDesc& desc)
@@ -76,6 +67,7 @@ public:
           failures_(device.failures()) {
         volume_.emplace(device, desc.size);
         if (sweeps(desc)) sweep_.emplace(device, desc);
+        if (isHalf(desc)) bilateral_.emplace(device);
         for (int a = 0; a < 3; ++a) placement_.centre[a] = desc.center[a];
         placement_.extent = desc.extent;
     }
@@ -106,26 +98,21 @@ public:
             recordSteps(executor, frame);
         isCut_ = false;
         states_.purge();
-        states_.each([](LpvView& state) { state.isRendered = false; });
+        states_.each([](LpvView& state) { state.startFrame(); });
     }
 
     void render(Executor& executor, const std::shared_ptr<View>& view, const LWGBuffer& gbuffer, const LWOutput& output) override {
         checkLightOutputs(device_, *view, output, "lpv");
-        LpvView& state = states_.get(view, [] { return std::make_unique<LpvView>(); });
-        state.gbuffer.import(executor, *view, gbuffer, 0, "gbuffer");
-        state.counts.reserve(device_, kCountBytes, "counts of a view");
-        executor.fill("lpv_read.counts", state.counts, 0, 0, kCountBytes);
-        const Planes irradiance = state.irradiance.begin(executor, *view, output.irradiance, 3, "output.irradiance");
-        const Planes validity = state.validity.begin(executor, *view, output.validity, 1, "output.validity");
-        if (sweep_)
-            sweep_->sweep().recordGather(executor, state.gbuffer.position, state.gbuffer.normal, irradiance, validity,
-                                         state.counts);
-        else
-            volume_->read.recordGather(executor, state.gbuffer.position, state.gbuffer.normal, volume_->grid.place(), calibration_,
-                                       desc_.damping != 0, irradiance, validity, state.counts);
-        state.irradiance.end(executor);
-        state.validity.end(executor);
-        state.isRendered = true;
+        LpvView& state = states_.get(view, [&] { return std::make_unique<LpvView>(device_, *view, isHalf(desc_)); });
+        const auto gather = [&](const Planes& position, const Planes& normal, const Planes& irradiance, const Planes& validity,
+                                const Buffer& counts) {
+            if (sweep_)
+                sweep_->sweep().recordGather(executor, position, normal, irradiance, validity, counts);
+            else
+                volume_->read.recordGather(executor, position, normal, volume_->grid.place(), calibration_, desc_.damping != 0,
+                                           irradiance, validity, counts);
+        };
+        state.render(executor, *view, gbuffer, output, bilateral_ ? &*bilateral_ : nullptr, gather);
     }
 
     void prewarm(Executor& executor, const std::shared_ptr<View>&) override {
@@ -202,6 +189,7 @@ private:
     RsmInput rsms_;
     std::optional<Volume> volume_;
     std::optional<LpvSweepVolume> sweep_;  // with transport=sweep; of `volume_` only the grid's place is used then
+    std::optional<JointBilateral> bilateral_;  // with resolution=half
     const Buffer* propagated_ = nullptr;
     PerView<LpvView> states_;
     std::vector<LWChoice> choices_;  // of the last update
@@ -216,19 +204,11 @@ Report LpvTechnique::report() {
         sweep_->report(report);
     else
         report.counts.push_back({"steps", stepsOf(desc_)});
-    for (const char* name : {"lights_outside", "rejected_pixels", "saturated_pixels", "pixels_outside"})
-        report.counts.push_back({name, 0});
+    report.counts.push_back({"lights_outside", 0});
+    LpvView::startReport(report);
     if (sweep_ && sweep_->sweep().outside()) report.read(device_, "lights_outside", sweep_->sweep().outside(), 0);
     if (propagated_) report.read(device_, "lights_outside", volume_->grid.state(), LW_LPV_OUTSIDE * sizeof(cl_uint));
-    states_.each([&](const LpvView& state) {
-        if (!state.isRendered) return;
-        state.gbuffer.report(report);
-        state.irradiance.report(report);
-        state.validity.report(report);
-        report.read(device_, "rejected_pixels", state.counts, 0);
-        report.read(device_, "saturated_pixels", state.counts, sizeof(cl_int));
-        report.read(device_, "pixels_outside", state.counts, 2 * sizeof(cl_int));
-    });
+    states_.each([&](const LpvView& state) { state.report(device_, report); });
     return report;
 }
 
@@ -240,18 +220,13 @@ std::vector<DebugView> LpvTechnique::debugViews(const View* view) {
         views.push_back({"propagated", "the same after all steps, with what was injected",
                          LpvPropagation::debugPlanes(*propagated_, desc_.size), {}});
     }
-    if (const LpvView* state = states_.find(view); state && state->isRendered) {
-        views.push_back({"position", "world position (m)", state->gbuffer.position, {}});
-        views.push_back({"normal", "world normal as the host gave it", state->gbuffer.normal, {}});
-    }
+    if (const LpvView* state = states_.find(view)) state->addDebugViews(views);
     return views;
 }
 
 std::uint64_t LpvTechnique::bytes() const {
     std::uint64_t total = rsms_.bytes() + geometry_.bytes() + volume_->bytes() + (sweep_ ? sweep_->bytes() : 0);
-    states_.each([&](const LpvView& state) {
-        total += state.gbuffer.bytes() + state.irradiance.bytes() + state.validity.bytes() + state.counts.bytes();
-    });
+    states_.each([&](const LpvView& state) { total += state.bytes(); });
     return total;
 }
 
@@ -265,9 +240,7 @@ std::uint64_t estimateBytes(const void* desc, const LWViewDesc& view, const Fram
     else
         volume = LpvGrid::estimateBytes(lpv.size, shape.vplCount) + LpvPropagation::estimateBytes(lpv.size, stepsOf(lpv)) +
                  LpvRead::estimateBytes(lpv.size) + LpvGeometry::estimateBytes(lpv, shape);
-    return RsmInput::estimateBytes(shape) + volume +
-           GBufferInput::estimateBytes(view, 0, shape.uploads) + OutputTarget::estimateBytes(view, 3, shape.uploads) +
-           OutputTarget::estimateBytes(view, 1, shape.uploads) + kCountBytes;
+    return RsmInput::estimateBytes(shape) + volume + LpvView::estimateBytes(view, isHalf(lpv), shape.uploads);
 }
 
 }  // namespace

@@ -15,6 +15,8 @@ constexpr const char* kVolumeNames[] = {"off", "auto", "triangles", "surfels", "
 constexpr const char* kTransports[] = {"propagate", "sweep", nullptr};
 constexpr double kDirectionValues[] = {24, 48, 96, 216, 384, 864, 1536};
 constexpr double kFrameValues[] = {1, 2, 4, 6, 8, 12, 24};
+constexpr const char* kResolutionNames[] = {"full", "half", nullptr};
+constexpr double kResolutionSweep[] = {LW_RESOLUTION_FULL, LW_RESOLUTION_HALF};
 
 LWParameter centre(const char* name, std::size_t axis) {
     return parameter(name, "of the grid; with an extent only", LW_PARAMETER_FLOAT,
@@ -64,7 +66,11 @@ const std::vector<LWParameter>& lpvParameters() {
         allowing(parameter("frames",
                            "that the directions of a bounce's sweep are spread over: less time a frame, and light as many frames late",
                            LW_PARAMETER_UINT, offsetof(LWLpvDesc, frames), 1, 24, 1),
-                 kFrameValues)};
+                 kFrameValues),
+        swept(choosing(parameter("resolution", "pixels that light is read at; half: every second column and row, up-sampled after",
+                                 LW_PARAMETER_ENUM, offsetof(LWLpvDesc, resolution), 0, 1, LW_RESOLUTION_FULL),
+                       kResolutionNames),
+              kResolutionSweep)};
     return table;
 }
 
@@ -85,4 +91,5 @@ extern "C" void lwDefaultLpv(LWLpvDesc* desc) {
     desc->transport = LW_LPV_TRANSPORT_PROPAGATE;
     desc->directions = 384;
     desc->bounces = desc->frames = 1;
+    desc->resolution = LW_RESOLUTION_FULL;
 }
