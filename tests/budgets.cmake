@@ -17,11 +17,13 @@ foreach(suite IN LISTS suites)
   set_tests_properties(${suite} PROPERTIES TIMEOUT ${limit})
 endforeach()
 
-# CTest runs two suites at once, of which one at most computes on the device under test: kernels use all cores there, and
-# seconds should mean something. Suites of the simulator and of other drivers, of packages and documents run beside it.
+# CTest runs two suites at once, of which one at most computes on the device under test, and one at most in a simulator or another
+# driver: either uses all cores, and seconds should mean something. Suites of packages and documents run beside them.
 foreach(suite IN LISTS suites)
   get_test_property(${suite} LABELS labels)
-  if(NOT "${labels}" MATCHES "oclgrind|rusticl" AND NOT suite MATCHES "^(docs|reference_docs|symbols|package|charts|stability_charts|shipped_scenes)_test$")
+  if("${labels}" MATCHES "oclgrind|rusticl")
+    set_tests_properties(${suite} PROPERTIES RESOURCE_LOCK simulator)
+  elseif(NOT suite MATCHES "^(docs|reference_docs|symbols|package|charts|stability_charts|shipped_scenes)_test$")
     set_tests_properties(${suite} PROPERTIES RESOURCE_LOCK device)
   endif()
 endforeach()

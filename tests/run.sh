@@ -82,7 +82,7 @@ step build cmake --build "$build" --parallel "$(nproc)" || stop
 # --- test -------------------------------------------------------------------------------------------
 lightwell_say "device: $LIGHTWELL_DEVICE; testing"
 results=$log/ctest.txt
-# Two suites at once, of which one at most computes on the device (tests/budgets.cmake).
+# Two suites at once, of which one at most computes on the device, and one in the simulator (tests/budgets.cmake).
 (cd "$build" && ctest --parallel 2 --output-on-failure --no-label-summary --no-tests=error "$@" </dev/null 2>&1) | tee "$results"
 ctest_status=${PIPESTATUS[0]}
 
