@@ -53,23 +53,11 @@ LWFrame frameOf(const std::vector<LWLight>& lights, const LWGeometry* geometry) 
     return frame;
 }
 
-std::vector<float> render(TestTechnique& technique, LWDevice device, const TestView& view, const LWGBuffer& gbuffer) {
-    PlanarPixels irradiance(view.width(), view.height(), 3);
-    LWOutput output{};
-    output.structSize = sizeof output;
-    output.irradiance = irradiance.image();
-    const LWStatus status = lwRender(technique, view, &gbuffer, &output);
-    INFO(lastError(device));
-    REQUIRE(status == LW_SUCCESS);
-    REQUIRE(lwFinish(device) == LW_SUCCESS);
-    return irradiance.packed();
-}
-
 std::vector<float> render(LWDevice device, const LWLpvDesc& desc, const LWFrame& frame, const WallAndCeiling& scene) {
     TestTechnique technique(device, "lpv", &desc);
     TestView view(device, kWidth, kHeight);
     technique.update(frame);
-    return render(technique, device, view, scene.gbuffer);
+    return technique.render(view, scene.gbuffer);
 }
 
 }  // namespace
@@ -117,14 +105,14 @@ TEST_CASE("sweeps: same input, same bits, over runs, widths and frames that shar
     technique.update(frameOf({}, &room.geometry));
     technique.update(frameOf(lights, &room.geometry));
     for (int frame = 1; frame < 8; ++frame) {
-        CHECK(meanOf(render(technique, wide, view, scene.gbuffer)) == 0.0);
+        CHECK(meanOf(technique.render(view, scene.gbuffer)) == 0.0);
         technique.update(frameOf(lights, &room.geometry));
     }
-    CHECK(render(technique, wide, view, scene.gbuffer) == first);
+    CHECK(technique.render(view, scene.gbuffer) == first);
     LWFrame cut = frameOf({}, &room.geometry);
     cut.reset = 1;
     technique.update(cut);
-    CHECK(meanOf(render(technique, wide, view, scene.gbuffer)) == 0.0);
+    CHECK(meanOf(technique.render(view, scene.gbuffer)) == 0.0);
 }
 
 TEST_CASE("sweeps compile nothing after lwPrewarm, and take the memory that was estimated", "[lpv]") {
@@ -141,7 +129,7 @@ TEST_CASE("sweeps compile nothing after lwPrewarm, and take the memory that was 
     const LWDeviceInfo before = device.info();
     const std::vector<LWLight> lights = {floor.light};
     technique.update(frameOf(lights, &room.geometry));
-    render(technique, device, view, scene.gbuffer);
+    technique.render(view, scene.gbuffer);
     LWViewDesc size{};
     size.structSize = sizeof size;
     size.maxWidth = kWidth;
@@ -152,7 +140,7 @@ TEST_CASE("sweeps compile nothing after lwPrewarm, and take the memory that was 
     CHECK(technique.stats().deviceBytes <= estimate);
     CHECK(technique.stats().deviceBytes > estimate / 2);
     technique.update(frameOf(lights, nullptr));
-    render(technique, device, view, scene.gbuffer);
+    technique.render(view, scene.gbuffer);
     CHECK(device.info().programsBuilt == before.programsBuilt);
     CHECK(device.info().kernelsSpecialised == before.kernelsSpecialised);
 }
