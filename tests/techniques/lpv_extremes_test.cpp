@@ -3,7 +3,7 @@
 #include <cmath>
 #include <string>
 
-#include "support/lit_room.h"
+#include "support/lpv_room.h"
 #include "support/packed_light.h"
 #include "support/scoped_api.h"
 
@@ -25,27 +25,6 @@ LWLpvDesc descOf(LWLpvTransport transport, std::uint32_t bounces = 1) {
     desc.bounces = bounces;
     return desc;
 }
-
-// Floor, back wall and ceiling of the room, as the host's triangles. turned: the other way round.
-struct Room {
-    std::vector<float> vertices;
-    LWGeometry geometry{};
-    explicit Room(double scale = 1.0, bool turned = false) {
-        quad({-0.5, 0, 0}, {0, 0, 1}, {1, 0, 0}, scale, turned);
-        quad({-0.5, 0, 0}, {1, 0, 0}, {0, 1, 0}, scale, turned);
-        quad({-0.5, 1, 0}, {1, 0, 0}, {0, 0, 1}, scale, turned);
-        geometry.structSize = sizeof geometry;
-        geometry.vertices = vertices.data();
-        geometry.vertexCount = std::uint32_t(vertices.size() / 3);
-        geometry.triangleCount = geometry.vertexCount / 3;
-    }
-    Room(const Room&) = delete;
-    void quad(Vec p, Vec u, Vec v, double scale, bool turned) {
-        if (turned) std::swap(u, v);
-        for (const Vec corner : {p, p + u, p + u + v, p, p + u + v, p + v})
-            for (const double x : {corner.x, corner.y, corner.z}) vertices.push_back(float(x * scale));
-    }
-};
 
 LWFrame frameOf(const std::vector<LWLight>& lights, const LWGeometry* geometry, const std::vector<LWVpl>& vpls = {}) {
     LWFrame frame{};
@@ -73,7 +52,7 @@ TEST_CASE("neither the unit of length nor that of light changes more than roundi
     const auto at = [&](double scale, double exitance) {
         LitFloor floor(48, [&](double, double) { return exitance; }, scale);
         WallAndCeiling scene(kWidth, kHeight, scale);
-        const Room room(scale);
+        const RoomTriangles room(1.0, scale);
         const std::vector<LWLight> lights = {floor.light};
         TestTechnique technique(device, "lpv", &desc);
         TestView view(device, kWidth, kHeight);
@@ -96,7 +75,7 @@ TEST_CASE("light that is beyond float's range is brought down, and counted", "[l
     const LWLpvDesc desc = descOf(GENERATE(LW_LPV_TRANSPORT_PROPAGATE, LW_LPV_TRANSPORT_SWEEP), 2);
     const double scale = 1e-3;
     WallAndCeiling scene(kWidth, kHeight, scale);
-    const Room room(scale);
+    const RoomTriangles room(1.0, scale);
     std::vector<LWVpl> vpls(70000);
     for (std::size_t i = 0; i < vpls.size(); ++i) {
         vpls[i].position[0] = float(scale * (double(i % 100) / 100 - 0.5));
@@ -122,7 +101,7 @@ TEST_CASE("sweeps: triangles may face either way", "[lpv]") {
     LitFloor floor(96, evenProfile);
     WallAndCeiling scene(kWidth, kHeight);
     const std::vector<LWLight> lights = {floor.light};
-    const Room room(1.0, GENERATE(false, true));
+    const RoomTriangles room(1.0, 1.0, GENERATE(false, true));
     LWLpvDesc desc = descOf(LW_LPV_TRANSPORT_SWEEP);
     desc.size = 32;
     desc.directions = 384;
@@ -130,15 +109,7 @@ TEST_CASE("sweeps: triangles may face either way", "[lpv]") {
     TestView view(device, kWidth, kHeight);
     technique.update(frameOf(lights, &room.geometry));
     const auto light = technique.render(view, scene.gbuffer);
-    double squared = 0.0, truths = 0.0;
-    for (std::uint32_t y = kHeight / 2; y < kHeight; ++y)
-        for (std::uint32_t x = 1; x < kWidth; ++x) {
-            const double truth = polygonIrradiance({{-0.5, 0, 0}, {-0.5, 0, 1}, {0.5, 0, 1}, {0.5, 0, 0}}, scene.position.get(x, y),
-                                                   {0, -1, 0}, 1.0);
-            squared += std::pow(double(light[y * kWidth + x]) - truth, 2.0);
-            truths += truth * truth;
-        }
-    CHECK(std::sqrt(squared / truths) < 0.05);
+    CHECK(ceilingError(light, scene, kWidth, kHeight) < 0.05);
 }
 
 TEST_CASE("sweeps: triangles without area are not what blocks, and the stats say so", "[lpv]") {
@@ -155,7 +126,7 @@ TEST_CASE("sweeps: triangles without area are not what blocks, and the stats say
     geometry.triangleCount = 1;
     const LWLpvDesc desc = descOf(LW_LPV_TRANSPORT_SWEEP, 2);
     TestTechnique technique(device, "lpv", &desc);
-    const Room room;
+    const RoomTriangles room(1.0);
     technique.update(frameOf(lights, &room.geometry));
     CHECK(choiceOf(technique, "blockers").find("triangles") == 0);
     CHECK(choiceOf(technique, "frame.geometry") == "");
@@ -173,7 +144,7 @@ TEST_CASE("the grid is fitted to triangles, not to vertices that none of them ha
     const std::vector<LWLight> lights = {floor.light};
     TestView view(device, kWidth, kHeight);
     const LWLpvDesc desc = descOf(GENERATE(LW_LPV_TRANSPORT_PROPAGATE, LW_LPV_TRANSPORT_SWEEP));
-    const Room room;
+    const RoomTriangles room(1.0);
     std::vector<float> shared = {1000, 1000, 1000};
     shared.insert(shared.end(), room.vertices.begin(), room.vertices.end());
     std::vector<std::uint32_t> indices;
@@ -210,7 +181,7 @@ TEST_CASE("sweeps: the stats say when triangles are too many for the surfels tha
     desc.center[1] = desc.center[2] = 0.5f;
     // Floor, wall and ceiling of area 1, and far from the grid a wall of so much.
     for (const double area : {40.0, 60.0}) {
-        Room room;
+        RoomTriangles room(1.0);
         room.quad({1000, 0, 0}, {std::sqrt(area), 0, 0}, {0, std::sqrt(area), 0}, 1.0, false);
         room.geometry.vertices = room.vertices.data();
         room.geometry.vertexCount = std::uint32_t(room.vertices.size() / 3);
@@ -282,7 +253,7 @@ TEST_CASE("frames of nothing, of one point, and grids of any extent: light is fi
     TestView view(device, kWidth, kHeight);
     LitFloor dark(16, [](double, double) { return 0.0; });
     const std::vector<LWLight> unlit = {dark.light};
-    const Room room;
+    const RoomTriangles room(1.0);
     const LWLpvTransport transport = GENERATE(LW_LPV_TRANSPORT_PROPAGATE, LW_LPV_TRANSPORT_SWEEP);
     const auto check = [&](TestTechnique& technique, const LWFrame& frame, bool isLit) {
         technique.update(frame);

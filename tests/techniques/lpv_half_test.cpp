@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "support/lit_room.h"
+#include "support/lpv_room.h"
 #include "support/packed_light.h"
 #include "support/scoped_api.h"
 
@@ -31,23 +31,6 @@ LWLpvDesc descOf(LWLpvTransport transport, std::uint32_t size, LWResolution reso
     desc.resolution = resolution;
     return desc;
 }
-
-// The unit room's floor, back wall and ceiling, so that its box is the room's.
-struct Room {
-    std::vector<float> vertices;
-    LWGeometry geometry{};
-    Room() {
-        for (const auto& [p, u, v] : {std::array<Vec, 3>{{{-0.5, 0, 0}, {0, 0, 1}, {1, 0, 0}}},
-                                      std::array<Vec, 3>{{{-0.5, 0, 0}, {1, 0, 0}, {0, 1, 0}}},
-                                      std::array<Vec, 3>{{{-0.5, 1, 0}, {1, 0, 0}, {0, 0, 1}}}})
-            for (const Vec corner : {p, p + u, p + u + v, p, p + u + v, p + v})
-                for (const double x : {corner.x, corner.y, corner.z}) vertices.push_back(float(x));
-        geometry.structSize = sizeof geometry;
-        geometry.vertices = vertices.data();
-        geometry.vertexCount = std::uint32_t(vertices.size() / 3);
-        geometry.triangleCount = geometry.vertexCount / 3;
-    }
-};
 
 LWFrame frameOf(const std::vector<LWLight>& lights, const LWGeometry* geometry = nullptr) {
     LWFrame frame{};
@@ -127,28 +110,20 @@ TEST_CASE("a sweep read at half resolution lights the ceiling as a polygon does"
     LitFloor floor(96, evenProfile);
     WallAndCeiling scene(kWidth, 3 * kHeight);
     const std::vector<LWLight> lights = {floor.light};
-    const Room room;
+    const RoomTriangles room(1.0);
     const LWLpvDesc desc = descOf(LW_LPV_TRANSPORT_SWEEP, 32);
     TestTechnique technique(device, "lpv", &desc);
     TestView view(device, kWidth, 3 * kHeight);
     technique.update(frameOf(lights, &room.geometry));
     const std::vector<float> light = render(technique, device, view, scene.gbuffer).irradiance;
-    double squared = 0.0, truths = 0.0;
-    for (std::uint32_t y = 3 * kHeight / 2; y < 3 * kHeight; ++y)
-        for (std::uint32_t x = 1; x < kWidth; ++x) {
-            const double truth = polygonIrradiance({{-0.5, 0, 0}, {-0.5, 0, 1}, {0.5, 0, 1}, {0.5, 0, 0}}, scene.position.get(x, y),
-                                                   {0, -1, 0}, 1.0);
-            squared += std::pow(double(light[y * kWidth + x]) - truth, 2.0);
-            truths += truth * truth;
-        }
-    CHECK(std::sqrt(squared / truths) < 0.05);
+    CHECK(ceilingError(light, scene, kWidth, 3 * kHeight) < 0.05);
 }
 
 TEST_CASE("half resolution: any size of picture, the same bits at both widths, validity of every pixel", "[lpv]") {
     const auto transport = GENERATE(LW_LPV_TRANSPORT_PROPAGATE, LW_LPV_TRANSPORT_SWEEP);
     TestDevice wide(16), scalar(1);
     LitFloor floor(32, evenProfile);
-    const Room room;
+    const RoomTriangles room(1.0);
     const std::vector<LWLight> lights = {floor.light};
     const LWLpvDesc half = descOf(transport, 16), full = descOf(transport, 16, LW_RESOLUTION_FULL);
     TestTechnique halved(wide, "lpv", &half), whole(wide, "lpv", &full), narrow(scalar, "lpv", &half);
@@ -222,7 +197,7 @@ TEST_CASE("half resolution: nothing is compiled after lwPrewarm, memory is as es
     TestDevice device(16);
     LitFloor floor(32, evenProfile);
     WallAndCeiling scene(kWidth, kHeight - 1);
-    const Room room;
+    const RoomTriangles room(1.0);
     const auto transport = GENERATE(LW_LPV_TRANSPORT_PROPAGATE, LW_LPV_TRANSPORT_SWEEP);
     const auto resolution = GENERATE(LW_RESOLUTION_FULL, LW_RESOLUTION_HALF);
     const LWLpvDesc desc = descOf(transport, 16, resolution);
