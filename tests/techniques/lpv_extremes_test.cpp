@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "support/choices.h"
 #include "support/lpv_room.h"
 #include "support/packed_light.h"
 #include "support/scoped_api.h"
@@ -35,13 +36,6 @@ LWFrame frameOf(const std::vector<LWLight>& lights, const LWGeometry* geometry, 
     frame.vplCount = std::uint32_t(vpls.size());
     frame.geometry = geometry;
     return frame;
-}
-
-std::string choiceOf(TestTechnique& technique, const std::string& name) {
-    const LWStats stats = technique.stats();
-    for (std::uint32_t i = 0; i < stats.choiceCount; ++i)
-        if (name == stats.choices[i].name) return stats.choices[i].reason;
-    return "";
 }
 
 }  // namespace
@@ -128,13 +122,13 @@ TEST_CASE("sweeps: triangles without area are not what blocks, and the stats say
     TestTechnique technique(device, "lpv", &desc);
     const RoomTriangles room(1.0);
     technique.update(frameOf(lights, &room.geometry));
-    CHECK(choiceOf(technique, "blockers").find("triangles") == 0);
-    CHECK(choiceOf(technique, "frame.geometry") == "");
+    CHECK(reasonOf(technique, "blockers").find("triangles") == 0);
+    CHECK(reasonOf(technique, "frame.geometry") == "");
     technique.update(frameOf(lights, &geometry));
     CHECK(meanOf(technique.render(view, scene.gbuffer)) > 0.01);
-    CHECK(choiceOf(technique, "blockers").find("the texels of all RSMs") == 0);
-    CHECK(choiceOf(technique, "bounces").find("one") == 0);
-    CHECK(choiceOf(technique, "frame.geometry").find("no triangle has an area") != std::string::npos);
+    CHECK(reasonOf(technique, "blockers").find("the texels of all RSMs") == 0);
+    CHECK(reasonOf(technique, "bounces").find("one") == 0);
+    CHECK(reasonOf(technique, "frame.geometry").find("no triangle has an area") != std::string::npos);
 }
 
 TEST_CASE("the grid is fitted to triangles, not to vertices that none of them has", "[lpv]") {
@@ -189,7 +183,7 @@ TEST_CASE("sweeps: the stats say when triangles are too many for the surfels tha
         TestTechnique technique(device, "lpv", &desc);
         technique.update(frameOf(lights, &room.geometry));
         CAPTURE(area);
-        CHECK((choiceOf(technique, "blockers.holes") != "") == (area + 3.0 > 40.0 * 1.125 * 1.125));
+        CHECK((reasonOf(technique, "blockers.holes") != "") == (area + 3.0 > 40.0 * 1.125 * 1.125));
     }
 }
 
@@ -229,7 +223,7 @@ TEST_CASE("sweeps: the host's surfels and VPLs alone need nothing that lwPrewarm
     const LWFrame frame = frameOf({}, &geometry, vpls);
     placed.update(frame);
     const double shadowed = meanOf(placed.render(view, scene.gbuffer));
-    CHECK(choiceOf(placed, "blockers") == "the host's surfels");
+    CHECK(reasonOf(placed, "blockers") == "the host's surfels");
     CHECK(placed.count("surfels") == kCount);
     CHECK(shadowed < 0.5 * open);
     technique.update(frame);

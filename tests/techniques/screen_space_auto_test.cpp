@@ -6,6 +6,7 @@
 #include <string>
 
 #include "shared/screen_plan_types.h"
+#include "support/choices.h"
 #include "support/corner_picture.h"
 
 using namespace lightwell::test;
@@ -40,13 +41,6 @@ double nrmse(const std::vector<float>& a, const std::vector<float>& b) {
 using Choice = std::array<std::uint64_t, 3>;
 Choice choiceOf(TestTechnique& technique) {
     return {technique.count("start_used"), technique.count("samples_used"), technique.count("levels_used")};
-}
-
-std::string reasonOf(TestTechnique& technique, const char* name) {
-    const LWStats stats = technique.stats();
-    for (std::uint32_t i = 0; i < stats.choiceCount; ++i)
-        if (std::string(stats.choices[i].name) == name) return stats.choices[i].reason;
-    return "";
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "support/choices.h"
 #include "support/lit_room.h"
 #include "support/scoped_api.h"
 #include "support/walls.h"
@@ -61,13 +62,6 @@ double nrmse(const std::vector<float>& a, const std::vector<float>& b) {
         mean += double(b[i]);
     }
     return std::sqrt(square * double(a.size())) / mean;
-}
-
-std::string reasonOf(TestTechnique& technique, const char* name) {
-    const LWStats stats = technique.stats();
-    for (std::uint32_t i = 0; i < stats.choiceCount; ++i)
-        if (std::string(stats.choices[i].name) == name) return stats.choices[i].reason;
-    return "";
 }
 
 }  // namespace
