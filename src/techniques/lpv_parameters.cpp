@@ -92,4 +92,5 @@ extern "C" void lwDefaultLpv(LWLpvDesc* desc) {
     desc->directions = 384;
     desc->bounces = desc->frames = 1;
     desc->resolution = LW_RESOLUTION_FULL;
+    desc->cascades = 1;
 }

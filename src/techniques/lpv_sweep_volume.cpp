@@ -36,8 +36,8 @@ const LWLpvDesc& checked(const LWLpvDesc& desc) {
 
 }  // namespace
 
-LpvSweepVolume::LpvSweepVolume(Device& device, const LWLpvDesc& desc)
-    : device_(device), desc_(checked(desc)), sampling_(device), sweep_(device, optionsOf(desc)) {}
+LpvSweepVolume::LpvSweepVolume(Device& device, const LWLpvDesc& desc, int hidden)
+    : device_(device), desc_(checked(desc)), hidden_(hidden), sampling_(device), grid_(device, desc.size), sweep_(device, optionsOf(desc)) {}
 
 void LpvSweepVolume::check(const LWFrame& frame) const {
     const Source source = sourceOf(frame);
@@ -45,7 +45,9 @@ void LpvSweepVolume::check(const LWFrame& frame) const {
     if (source == Source::surfels) SurfelInput::check(device_, frame.geometry);
 }
 
-void LpvSweepVolume::record(Executor& executor, const LWFrame& frame, const RsmInput& rsms, const LpvGrid& grid, bool restart) {
+void LpvSweepVolume::record(Executor& executor, const LWFrame& frame, const RsmInput& rsms,
+                            const LpvPlacement& placement) {
+    grid_.recordPlace(executor, rsms, frame.vpls, frame.vplCount, placement);
     Source source = sourceOf(frame);
     SurfelSet set;
     if (source == Source::triangles) {
@@ -57,8 +59,8 @@ void LpvSweepVolume::record(Executor& executor, const LWFrame& frame, const RsmI
         surfels_.import(executor, frame.geometry);
         set = surfels_.surfels();
     }
-    restart = restart || source != source_;  // revisions count within a source
-    sweep_.record(executor, {rsms, grid.authored(), frame.vplCount, grid.place(), set,
+    const bool restart = placement.refit || source != source_;  // revisions count within a source
+    sweep_.record(executor, {rsms, grid_.authored(), frame.vplCount, grid_.place(), set,
                              source == Source::triangles ? kSampledArea : 1.0f, restart});
     source_ = source;
 }
@@ -89,10 +91,12 @@ void LpvSweepVolume::report(Report& report) const {
     } else if (source_ == Source::surfels) {
         surfels_.report(report);
     }
+    report.counts.push_back({"lights_outside", 0});
+    if (sweep_.outside()) report.read(device_, "lights_outside", sweep_.outside(), 0);
 }
 
 std::uint64_t LpvSweepVolume::estimateBytes(const LWLpvDesc& desc, const FrameShape& shape) {
-    std::uint64_t total = LpvSweep::estimateBytes(optionsOf(checked(desc)));
+    std::uint64_t total = LpvGrid::estimatePlaceBytes(shape.vplCount) + LpvSweep::estimateBytes(optionsOf(checked(desc)));
     const Source source = sourceOf(shape.surfels, shape.triangles);
     if (source == Source::triangles)
         total += GeometryInput::estimateBytes(shape.triangles) + SurfelSampling::estimateBytes(shape.triangles, sampledCount(desc));
