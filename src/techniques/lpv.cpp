@@ -92,6 +92,8 @@ private:
             placement_.high[a] = box_.high()[a];
         }
         placement_.refit = frame.reset != 0 || failed;
+        placement_.hasFocus = frame.focus != nullptr;
+        for (int a = 0; a < 3; ++a) placement_.focus[a] = frame.focus ? frame.focus[a] : 0.0f;
     }
 
     // Frames may bring all of the sources or none, and `auto` takes the first there is.

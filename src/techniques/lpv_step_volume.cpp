@@ -3,13 +3,6 @@
 #include "compute/device.h"
 
 namespace lightwell {
-namespace {
-
-// Light crosses a cell in a step at best (Kaplanyan and Dachsbacher 2010 take as many as the grid is long, twice over).
-std::uint32_t stepsOf(const LWLpvDesc& desc) { return desc.steps ? desc.steps : 2 * desc.size; }
-
-}  // namespace
-
 LpvStepVolume::LpvStepVolume(Device& device, const LWLpvDesc& desc)
     : device_(device),
       desc_(desc),

@@ -23,6 +23,8 @@ public:
     void addDebugViews(std::vector<DebugView>& views) const override;
     std::uint64_t bytes() const override;
     static std::uint64_t estimateBytes(const LWLpvDesc& desc, const FrameShape& shape);
+    // Light crosses a cell in a step at best (Kaplanyan and Dachsbacher 2010 take as many as the grid is long, twice over).
+    static std::uint32_t stepsOf(const LWLpvDesc& desc) { return desc.steps ? desc.steps : 2 * desc.size; }
 
 private:
     Device& device_;
