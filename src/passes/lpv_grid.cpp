@@ -86,7 +86,7 @@ void LpvGrid::recordNested(Executor& executor, const LpvGrid& outer, const LpvPl
 }
 
 void LpvGrid::recordInject(Executor& executor, const RsmInput& rsms, const Buffer& authored, std::uint32_t authoredCount,
-                           const Buffer* inner) {
+                           const Buffer* inner, const float* environment) {
     const Buffer& left = inner ? *inner : place_;  // a kernel's argument must be some memory
     const cl_int hasInner = inner ? 1 : 0;
     sums_.reserve(device_, sumBytes(size_), "sums of injected light");
@@ -99,8 +99,9 @@ void LpvGrid::recordInject(Executor& executor, const RsmInput& rsms, const Buffe
     if (authoredCount)
         executor.run("lpv_grid.inject", injectVpls_, runsOf(authoredCount), kListGroup, authored, cl_int(authoredCount), place_, left,
                      hasInner, cl_int(size_), sums_, state_);
+    const cl_float4 outside = environment ? cl_float4{{environment[0], environment[1], environment[2], 0.0f}} : cl_float4{};
     executor.run("lpv_grid.resolve", resolve_, {size_, std::size_t(size_) * size_}, kCellGroup, sums_, place_, cl_int(size_),
-                 injected_);
+                 outside, injected_);
 }
 
 std::uint64_t LpvGrid::bytes() const {

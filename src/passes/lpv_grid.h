@@ -30,21 +30,22 @@ public:
     // Passes "lpv_grid.*". `authored` is read before the call returns. A fitted grid stays as long as the box still fits and
     // is no smaller than three quarters of the grid's inside; then it moves by whole cells, or gets another size.
     void record(Executor& executor, const RsmInput& rsms, const LWVpl* authored, std::uint32_t authoredCount,
-                const LpvPlacement& placement) {
+                const LpvPlacement& placement, const float* environment = nullptr) {
         recordPlace(executor, rsms, authored, authoredCount, placement);
-        recordInject(executor, rsms, authoredCount);
+        recordInject(executor, rsms, authoredCount, environment);
     }
-    // Its two halves; the second one where cells shall hold spherical harmonics.
+    // Its two halves; the second one where cells shall hold spherical harmonics. environment: radiance of three colours that comes
+    // in through the border's cells; none: 0.
     void recordPlace(Executor& executor, const RsmInput& rsms, const LWVpl* authored, std::uint32_t authoredCount,
                      const LpvPlacement& placement);
-    void recordInject(Executor& executor, const RsmInput& rsms, std::uint32_t authoredCount) {
-        recordInject(executor, rsms, authored_, authoredCount, nullptr);
+    void recordInject(Executor& executor, const RsmInput& rsms, std::uint32_t authoredCount, const float* environment = nullptr) {
+        recordInject(executor, rsms, authored_, authoredCount, nullptr, environment);
     }
     // In place of recordPlace: with cells half as large as those of `outer`, which it lies in.
     void recordNested(Executor& executor, const LpvGrid& outer, const LpvPlacement& placement);
     // authored: as authored() has them. inner: none, or the place of a grid whose lights are left out.
     void recordInject(Executor& executor, const RsmInput& rsms, const Buffer& authored, std::uint32_t authoredCount,
-                      const Buffer* inner);
+                      const Buffer* inner, const float* environment);
 
     const Buffer& injected() const { return injected_; }  // a grid of LpvPropagation's
     const Buffer& place() const { return place_; }        // LwLpvPlace

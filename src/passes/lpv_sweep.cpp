@@ -158,7 +158,7 @@ void LpvSweep::recordResolve(Executor& executor, const Buffer& place, const Flig
 void LpvSweep::recordGroups(Executor& executor, const Flight& flight) {
     executor.run("lpv_sweep.march", march_, {step_, 1}, {1, 1}, flight.sources, flight.sheets, flight.used, scratch_->directions,
                  cl_int(options_.directions / LW_SWEEP_GROUPS), cl_int(options_.size), cl_int(nextGroup_), cl_int(step_),
-                 scratch_->carried, flight.parts);
+                 scratch_->carried, flight.parts, bounce_ == 0 ? environment_ : cl_float4{});
 }
 
 // What arrived in all groups becomes cells to read.
@@ -186,6 +186,7 @@ bool LpvSweep::begin(Executor& executor, bool restart) {
 
 void LpvSweep::recordStart(Executor& executor, const LpvSweepInput& input) {
     executor.copy("lpv_sweep.place", input.place.get(), place_.get(), 0, 0, sizeof(LwLpvPlace));
+    for (std::size_t k = 0; k < LW_SWEEP_COLOURS; ++k) environment_.s[k] = input.environment ? input.environment[k] : 0.0f;
     recordCover(executor, input);
 }
 

@@ -14,7 +14,12 @@ LpvStepCascades::LpvStepCascades(Device& device, const LWLpvDesc& desc)
       geometry_(device, desc),
       places_(device, desc),
       cascades_(device, desc.size) {
-    for (std::uint32_t c = 0; c < desc.cascades; ++c) levels_.push_back(std::make_unique<Level>(device, desc.size));
+    for (std::uint32_t c = 0; c < desc.cascades; ++c) {
+        levels_.push_back(std::make_unique<Level>(device, desc.size));
+        if (desc.autoError == 0.0f) continue;
+        levels_[c]->allProgress.emplace(LpvStepVolume::progressOf(device, desc));
+        if (c > 0) levels_[c]->outerProgress.emplace(LpvStepVolume::progressOf(device, desc));
+    }
 }
 
 // From the coarsest grid to the finest: the light of lights outside of the next grid, with what still coarser grids brought, is what
@@ -35,10 +40,13 @@ void LpvStepCascades::recordField(Executor& executor, const LWFrame& frame, cons
                                   const LpvBlockers* blockers) {
     Level& level = *levels_[c];
     LpvGrid& grid = places_.grid(c);
-    grid.recordInject(executor, rsms, places_.authored(), frame.vplCount, isOuter ? &places_.grid(c - 1).place() : nullptr);
-    level.propagated = &level.propagation.record(executor, grid.injected(), LpvStepVolume::stepsOf(desc_), blockers);
+    std::optional<LpvProgress>& progress = isOuter ? level.outerProgress : level.allProgress;
+    grid.recordInject(executor, rsms, places_.authored(), frame.vplCount, isOuter ? &places_.grid(c - 1).place() : nullptr,
+                      c + 1 == levels_.size() ? frame.environment : nullptr);
+    level.propagated = &level.propagation.record(executor, grid.injected(), LpvStepVolume::stepsOf(desc_), blockers,
+                                                 progress ? &*progress : nullptr);
     LpvRead& read = isOuter ? level.outer : level.all;
-    read.recordPack(executor, *level.propagated);
+    read.recordPack(executor, *level.propagated, progress ? &progress->state() : nullptr);
     if (c + 1 < levels_.size())
         cascades_.recordSteps(executor, {grid.place(), places_.grid(c + 1).place()}, levels_[c + 1]->outer.cells(), read.cells());
 }
@@ -61,7 +69,10 @@ std::vector<LWChoice> LpvStepCascades::choices(const LWFrame& frame, double) con
 
 void LpvStepCascades::report(Report& report) const {
     geometry_.report(report);
-    report.counts.push_back({"steps", LpvStepVolume::stepsOf(desc_)});
+    report.counts.push_back({"steps", desc_.autoError > 0.0f ? 0 : LpvStepVolume::stepsOf(desc_)});
+    for (const std::unique_ptr<Level>& level : levels_)
+        for (const std::optional<LpvProgress>* progress : {&level->allProgress, &level->outerProgress})
+            if (*progress && level->propagated) LpvStepVolume::reportProgress(device_, **progress, report);
     report.counts.push_back({"cascades", desc_.cascades});
     report.counts.push_back({"lights_outside", 0});
     if (levels_.back()->propagated)
@@ -84,14 +95,19 @@ void LpvStepCascades::addDebugViews(std::vector<DebugView>& views) const {
 
 std::uint64_t LpvStepCascades::bytes() const {
     std::uint64_t total = geometry_.bytes() + places_.bytes();
-    for (const std::unique_ptr<Level>& level : levels_) total += level->propagation.bytes() + level->all.bytes() + level->outer.bytes();
+    for (const std::unique_ptr<Level>& level : levels_) {
+        total += level->propagation.bytes() + level->all.bytes() + level->outer.bytes();
+        for (const std::optional<LpvProgress>* progress : {&level->allProgress, &level->outerProgress})
+            if (*progress) total += (*progress)->bytes();
+    }
     return total;
 }
 
 std::uint64_t LpvStepCascades::estimateBytes(const LWLpvDesc& desc, const FrameShape& shape) {
     const std::uint64_t level = LpvGrid::estimateInjectBytes(desc.size) +
                                 LpvPropagation::estimateBytes(desc.size, LpvStepVolume::stepsOf(desc)) + LpvRead::estimateBytes(desc.size);
-    return desc.cascades * level + (desc.cascades - 1) * LpvRead::estimateBytes(desc.size) + LpvPlaces::estimateBytes(desc, shape) +
+    const std::uint64_t progress = desc.autoError > 0.0f ? LpvProgress::estimateBytes(desc.size) : 0;
+    return desc.cascades * level + (2 * desc.cascades - 1) * progress + (desc.cascades - 1) * LpvRead::estimateBytes(desc.size) + LpvPlaces::estimateBytes(desc, shape) +
            LpvGeometry::estimateBytes(desc, shape);
 }
 

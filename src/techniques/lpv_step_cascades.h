@@ -2,9 +2,11 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "passes/lpv_cascades.h"
+#include "passes/lpv_progress.h"
 #include "passes/lpv_propagation.h"
 #include "passes/lpv_read.h"
 #include "techniques/lpv_geometry.h"
@@ -33,6 +35,7 @@ private:
         Level(Device& device, std::uint32_t size) : propagation(device, size), all(device, size), outer(device, size) {}
         LpvPropagation propagation;
         LpvRead all, outer;                  // cells of all lights' light, of that of lights outside of the finer grid
+        std::optional<LpvProgress> allProgress, outerProgress;  // with desc.autoError
         const Buffer* propagated = nullptr;  // of the last record
     };
     void recordField(Executor& executor, const LWFrame& frame, const RsmInput& rsms, std::size_t level, bool isOuter,

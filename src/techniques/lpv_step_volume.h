@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "passes/lpv_progress.h"
 #include "passes/lpv_propagation.h"
 #include "passes/lpv_read.h"
 #include "techniques/lpv_geometry.h"
@@ -26,6 +27,11 @@ public:
     // Light crosses a cell in a step at best (Kaplanyan and Dachsbacher 2010 take as many as the grid is long, twice over).
     static std::uint32_t stepsOf(const LWLpvDesc& desc) { return desc.steps ? desc.steps : 2 * desc.size; }
 
+    // With desc.autoError.
+    static LpvProgress progressOf(Device& device, const LWLpvDesc& desc);
+    // How many were taken is the device's to decide, and to say: added to "steps".
+    static void reportProgress(Device& device, const LpvProgress& progress, Report& report);
+
 private:
     Device& device_;
     LWLpvDesc desc_;
@@ -34,6 +40,7 @@ private:
     LpvGrid grid_;
     LpvPropagation propagation_;
     LpvRead read_;
+    std::optional<LpvProgress> progress_;  // with an error target
     const Buffer* propagated_ = nullptr;  // of the last record
 };
 

@@ -60,8 +60,8 @@ std::vector<LWChoice> LpvSurfaces::choices(const LWFrame& frame, double side) co
                      : source_ == Source::surfels ? "the host's surfels"
                                                   : "the texels of all RSMs: what no light sees blocks nothing"}};
     if (frame.sourceViewCount)
-        choices.push_back({"frame.sourceViews", "not used: they block nothing, and technique lpv takes light from RSMs and "
-                                                "authored VPLs only"});
+        choices.push_back({"frame.sourceViews", "not used: they block nothing, and technique lpv takes light from RSMs, "
+                                                "authored VPLs and the environment only"});
     if (source_ == Source::none && desc_.bounces > 1)
         choices.push_back({"bounces", "one: without triangles and surfels there is nothing to send light on"});
     if (source_ == Source::none && frame.geometry && sourceOf(frame) == Source::triangles)

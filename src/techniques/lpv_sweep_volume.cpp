@@ -24,7 +24,8 @@ void LpvSweepVolume::record(Executor& executor, const LWFrame& frame, const RsmI
                             const LpvPlacement& placement) {
     grid_.recordPlace(executor, rsms, frame.vpls, frame.vplCount, placement);
     const bool restart = surfaces_.import(executor, frame) || placement.refit;
-    sweep_.record(executor, {rsms, grid_.authored(), frame.vplCount, grid_.place(), surfaces_.surfels(), surfaces_.areaScale(), restart});
+    sweep_.record(executor, {rsms, grid_.authored(), frame.vplCount, grid_.place(), surfaces_.surfels(), surfaces_.areaScale(), restart,
+                             frame.environment});
 }
 
 void LpvSweepVolume::report(Report& report) const {
