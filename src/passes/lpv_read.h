@@ -5,6 +5,7 @@
 
 #include "compute/buffer.h"
 #include "compute/executor.h"
+#include "passes/harmonics.h"
 
 namespace lightwell {
 
@@ -21,13 +22,18 @@ public:
     void recordGather(Executor& executor, const Planes& position, const Planes& normal, const Buffer& place, double calibration,
                       bool isDamped, const Planes& irradiance, const Planes& validity, const Buffer& counts);
 
+    // Pass "lpv_read.harmonics": the light that arrives at points, in two bands of spherical harmonics, undamped. `normal` may be
+    // empty; points without read where they are. harmonics, validity: none where not wanted. counts: the second and third of those.
+    void recordHarmonics(Executor& executor, const Planes& position, const Planes& normal, const Buffer& place, double calibration,
+                         const Harmonics& harmonics, const Planes& validity, const Buffer& counts);
+
     std::uint64_t bytes() const { return cells_.bytes(); }
     static std::uint64_t estimateBytes(std::uint32_t size);
 
 private:
     Device& device_;
     std::uint32_t size_;
-    Kernel &pack_, &gather_;
+    Kernel &pack_, &gather_, &harmonics_;
     Buffer cells_;
 };
 

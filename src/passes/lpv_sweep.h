@@ -8,6 +8,7 @@
 #include "compute/executor.h"
 #include "inputs/rsm_input.h"
 #include "inputs/surfel_set.h"
+#include "passes/harmonics.h"
 #include "shared/lpv_types.h"
 
 namespace lightwell {
@@ -45,12 +46,17 @@ public:
     void recordGather(Executor& executor, const Planes& position, const Planes& normal, const Planes& irradiance,
                       const Planes& validity, const Buffer& counts);
 
+    // Pass "lpv_sweep.harmonics", as LpvRead::recordHarmonics.
+    void recordHarmonics(Executor& executor, const Planes& position, const Planes& normal, const Harmonics& harmonics,
+                         const Planes& validity, const Buffer& counts);
+
     const Buffer& parts() const { return parts_; }      // of the last sweep, see lpv_sweep_types.h
     const Buffer& outside() const { return outside_; }  // a cl_uint: lights that no cell took
     std::uint64_t bytes() const;
     static std::uint64_t estimateBytes(const LpvSweepOptions& options);
 
 private:
+    const Buffer& cells() const { return options_.frames > 1 ? shownCells_ : totalCells_; }
     void reserve(Executor& executor);
     void recordLights(Executor& executor, const LpvSweepInput& input);
     void recordCover(Executor& executor, const LpvSweepInput& input);
@@ -62,7 +68,7 @@ private:
     Device& device_;
     LpvSweepOptions options_;
     Kernel &injectTexels_, &injectVpls_, &unit_, &relight_, &begin_, &clear_, &coverTexels_, &coverSurfels_, &resolve_, &march_,
-        &combine_, &pack_, &gather_;
+        &combine_, &pack_, &gather_, &harmonics_;
     Buffer directions_, lights_, areas_, cover_, sources_, sheets_, used_, carried_, parts_, sides_, outside_, largest_;
     Buffer place_, unitPlace_, shownPlace_;  // of the light that is under way, in the last bounce's unit, of what is shown
     Buffer bounceCells_, totalCells_, shownCells_;

@@ -20,6 +20,10 @@ public:
                       const Planes& validity, const Buffer& counts) override {
         sweep_.recordGather(executor, position, normal, irradiance, validity, counts);
     }
+    void recordHarmonics(Executor& executor, const Planes& position, const Planes& normal, const Harmonics& harmonics,
+                         const Planes& validity, const Buffer& counts) override {
+        sweep_.recordHarmonics(executor, position, normal, harmonics, validity, counts);
+    }
     std::vector<LWChoice> choices(const LWFrame& frame, double side) const override;
     void report(Report& report) const override;
     std::uint64_t bytes() const override {
