@@ -54,6 +54,10 @@ endif()
 add_executable(minimal ${PROJECT_SOURCE_DIR}/samples/minimal.c)
 target_link_libraries(minimal PRIVATE lightwell lightwell_warnings)
 add_test(NAME getting_started_test COMMAND minimal)
+# The program of docs/points.md.
+add_executable(points ${PROJECT_SOURCE_DIR}/samples/points.c)
+target_link_libraries(points PRIVATE lightwell lightwell_warnings m)
+add_test(NAME points_sample_test COMMAND points)
 
 # --- a frame that shares no convention and no code with us
 lightwell_test(foreign_test SOURCES foreign/foreign_test.cpp LIBS lightwell LABELS images)

@@ -31,3 +31,24 @@ __kernel void fallback_join(__global const float* first, int4 firstLayout, __glo
         store(fmin(fma_(unseen, w, v), (real)1.0f), validity, validityLayout.x + y * validityLayout.y + x);
     }
 }
+
+// The same of light at points in two bands of spherical harmonics. One work-item = LW_WIDTH points of a row. Each light: three
+// colours' planes, `...Band` floats from one band's to the next one's.
+__kernel void fallback_join_harmonics(__global const float* first, int4 firstLayout, int firstBand,
+                                      __global const float* firstValidity, int4 firstValidityLayout,
+                                      __global const float* second, int4 secondLayout, int secondBand, int width, int height,
+                                      __global float* harmonics, int4 harmonicsLayout, int band) {
+    const int x = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);
+    if (x >= width || y >= height) return;
+    const real v = load(firstValidity, firstValidityLayout.x + y * firstValidityLayout.y + x);
+    const real unseen = clamp((real)1.0f - v, (real)0.0f, (real)1.0f);
+    const int a = firstLayout.x + y * firstLayout.y + x, b = secondLayout.x + y * secondLayout.y + x,
+              h = harmonicsLayout.x + y * harmonicsLayout.y + x;
+    for (int k = 0; k < 4; ++k)
+        for (int c = 0; c < 3; ++c) {
+            const real sum = fma_(unseen, load(second, b + k * secondBand + c * secondLayout.z),
+                                  load(first, a + k * firstBand + c * firstLayout.z));
+            store(clamp(sum, (real)-LW_LARGEST_IRRADIANCE, (real)LW_LARGEST_IRRADIANCE), harmonics,
+                  h + k * band + c * harmonicsLayout.z);
+        }
+}

@@ -7,8 +7,10 @@
 // Damped, it is what is read a cell further off as well, where that is less: light that falls on a surface has come through
 // the cells in front of it, and light that grows weaker away from it has come through the surface, or from it.
 #include "shared/input_limits.h"
+#include "shared/lpv_layer_bands.h"
 #include "shared/lpv_layers.h"
 #include "shared/lpv_types.h"
+#include "shared/points.h"
 #include "shared/surface.h"
 #include "shared/wide.h"
 
@@ -66,6 +68,33 @@ LW_FN float4 light_at(__global const float16* cells, int size, const float* at, 
     return v.s0123 * LPV_LOBE0 - (v.s4567 * nx + v.s89ab * ny + v.scdef * nz) * LPV_LOBE1;
 }
 
+// Where surfaces read, in cells from the grid's corner: half a cell off; and which of them the grid has.
+typedef struct {
+    real x, y, z;
+    mask has;
+} lpv_reader;
+
+LW_FN lpv_reader reader_of(const lw_surface s, const LwLpvPlace place, int size) {
+    const float inverse = place.origin.w, most = (float)size;
+    lpv_reader r;
+    r.x = fma_(s.nx, (real)0.5f, (s.px - place.origin.x) * inverse);
+    r.y = fma_(s.ny, (real)0.5f, (s.py - place.origin.y) * inverse);
+    r.z = fma_(s.nz, (real)0.5f, (s.pz - place.origin.z) * inverse);
+    const mask within = and_(and_(and_(r.x >= 0.0f, r.x <= most), and_(r.y >= 0.0f, r.y <= most)), and_(r.z >= 0.0f, r.z <= most));
+    r.has = and_(s.valid, and_(within, splat_mask(inverse > 0.0f)));
+    return r;
+}
+
+// The lower of the eight cells around each reader, and the upper ones' shares.
+LW_FN lanei corner_of(const lpv_reader r, int size, real* fx, real* fy, real* fz) {
+    const real none = (real)0.0f;
+    lanei ix, iy, iz;
+    *fx = split(select_(none, r.x - 0.5f, r.has), size, &ix);
+    *fy = split(select_(none, r.y - 0.5f, r.has), size, &iy);
+    *fz = split(select_(none, r.z - 0.5f, r.has), size, &iz);
+    return (iz * size + iy) * size + ix;
+}
+
 // One work-item = LW_WIDTH pixels of a row. hasIrradiance, hasValidity: which are wanted; the other's arguments are not
 // touched. Validity is 1 where the grid has the surface, 0 elsewhere, where irradiance is 0 as well. counts[0]: pixels that are
 // neither surface nor background; counts[1]: whose light was brought down; counts[2]: surfaces that the grid does not have.
@@ -82,13 +111,9 @@ __kernel void lpv_read_gather(__global const float* position, int4 positionLayou
     const int isCoarsest = layer + 1 == layers;
     const lw_surface s = load_surface(position, positionLayout, normal, normalLayout, x, y);
     const mask shown = lanei_iota() + x < width;
-    const float inverse = place.origin.w, most = (float)size;
-    // In cells from the grid's corner, half a cell off the surface.
-    const real gx = fma_(s.nx, (real)0.5f, (s.px - place.origin.x) * inverse);
-    const real gy = fma_(s.ny, (real)0.5f, (s.py - place.origin.y) * inverse);
-    const real gz = fma_(s.nz, (real)0.5f, (s.pz - place.origin.z) * inverse);
-    const mask within = and_(and_(and_(gx >= 0.0f, gx <= most), and_(gy >= 0.0f, gy <= most)), and_(gz >= 0.0f, gz <= most));
-    const mask has = and_(s.valid, and_(within, splat_mask(inverse > 0.0f)));
+    const lpv_reader reader = reader_of(s, place, size);
+    const mask has = reader.has;
+    const float inverse = place.origin.w;
 
     if (isCoarsest) {
         const mask rejected = and_(s.rejected, shown), missing = and_(and_(s.valid, not_(has)), shown);
@@ -102,10 +127,10 @@ __kernel void lpv_read_gather(__global const float* position, int4 positionLayou
     const lpv_layer own = layer_of(grids, layer, layers, size, s.px, s.py, s.pz, some);
     if (!isCoarsest && !any_(and_(own.read, shown))) return;
 
-    lanei ix, iy, iz;
     const real none = (real)0.0f;
-    const real fx = split(select_(none, gx - 0.5f, own.read), size, &ix), fy = split(select_(none, gy - 0.5f, own.read), size, &iy),
-               fz = split(select_(none, gz - 0.5f, own.read), size, &iz);
+    const lpv_reader at = {reader.x, reader.y, reader.z, own.read};
+    real fx, fy, fz;
+    const lanei corners = corner_of(at, size, &fx, &fy, &fz);
     // Pixel by pixel: one load takes all of a cell, where lanes of pixels would gather every number alone.
     float px[LW_WIDTH], py[LW_WIDTH], pz[LW_WIDTH], nx[LW_WIDTH], ny[LW_WIDTH], nz[LW_WIDTH], reads[LW_WIDTH];
     float light[LW_LPV_COLOURS][LW_WIDTH];
@@ -117,7 +142,7 @@ __kernel void lpv_read_gather(__global const float* position, int4 positionLayou
     store(s.ny, ny, 0);
     store(s.nz, nz, 0);
     store(ones_(own.read), reads, 0);
-    store((iz * size + iy) * size + ix, corner, 0);
+    store(corners, corner, 0);
     for (int l = 0; l < LW_WIDTH; ++l) {
         if (layers > 1 && reads[l] == 0.0f) {
             light[0][l] = light[1][l] = light[2][l] = 0.0f;
@@ -147,5 +172,55 @@ __kernel void lpv_read_gather(__global const float* position, int4 positionLayou
     }
     saturated = and_(saturated, own.isLast);
     saturated = and_(saturated, shown);
+    if (any_(saturated)) atomic_add(counts + 1, count_(saturated));
+}
+
+// One work-item = LW_WIDTH points of a row: the light that arrives there, in two bands. A cell's is radiant intensity of light that
+// travels along d; it arrives from -d, and calibration / s^2 times it is the radiance whose irradiance lpv_read_gather reads.
+// Undamped: what is damped depends on the surface. Points without normals read where they are. hasHarmonics, hasValidity, validity
+// and counts: as lpv_read_gather's.
+__kernel void lpv_read_harmonics(__global const float* position, int4 positionLayout, __global const float* normal,
+                                 int4 normalLayout, int hasNormals, int width, int height, __global const LwLpvPlace* grids, int layer,
+                                 int layers, int size, __global const float16* cells, float calibration, int hasHarmonics, int hasValidity,
+                                 __global float* harmonics, int4 harmonicsLayout, int band, __global float* validity,
+                                 int4 validityLayout, __global int* counts) {
+    const int x = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);
+    if (x >= width || y >= height) return;
+    const LwLpvPlace place = grids[layer];
+    const int isCoarsest = layer + 1 == layers;
+    const lw_surface s = load_point(position, positionLayout, normal, normalLayout, hasNormals, x, y);
+    const mask shown = lanei_iota() + x < width;
+    const lpv_reader reader = reader_of(s, place, size);
+    if (isCoarsest) {
+        const mask missing = and_(and_(s.valid, not_(reader.has)), shown);
+        if (any_(missing)) atomic_add(counts + 2, count_(missing));
+        if (hasValidity) store(ones_(reader.has), validity, validityLayout.x + y * validityLayout.y + x);
+    }
+    if (!hasHarmonics) return;
+    mask some = s.valid;
+    if (isCoarsest) some = reader.has;
+    const lpv_layer own = layer_of(grids, layer, layers, size, s.px, s.py, s.pz, some);
+    if (!isCoarsest && !any_(and_(own.read, shown))) return;
+
+    const lpv_reader at = {reader.x, reader.y, reader.z, own.read};
+    real fx, fy, fz;
+    const lanei corners = corner_of(at, size, &fx, &fy, &fz);
+    float px[LW_WIDTH], py[LW_WIDTH], pz[LW_WIDTH], found[LPV_CELL_FLOATS][LW_WIDTH];
+    int corner[LW_WIDTH];
+    store(fx, px, 0);
+    store(fy, py, 0);
+    store(fz, pz, 0);
+    store(corners, corner, 0);
+    for (int l = 0; l < LW_WIDTH; ++l) {
+        float v[LPV_CELL_FLOATS];
+        vstore16(interpolate(cells + corner[l], size, px[l], py[l], pz[l]), 0, v);
+        for (int k = 0; k < LPV_CELL_FLOATS; ++k) found[k][l] = v[k];
+    }
+    const float inverse = place.origin.w;
+    lw_bands light;
+    for (int b = 0; b < LW_LPV_BANDS; ++b)
+        for (int c = 0; c < LW_LPV_COLOURS; ++c)
+            light.c[b][c] = load(found[4 * b + c], 0) * (b == 0 ? calibration : -calibration) * inverse * inverse;
+    const mask saturated = and_(store_layer(own, isCoarsest, light, harmonics, harmonicsLayout, band, x, y), shown);
     if (any_(saturated)) atomic_add(counts + 1, count_(saturated));
 }

@@ -35,18 +35,25 @@ LW_FN float sweep_split(float g, int size, int* lower) {
     }
 // (From 1.5 cells above only a corner of next to no share can lie behind.)
 
-// What the six sides of the eight cells from `corner` on, at weights[k * stride], are to a surface: nx, ny, nz are the squares of
-// its normal's coordinates, of the positive (first) and the negative ones. In the fourth number: of how much is open. Of each cell
-// all six sides are loaded: a pixel that picked its three would load longer.
-LW_FN float4 sweep_sides(__global const float16* corner, int size, const float* weights, int stride, float2 nx, float2 ny, float2 nz) {
-    float16 xy = (float16)(0.0f);
-    float8 zz = (float8)(0.0f);
+// What arrives at the six sides of the eight cells from `corner` on, at weights[k * stride]: +x, -x, +y, -y in xy, +z, -z in zz, in
+// the fourth number of each of how much is open.
+LW_FN void sweep_arriving(__global const float16* corner, int size, const float* weights, int stride, float16* xy, float8* zz) {
+    *xy = (float16)(0.0f);
+    *zz = (float8)(0.0f);
     _Pragma("unroll") for (int k = 0; k < 8; ++k) {
         const float w = weights[k * stride];
         __global const float16* cell = corner + 2 * (((k & 1) ? 1 : 0) + ((k & 2) ? size : 0) + ((k & 4) ? size * size : 0));
-        xy += w * cell[0];
-        zz += w * *(__global const float8*)(cell + 1);
+        *xy += w * cell[0];
+        *zz += w * *(__global const float8*)(cell + 1);
     }
+}
+
+// What they are to a surface: nx, ny, nz are the squares of its normal's coordinates, of the positive (first) and the negative
+// ones. Of each cell all six sides are loaded: a pixel that picked its three would load longer.
+LW_FN float4 sweep_sides(__global const float16* corner, int size, const float* weights, int stride, float2 nx, float2 ny, float2 nz) {
+    float16 xy;
+    float8 zz;
+    sweep_arriving(corner, size, weights, stride, &xy, &zz);
     return nx.x * xy.s0123 + nx.y * xy.s4567 + ny.x * xy.s89ab + ny.y * xy.scdef + nz.x * zz.s0123 + nz.y * zz.s4567;
 }
 

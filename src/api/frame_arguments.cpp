@@ -5,7 +5,8 @@
 
 #include "api/call.h"
 #include "api/structs.h"
-#include "compute/raw_enum.h"
+#include "inputs/image_check.h"
+#include "inputs/points_input.h"
 #include "inputs/rsm_input.h"
 #include "shared/input_limits.h"
 
@@ -18,7 +19,6 @@ constexpr std::uint32_t kMaxVpls = 1u << 24;
 constexpr std::uint32_t kMaxBlockers = 1u << 20;
 constexpr std::uint32_t kMaxSourceViews = 64;
 constexpr std::uint32_t kMaxWaitEvents = 1024;
-constexpr std::uint32_t kMaxPoints = 1u << 24;
 
 void checkCount(std::uint32_t count, const void* array, std::uint32_t most, const std::string& name,
                 const char* countField, const char* arrayField) {
@@ -143,12 +143,13 @@ void FrameArgument::checkNumbers() const {
 
 PointsArgument::PointsArgument(const LWImage* positions, const LWImage* normals, std::uint32_t count, const LWPointOutput* output) {
     if (!positions) fail(LW_ERROR_INVALID_ARGUMENT, "positions: expected an image, got null");
-    if (count == 0 || count > kMaxPoints) fail(LW_ERROR_INVALID_ARGUMENT, "count: expected 1 .. ", kMaxPoints, ", got ", count);
+    if (count == 0 || count > PointsInput::kMost)
+        fail(LW_ERROR_INVALID_ARGUMENT, "count: expected 1 .. ", PointsInput::kMost, ", got ", count);
     points_.output = readStruct(output, "output");
     points_.positions = *positions;
     if (normals) points_.normals = *normals;
     points_.count = count;
-    const auto given = [](const LWImage& image) { return rawEnum(image.format) != LW_FORMAT_NONE; };
+    const auto given = [](const LWImage& image) { return !imageAbsent(image); };
     if (!given(points_.output.irradiance) && !given(points_.output.harmonics) && !given(points_.output.validity))
         fail(LW_ERROR_INVALID_ARGUMENT, "output: expected irradiance, harmonics or validity, got none");
     if (given(points_.output.irradiance) && !given(points_.normals))

@@ -139,4 +139,18 @@ void ClusteredGather::recordClusters(Executor& executor, const Planes& planes) {
                  planes.memory);
 }
 
+ClusteredHarmonics::ClusteredHarmonics(Device& device, ClusterVisibility visibility)
+    : harmonics_(device.programs().kernel("clustered_gather/clustered_harmonics", "clustered_gather_harmonics",
+                                          {{"LW_VISIBILITY", std::to_string(int(visibility))}})) {}
+
+void ClusteredHarmonics::record(Executor& executor, const Planes& position, const Planes& normal, const ClusteredGather& gather,
+                                const ClusterMaps& maps, const Harmonics& harmonics, const Buffer& counts) {
+    // A kernel's argument must be some memory, also where it is not read.
+    executor.run("clustered_gather.harmonics", harmonics_,
+                 {(position.width + harmonics_.width() - 1) / harmonics_.width(), position.height}, groupOf(harmonics_), position,
+                 normal ? normal : position, cl_int(normal ? 1 : 0), cl_int(position.width), cl_int(position.height), gather.vpls(),
+                 gather.order(), maps.frames, maps.records, maps.secondFrames, maps.secondRecords, cl_int(maps.seconds),
+                 cl_int(maps.size), harmonics.first, harmonics.band, counts);
+}
+
 }  // namespace lightwell

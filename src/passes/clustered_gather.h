@@ -8,6 +8,7 @@
 
 #include "compute/buffer.h"
 #include "compute/executor.h"
+#include "passes/harmonics.h"
 #include "shared/subset_order.h"
 #include "shared/vpl_tiles.h"
 
@@ -78,6 +79,20 @@ private:
     std::array<Buffer, kMostClusteredLists> sorted_;
     lw_subset_order order_{};
     cl_uint shadowed_ = 0;  // of a subset's first 32 slots those whose light is shadowed, a bit each
+};
+
+// The same light at points, in two bands of spherical harmonics.
+class ClusteredHarmonics {
+public:
+    ClusteredHarmonics(Device& device, ClusterVisibility visibility);
+
+    // Pass "clustered_gather.harmonics": of the list of `gather`, whose interleave is 1. `normal` may be empty. counts[2] grows by
+    // the points whose light is brought down.
+    void record(Executor& executor, const Planes& position, const Planes& normal, const ClusteredGather& gather,
+                const ClusterMaps& maps, const Harmonics& harmonics, const Buffer& counts);
+
+private:
+    Kernel& harmonics_;
 };
 
 }  // namespace lightwell

@@ -106,4 +106,21 @@ void InterleavedGather::recordValidity(Executor& executor, const Planes& positio
                  groupOf(validity_), position, normal, cl_int(position.width), cl_int(position.height), validity);
 }
 
+VplHarmonics::VplHarmonics(Device& device)
+    : harmonics_(device.programs().kernel("interleaved_gather/interleaved_harmonics", "interleaved_gather_harmonics")) {}
+
+void VplHarmonics::record(Executor& executor, const Planes& position, const Planes& normal, const Buffer& vpls,
+                          lw_subset_order order, const Harmonics& harmonics, const Buffer& counts) {
+    // A kernel's argument must be some memory, also where it is not read.
+    executor.run("interleaved_gather.harmonics", harmonics_, itemsOver(position, harmonics_.width()), groupOf(harmonics_),
+                 position, normal ? normal : position, cl_int(normal ? 1 : 0), cl_int(position.width), cl_int(position.height),
+                 vpls, wholeOrder(order), harmonics.first, harmonics.band, counts);
+}
+
+lw_subset_order wholeOrder(lw_subset_order order) {
+    order.capacity *= order.subsets;
+    order.subsets = 1;
+    return order;
+}
+
 }  // namespace lightwell

@@ -6,6 +6,7 @@
 
 #include "compute/buffer.h"
 #include "compute/executor.h"
+#include "passes/harmonics.h"
 #include "shared/subset_order.h"
 #include "shared/vpl_tiles.h"
 
@@ -63,5 +64,22 @@ private:
     Kernel &gather_, &validity_, &bounds_, &cull_;
     Kernel* filter_ = nullptr;
 };
+
+// The same VPLs' light at points, in two bands of spherical harmonics.
+class VplHarmonics {
+public:
+    explicit VplHarmonics(Device& device);
+
+    // Pass "interleaved_gather.harmonics": of all slots of the list. `normal` may be empty. counts[2] grows by the points whose
+    // light is brought down.
+    void record(Executor& executor, const Planes& position, const Planes& normal, const Buffer& vpls, lw_subset_order order,
+                const Harmonics& harmonics, const Buffer& counts);
+
+private:
+    Kernel& harmonics_;
+};
+
+// A list that was dealt out to subsets, as one subset.
+lw_subset_order wholeOrder(lw_subset_order order);
 
 }  // namespace lightwell

@@ -5,6 +5,7 @@
 
 #include "compute/buffer.h"
 #include "compute/executor.h"
+#include "passes/harmonics.h"
 #include "passes/lpv_cascades.h"
 
 namespace lightwell {
@@ -24,6 +25,12 @@ public:
     void recordGather(Executor& executor, const Planes& position, const Planes& normal, const Buffer& place, double calibration,
                       bool isDamped, const Planes& irradiance, const Planes& validity, const Buffer& counts, LpvLayer layer = {});
 
+    // Pass "lpv_read.harmonics": the light that arrives at points, in two bands of spherical harmonics, undamped. `normal` may be
+    // empty; points without read where they are. harmonics, validity: none where not wanted. counts: the second and third of those. layer: as
+    // recordGather's.
+    void recordHarmonics(Executor& executor, const Planes& position, const Planes& normal, const Buffer& place, double calibration,
+                         const Harmonics& harmonics, const Planes& validity, const Buffer& counts, LpvLayer layer = {});
+
     const Buffer& cells() const { return cells_; }  // of 16 floats
     std::uint64_t bytes() const { return cells_.bytes(); }
     static std::uint64_t estimateBytes(std::uint32_t size);
@@ -31,7 +38,7 @@ public:
 private:
     Device& device_;
     std::uint32_t size_;
-    Kernel &pack_, &gather_;
+    Kernel &pack_, &gather_, &harmonics_;
     Buffer cells_;
 };
 

@@ -62,6 +62,7 @@ LpvSweep::LpvSweep(Device& device, const LpvSweepOptions& options, const LpvSwee
       combine_(device.programs().kernel(kSweep, "lpv_sweep_combine")),
       pack_(device.programs().kernel(kSweep, "lpv_sweep_pack")),
       gather_(device.programs().kernel("lpv_sweep/lpv_sweep_read", "lpv_sweep_gather")),
+      harmonics_(device.programs().kernel("lpv_sweep/lpv_sweep_read", "lpv_sweep_harmonics")),
       scratch_(sharing ? sharing->scratch_ : std::make_shared<Scratch>()),
       ownsScratch_(!sharing),
       ownsFlights_(!sharing || options.frames > 1) {
@@ -233,8 +234,19 @@ void LpvSweep::recordGather(Executor& executor, const Planes& position, const Pl
     executor.run("lpv_sweep.gather", gather_, items, gather_.width() == 1 ? Range{64, 1} : Range{8, 1}, position, normal,
                  cl_int(position.width), cl_int(position.height), places ? *places : shownPlace_, cl_int(layer.index),
                  cl_int(layer.count), cl_int(options_.size),
-                 options_.frames > 1 ? shownCells_ : totalCells_, cl_int(irradiance ? 1 : 0), cl_int(validity ? 1 : 0),
+                 cells(), cl_int(irradiance ? 1 : 0), cl_int(validity ? 1 : 0),
                  orElse(irradiance), orElse(validity), counts);
+}
+
+void LpvSweep::recordHarmonics(Executor& executor, const Planes& position, const Planes& normal, const Harmonics& harmonics,
+                               const Planes& validity, const Buffer& counts, const Buffer* places, LpvLayer layer) {
+    // A kernel's argument must be some memory, also where it is not touched.
+    const auto orElse = [&](const Planes& planes) { return planes ? planes : position; };
+    const Range items{(position.width + harmonics_.width() - 1) / harmonics_.width(), position.height};
+    executor.run("lpv_sweep.harmonics", harmonics_, items, harmonics_.width() == 1 ? Range{64, 1} : Range{8, 1}, position,
+                 orElse(normal), cl_int(normal ? 1 : 0), cl_int(position.width), cl_int(position.height),
+                 places ? *places : shownPlace_, cl_int(layer.index), cl_int(layer.count), cl_int(options_.size), cells(), cl_int(harmonics ? 1 : 0), cl_int(validity ? 1 : 0), orElse(harmonics.first),
+                 harmonics.band, orElse(validity), counts);
 }
 
 std::uint64_t LpvSweep::bytes() const {

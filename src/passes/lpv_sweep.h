@@ -9,6 +9,7 @@
 #include "compute/executor.h"
 #include "inputs/rsm_input.h"
 #include "inputs/surfel_set.h"
+#include "passes/harmonics.h"
 #include "passes/lpv_cascades.h"
 #include "shared/lpv_types.h"
 
@@ -70,6 +71,10 @@ public:
     void recordGather(Executor& executor, const Planes& position, const Planes& normal, const Planes& irradiance,
                       const Planes& validity, const Buffer& counts, const Buffer* places = nullptr, LpvLayer layer = {});
 
+    // Pass "lpv_sweep.harmonics", as LpvRead::recordHarmonics. places, layer: as recordGather's.
+    void recordHarmonics(Executor& executor, const Planes& position, const Planes& normal, const Harmonics& harmonics,
+                         const Planes& validity, const Buffer& counts, const Buffer* places = nullptr, LpvLayer layer = {});
+
     const Buffer& parts() const { return flights_[kAll]->parts; }  // of the last sweep, see lpv_sweep_types.h
     const Buffer& outside() const { return outside_; }  // a cl_uint: lights that no cell took
     std::uint64_t bytes() const;
@@ -86,6 +91,7 @@ private:
     struct Scratch {
         Buffer directions, lights, carried, sides;
     };
+    const Buffer& cells() const { return options_.frames > 1 ? shownCells_ : totalCells_; }
     void reserve(Executor& executor);
     void reserve(Flight& flight) const;
     void recordLights(Executor& executor, const LpvSweepInput& input, const Buffer* inner);
@@ -98,7 +104,7 @@ private:
     Device& device_;
     LpvSweepOptions options_;
     Kernel &injectTexels_, &injectVpls_, &unit_, &relight_, &begin_, &clear_, &coverTexels_, &coverSurfels_, &resolve_, &march_,
-        &combine_, &pack_, &gather_;
+        &combine_, &pack_, &gather_, &harmonics_;
     std::shared_ptr<Scratch> scratch_;
     std::shared_ptr<Flight> flights_[kFields];
     bool ownsScratch_, ownsFlights_;

@@ -1,6 +1,7 @@
 #include "techniques/fallback.h"
 
 #include <cstddef>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -9,6 +10,7 @@
 #include "compute/error.h"
 #include "inputs/image_access.h"
 #include "inputs/output_target.h"
+#include "techniques/fallback_points.h"
 
 namespace lightwell {
 namespace {
@@ -26,17 +28,6 @@ struct PartImages {
     PlanarImage irradiance, validity;
 };
 
-LWImage imageOver(const Planes& planes, LWFormat format) {
-    LWImage image{};
-    image.clMem = planes.memory;
-    image.format = format;
-    image.width = planes.width;
-    image.height = planes.height;
-    image.byteRowStride = planes.rowStride * std::int64_t(sizeof(float));
-    image.bytePlaneStride = format == LW_FORMAT_FLOAT1 ? 0 : planes.planeStride * std::int64_t(sizeof(float));
-    return image;
-}
-
 class Fallback final : public Technique {
 public:
     Fallback(Device& device, std::shared_ptr<Technique> first, std::shared_ptr<Technique> second)
@@ -53,12 +44,12 @@ public:
         isWhole_ = true;
         states_.purge();
         states_.each([](ViewState& state) { state.isRendered = false; });
+        if (points_) points_->startFrame();
     }
 
     void render(Executor& executor, const std::shared_ptr<View>& view, const LWGBuffer& gbuffer,
                 const LWOutput& output) override {
-        if (!isWhole_)
-            fail(LW_ERROR_NOT_UPDATED, "technique: expected an lwUpdate that both techniques accept before, got none");
+        checkWhole();
         checkLightOutputs(device_, *view, output, "fallback");
         ViewState& state = states_.get(view, [&] { return std::make_unique<ViewState>(device_, *view); });
         state.isRendered = false;
@@ -67,6 +58,13 @@ public:
         second_->render(executor, view, gbuffer, secondOutput);
         join(executor, *view, state, output);
         state.isRendered = true;
+    }
+
+    void renderPoints(Executor& executor, const Points& points) override {
+        checkWhole();
+        checkPoints(device_, points);
+        if (!points_) points_.emplace(device_, join_);
+        points_->render(executor, points, *first_, *second_);
     }
 
     void prewarm(Executor& executor, const std::shared_ptr<View>& view) override;
@@ -93,6 +91,10 @@ private:
         output.validity = imageOver(images.validity.planes(view.width, view.height), LW_FORMAT_FLOAT1);
         return output;
     }
+    void checkWhole() const {
+        if (!isWhole_)
+            fail(LW_ERROR_NOT_UPDATED, "technique: expected an lwUpdate that both techniques accept before, got none");
+    }
     void join(Executor& executor, const View& view, ViewState& state, const LWOutput& output);
     void runJoin(Executor& executor, const View& view, ViewState& state, const Planes& irradiance, const Planes& validity);
     const char* named(const char* part, const char* name);
@@ -102,6 +104,7 @@ private:
     Kernel& join_;
     bool isWhole_ = false;  // both techniques hold the same frame
     PerView<ViewState> states_;
+    std::optional<FallbackPoints> points_;  // from the first lwRenderPoints on
     std::set<std::string> names_;  // of both techniques' debug views
 };
 
@@ -133,6 +136,8 @@ void Fallback::prewarm(Executor& executor, const std::shared_ptr<View>& view) {
     const View small(16, 16);
     ViewState state(device_, small);
     runJoin(executor, small, state, state.first.irradiance.planes(16, 16), Planes{});
+    const FallbackPoints points(device_, join_);
+    points.exercise(executor);
     device_.finish();
 }
 
@@ -147,6 +152,7 @@ Report Fallback::report() {
         state.validity.report(report);
         report.read(device_, "saturated_pixels", state.saturated, 0);
     });
+    if (points_) points_->report(report);
     return report;
 }
 
@@ -174,7 +180,7 @@ std::vector<DebugView> Fallback::debugViews(const View* view) {
 }
 
 std::uint64_t Fallback::bytes() const {
-    std::uint64_t total = first_->bytes() + second_->bytes();
+    std::uint64_t total = first_->bytes() + second_->bytes() + (points_ ? points_->bytes() : 0);
     states_.each([&](const ViewState& state) {
         total += state.first.bytes() + state.second.bytes() + state.irradiance.bytes() + state.validity.bytes() +
                  state.saturated.bytes();
@@ -215,7 +221,7 @@ const TechniqueEntry& fallbackEntry() {
         TechniqueEntry made{};
         made.info = {sizeof(LWTechniqueInfo), sizeof(LWFallbackDesc), "fallback",
                      "two techniques: where the first has not seen a pixel's hemisphere, the second lights it",
-                     kParameters, 2, [](void* desc) { lwDefaultFallback(static_cast<LWFallbackDesc*>(desc)); }, 0, nullptr, 0, 0};
+                     kParameters, 2, [](void* desc) { lwDefaultFallback(static_cast<LWFallbackDesc*>(desc)); }, 0, nullptr, 0, 1};
         made.estimateBytes = estimateBytes;
         made.join = joinTechniques;
         return made;

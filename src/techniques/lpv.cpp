@@ -11,6 +11,7 @@
 #include "inputs/rsm_input.h"
 #include "shared/lpv_types.h"
 #include "techniques/lpv_parameters.h"
+#include "techniques/lpv_points.h"
 #include "techniques/lpv_view.h"
 #include "techniques/lpv_volume.h"
 #include "techniques/prewarm.h"
@@ -66,12 +67,19 @@ public:
         isCut_ = false;
         states_.purge();
         states_.each([](LpvView& state) { state.startFrame(); });
+        if (points_) points_->startFrame();
     }
 
     void render(Executor& executor, const std::shared_ptr<View>& view, const LWGBuffer& gbuffer, const LWOutput& output) override {
         checkLightOutputs(device_, *view, output, "lpv");
         LpvView& state = states_.get(view, [&] { return std::make_unique<LpvView>(device_, *view, isHalf(desc_)); });
         state.render(executor, *view, gbuffer, output, bilateral_ ? &*bilateral_ : nullptr, *volume_);
+    }
+
+    void renderPoints(Executor& executor, const Points& points) override {
+        checkPoints(device_, points);
+        if (!points_) points_.emplace(device_);
+        points_->render(executor, points, *volume_);
     }
 
     void prewarm(Executor& executor, const std::shared_ptr<View>&) override {
@@ -112,6 +120,7 @@ private:
             else if (source != LW_GEOMETRY_VOLUME_TRIANGLES) break;
             LpvTechnique twin(device_, desc);
             exerciseTechnique(executor, twin);
+            exercisePoints(executor, twin);
         }
         desc.geometryVolume = LW_GEOMETRY_VOLUME_OFF;
         LpvTechnique(device_, desc).prewarmVpls(executor);
@@ -124,6 +133,7 @@ private:
             LpvTechnique twin(device_, desc, hidden);
             twin.prewarmVpls(executor);
             exerciseTechnique(executor, twin);
+            exercisePoints(executor, twin);
         }
     }
     // A frame of VPLs, which exerciseTechnique's have none of.
@@ -148,6 +158,7 @@ private:
     std::unique_ptr<LpvVolume> volume_;
     std::optional<JointBilateral> bilateral_;  // with resolution=half
     PerView<LpvView> states_;
+    std::optional<LpvPoints> points_;  // from the first lwRenderPoints on
     std::vector<LWChoice> choices_;  // of the last update
 };
 
@@ -158,6 +169,7 @@ Report LpvTechnique::report() {
     if (volume_) volume_->report(report);
     LpvView::startReport(report);
     states_.each([&](const LpvView& state) { state.report(device_, report); });
+    if (points_) points_->report(report);
     return report;
 }
 
@@ -169,7 +181,7 @@ std::vector<DebugView> LpvTechnique::debugViews(const View* view) {
 }
 
 std::uint64_t LpvTechnique::bytes() const {
-    std::uint64_t total = rsms_.bytes() + (volume_ ? volume_->bytes() : 0);
+    std::uint64_t total = rsms_.bytes() + (volume_ ? volume_->bytes() : 0) + (points_ ? points_->bytes() : 0);
     states_.each([&](const LpvView& state) { total += state.bytes(); });
     return total;
 }

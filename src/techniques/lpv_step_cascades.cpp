@@ -61,6 +61,15 @@ void LpvStepCascades::recordGather(Executor& executor, const Planes& position, c
     }
 }
 
+void LpvStepCascades::recordHarmonics(Executor& executor, const Planes& position, const Planes& normal, const Harmonics& harmonics,
+                                       const Planes& validity, const Buffer& counts) {
+    const auto count = std::uint32_t(levels_.size());
+    for (std::uint32_t c = count; c-- > 0;) {
+        if (c + 1 < count && !harmonics) break;  // validity is the coarsest grid's
+        levels_[c]->all.recordHarmonics(executor, position, normal, places_.table(), calibration_, harmonics, validity, counts, {c, count});
+    }
+}
+
 std::vector<LWChoice> LpvStepCascades::choices(const LWFrame& frame, double) const {
     std::vector<LWChoice> choices = geometry_.choices(frame);
     choices.push_back(places_.choice());

@@ -31,6 +31,11 @@ void LpvStepVolume::recordGather(Executor& executor, const Planes& position, con
     read_.recordGather(executor, position, normal, grid_.place(), calibration_, desc_.damping != 0, irradiance, validity, counts);
 }
 
+void LpvStepVolume::recordHarmonics(Executor& executor, const Planes& position, const Planes& normal, const Harmonics& harmonics,
+                                    const Planes& validity, const Buffer& counts) {
+    read_.recordHarmonics(executor, position, normal, grid_.place(), calibration_, harmonics, validity, counts);
+}
+
 std::vector<LWChoice> LpvStepVolume::choices(const LWFrame& frame, double) const { return geometry_.choices(frame); }
 
 void LpvStepVolume::report(Report& report) const {

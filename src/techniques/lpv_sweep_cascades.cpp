@@ -57,6 +57,15 @@ void LpvSweepCascades::recordGather(Executor& executor, const Planes& position, 
     }
 }
 
+void LpvSweepCascades::recordHarmonics(Executor& executor, const Planes& position, const Planes& normal, const Harmonics& harmonics,
+                                       const Planes& validity, const Buffer& counts) {
+    const auto count = std::uint32_t(sweeps_.size());
+    for (std::uint32_t c = count; c-- > 0;) {
+        if (c + 1 < count && !harmonics) break;  // validity is the coarsest grid's
+        sweeps_[c]->recordHarmonics(executor, position, normal, harmonics, validity, counts, &places_.table(), {c, count});
+    }
+}
+
 std::vector<LWChoice> LpvSweepCascades::choices(const LWFrame& frame, double side) const {
     std::vector<LWChoice> choices = surfaces_.choices(frame, side);
     choices.push_back(places_.choice());

@@ -18,6 +18,10 @@ public:
                       const Planes& validity, const Buffer& counts) override {
         sweep_.recordGather(executor, position, normal, irradiance, validity, counts);
     }
+    void recordHarmonics(Executor& executor, const Planes& position, const Planes& normal, const Harmonics& harmonics,
+                         const Planes& validity, const Buffer& counts) override {
+        sweep_.recordHarmonics(executor, position, normal, harmonics, validity, counts);
+    }
     std::vector<LWChoice> choices(const LWFrame& frame, double side) const override { return surfaces_.choices(frame, side); }
     void report(Report& report) const override;
     std::uint64_t bytes() const override {

@@ -9,6 +9,7 @@
 #include "compute/report.h"
 #include "inputs/frame_shape.h"
 #include "inputs/rsm_input.h"
+#include "passes/harmonics.h"
 #include "passes/lpv_grid.h"
 #include "techniques/technique.h"
 
@@ -25,6 +26,9 @@ public:
     // After record(), as LpvRead::recordGather describes it.
     virtual void recordGather(Executor& executor, const Planes& position, const Planes& normal, const Planes& irradiance,
                               const Planes& validity, const Buffer& counts) = 0;
+    // The same as LpvRead::recordHarmonics describes it.
+    virtual void recordHarmonics(Executor& executor, const Planes& position, const Planes& normal, const Harmonics& harmonics,
+                                 const Planes& validity, const Buffer& counts) = 0;
 
     // What of the last record's frame was used, and what not. side: of the grid, or less.
     virtual std::vector<LWChoice> choices(const LWFrame& frame, double side) const = 0;

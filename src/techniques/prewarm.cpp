@@ -137,4 +137,20 @@ void exerciseTechnique(Executor& executor, Technique& technique, bool makesAmbie
     }
 }
 
+void exercisePoints(Executor& executor, Technique& technique) {
+    Inputs inputs;
+    const IdleAtEnd idle{executor.device()};
+    Points points;
+    points.count = kSize;
+    points.positions = inputs.row(inputs.position, LW_FORMAT_FLOAT3);
+    points.normals = inputs.row(inputs.normal, LW_FORMAT_FLOAT3);
+    points.output.structSize = sizeof points.output;
+    points.output.irradiance = inputs.row(inputs.irradiance, LW_FORMAT_FLOAT3);
+    points.output.validity = inputs.row(inputs.validity, LW_FORMAT_FLOAT1);
+    points.output.harmonics = imageOf(inputs.radiance, LW_FORMAT_FLOAT3);
+    points.output.harmonics.height = 4;
+    technique.renderPoints(executor, points);
+    executor.device().finish();
+}
+
 }  // namespace lightwell

@@ -9,5 +9,7 @@ namespace lightwell {
 // Blocks until the device has finished. The technique's state is that of the last made-up frame. makesAmbient: of
 // one that makes ambient occlusion too, beside the other outputs and alone.
 void exerciseTechnique(Executor& executor, Technique& technique, bool makesAmbient = false);
+// The same for its light at points, after that. Of one that has none at them: not to be called.
+void exercisePoints(Executor& executor, Technique& technique);
 
 }  // namespace lightwell

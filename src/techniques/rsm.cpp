@@ -11,6 +11,7 @@
 #include "techniques/interleaved_view.h"
 #include "techniques/prewarm.h"
 #include "techniques/rsm_parameters.h"
+#include "techniques/rsm_points.h"
 #include "techniques/technique_entry.h"
 
 namespace lightwell {
@@ -67,6 +68,7 @@ public:
         unused_ = unusedInputs(frame);
         states_.purge();
         states_.each([&](InterleavedView& state) { state.startFrame(forget); });
+        if (points_) points_->startFrame();
     }
 
     void render(Executor& executor, const std::shared_ptr<View>& view, const LWGBuffer& gbuffer,
@@ -83,12 +85,19 @@ public:
                      });
     }
 
+    void renderPoints(Executor& executor, const Points& points) override {
+        checkPoints(device_, points);
+        if (!points_) points_.emplace(device_);
+        points_->render(executor, points, sampling_.vpls(), sampling_.order());
+    }
+
     void prewarm(Executor& executor, const std::shared_ptr<View>&) override {
         // A twin, so that this technique's frame stays as it is; kernels belong to the device.
         LWRsmDesc desc = desc_;
         desc.vpls = std::min(desc.vpls, kPrewarmVpls);
         RsmTechnique twin(device_, desc);
         exerciseTechnique(executor, twin);
+        exercisePoints(executor, twin);
     }
 
     Report report() override;
@@ -108,6 +117,7 @@ private:
     std::optional<JointBilateral> bilateral_;  // half resolution only
     std::optional<TemporalHistory> history_;
     PerView<InterleavedView> states_;
+    std::optional<RsmPoints> points_;  // from the first lwRenderPoints on
     std::vector<LWChoice> unused_;  // of the last update
 };
 
@@ -123,6 +133,7 @@ Report RsmTechnique::report() {
     report.counts.push_back({"saturated_pixels", 0});
     if (history_) report.counts.push_back({"history_new", 0});
     states_.each([&](const InterleavedView& state) { state.report(device_, report, sampling_.order()); });
+    if (points_) points_->report(report);
     return report;
 }
 
@@ -139,7 +150,7 @@ std::vector<DebugView> RsmTechnique::debugViews(const View* view) {
 }
 
 std::uint64_t RsmTechnique::bytes() const {
-    std::uint64_t total = rsms_.bytes() + sampling_.bytes();
+    std::uint64_t total = rsms_.bytes() + sampling_.bytes() + (points_ ? points_->bytes() : 0);
     states_.each([&](const InterleavedView& state) { total += state.bytes(); });
     return total;
 }

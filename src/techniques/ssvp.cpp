@@ -18,6 +18,7 @@
 #include "techniques/ssvp_maps.h"
 #include "techniques/ssvp_options.h"
 #include "techniques/ssvp_parameters.h"
+#include "techniques/ssvp_points.h"
 #include "techniques/technique_entry.h"
 
 namespace lightwell {
@@ -90,12 +91,12 @@ public:
             if (i + 1 < desc_.bounces) lists.push_back({recordNext(executor, i)});
         }
         gather_.recordOrder(executor, lists);
-        vplCounts_.clear();
-        for (const GatheredList& list : lists) vplCounts_.push_back(list.vpls.count);
+        lists_ = std::move(lists);
 
         choices_ = inputChoices(maps_.choices(frame), desc_, frame);
         states_.purge();
         states_.each([&](InterleavedView& state) { state.startFrame(restart); });
+        if (points_) points_->startFrame();
     }
 
     void render(Executor& executor, const std::shared_ptr<View>& view, const LWGBuffer& gbuffer,
@@ -115,6 +116,12 @@ public:
                      });
     }
 
+    void renderPoints(Executor& executor, const Points& points) override {
+        checkPoints(device_, points);
+        if (!points_) points_.emplace(device_, visibilityOf(desc_));
+        points_->render(executor, points, lists_, mapsRead());
+    }
+
     void prewarm(Executor& executor, const std::shared_ptr<View>&) override {
         // Twins, so that this technique's frame stays as it is; one for each source of maps that a frame may bring.
         for (const LWOccluders occluders : {LW_OCCLUDERS_TRIANGLES, LW_OCCLUDERS_SURFELS, LW_OCCLUDERS_SCREEN}) {
@@ -123,6 +130,7 @@ public:
             desc.occluders = occluders;
             SsvpTechnique twin(device_, desc);
             exerciseTechnique(executor, twin);
+            exercisePoints(executor, twin);
         }
     }
 
@@ -174,13 +182,14 @@ private:
     std::optional<SsvpPlan> plan_;  // with an error target only
     std::deque<Stage> stages_;
     SsvpMaps maps_;
-    std::vector<std::uint32_t> vplCounts_;  // of each bounce
+    std::vector<GatheredList> lists_;  // of each bounce
     InterleavedGather passes_;
     ClusteredGather gather_;
     std::optional<JointBilateral> bilateral_;  // half resolution only
     std::optional<TemporalHistory> history_;
     std::optional<BoundingCompensation> compensation_;
     PerView<InterleavedView> states_;
+    std::optional<SsvpPoints> points_;  // from the first lwRenderPoints on
     std::vector<LWChoice> choices_;  // of the last update
 };
 
@@ -192,7 +201,7 @@ Report SsvpTechnique::report() {
     report.counts.push_back({"clusters", stages_[0].clusters.clusterCount()});
     constexpr const char* kLater[] = {"second_vpls", "third_vpls", "fourth_vpls"};
     for (std::size_t i = 1; i < desc_.bounces || i < 2; ++i)
-        report.counts.push_back({kLater[i - 1], i < vplCounts_.size() ? vplCounts_[i] : 0});
+        report.counts.push_back({kLater[i - 1], i < lists_.size() ? lists_[i].vpls.count : 0});
     for (const LWChoice& choice : choices_) report.choose(choice.name, choice.reason);
     if (plan_) plan_->report(report);
     report.counts.push_back({"rejected_pixels", 0});
@@ -201,6 +210,7 @@ Report SsvpTechnique::report() {
     if (history_) report.counts.push_back({"history_new", 0});
     if (compensation_) report.counts.push_back({"compensation_capped", 0});
     states_.each([&](const InterleavedView& state) { state.report(device_, report, gather_.order()); });
+    if (points_) points_->report(report);
     return report;
 }
 
@@ -240,7 +250,8 @@ std::vector<DebugView> SsvpTechnique::debugViews(const View* view) {
 
 std::uint64_t SsvpTechnique::bytes() const {
     std::uint64_t total = rsms_.bytes() + sampling_.bytes() + maps_.bytes() + gather_.bytes() +
-                          (plan_ ? plan_->bytes() : 0) + (compensation_ ? compensation_->bytes() : 0);
+                          (plan_ ? plan_->bytes() : 0) + (compensation_ ? compensation_->bytes() : 0) +
+                          (points_ ? points_->bytes() : 0);
     for (const Stage& stage : stages_) total += stage.clusters.bytes() + stage.next.bytes();
     states_.each([&](const InterleavedView& state) { total += state.bytes(); });
     return total;

@@ -66,6 +66,14 @@ TEST_CASE("a refused call leaves no wait in the host's queue", "[api][queues]") 
         CHECK(lwRender(fresh, rig.view, &scene.gbuffer, &output) == LW_ERROR_NOT_UPDATED);
         lwReleaseTechnique(fresh);
     }
+    SECTION("lwRenderPoints") {
+        LWImage positions = scene.position.image();  // 2-D: no list
+        LWPointOutput output{};
+        output.structSize = sizeof output;
+        output.validity = scene.validity.image();
+        output.sync = gate.sync();
+        CHECK(lwRenderPoints(rig.technique, &positions, nullptr, 24, &output) == LW_ERROR_INVALID_ARGUMENT);
+    }
     CHECK(gate.references() == 1);  // the host's alone
     // The host's own commands, and later frames, do not wait for an event that may never come.
     auto finished = std::async(std::launch::async, [&] { clFinish(rig.host.queue()); });

@@ -81,7 +81,72 @@ std::vector<float> expectedOf(const Pixels& pixels, const LpvCells& cells, bool 
     return result;
 }
 
+// c0, c1.x, c1.y, c1.z of three colours that arrive at points, one band below the other, with the points' number of rows each.
+std::vector<float> expectedBands(const Pixels& pixels, const LpvCells& cells, bool hasNormals) {
+    const std::size_t count = std::size_t(pixels.width) * pixels.height;
+    std::vector<float> result(12 * count);
+    for (std::size_t i = 0; i < count; ++i) {
+        double f[3];
+        int low[3];
+        bool inside = true, has = !hasNormals;
+        for (std::size_t a = 0; a < 3; ++a) {
+            const double n = hasNormals ? double(pixels.normal[a * count + i]) : 0.0;
+            has = has || n != 0.0;
+            const double g = (double(pixels.position[a * count + i]) - kOrigin[a]) / kCell + 0.5 * n;
+            inside = inside && g >= 0.0 && g <= kSize;
+            const double at = std::min(std::max(g - 0.5, 0.0), double(kSize - 1));
+            low[a] = std::min(int(at), kSize - 2);
+            f[a] = at - low[a];
+        }
+        if (!inside || !has) continue;
+        for (int c = 0; c < 3; ++c)
+            for (int b = 0; b < 4; ++b) {
+                double sum = 0.0;
+                for (int k = 0; k < 8; ++k)
+                    sum += (k & 1 ? f[0] : 1 - f[0]) * (k & 2 ? f[1] : 1 - f[1]) * (k & 4 ? f[2] : 1 - f[2]) *
+                           double(cells.at(4 * c + b, low[0] + (k & 1), low[1] + (k >> 1 & 1), low[2] + (k >> 2)));
+                // Cells know where light goes, points where it comes from.
+                result[(std::size_t(c) * 4 + std::size_t(b)) * count + i] = float((b ? -1.0 : 1.0) * kCalibration / (kCell * kCell) * sum);
+            }
+    }
+    return result;
+}
+
 }  // namespace
+
+TEST_CASE("points read both bands as a trilinear sum in double gives them, with normals and without", "[lpv_read]") {
+    const std::uint32_t width = GENERATE(1u, 16u);
+    const bool hasNormals = GENERATE(true, false);
+    KernelRig rig(width);
+    const LpvCells cells = randomLight(kSize, 0);
+    const Pixels pixels(45, 13);
+    LpvRead pass(rig.device(), kSize);
+    const Guarded grid = rig.upload(cells.laidOut());
+    LwLpvPlace place{};
+    place.origin = {{float(kOrigin[0]), float(kOrigin[1]), float(kOrigin[2]), float(1.0 / kCell)}};
+    place.cell = {{float(kCell), 1.0f, 1.0f, 0.0f}};
+    const Guarded placed = rig.upload(std::vector<LwLpvPlace>{place}), counts = rig.upload(std::vector<cl_int>(LpvRead::kCounts));
+    const Guarded position = rig.uploadPlanes(pixels.position, 45, 13, 3, NAN), normal = rig.uploadPlanes(pixels.normal, 45, 13, 3, NAN);
+    const Guarded light = rig.makePlanes(45, 4 * 13, 3), validity = rig.makePlanes(45, 13, 1), other = rig.makePlanes(45, 13, 1);
+    const Planes p = rig.planes(position, 45, 13, 3), n = hasNormals ? rig.planes(normal, 45, 13, 3) : Planes{},
+                 all = rig.planes(light, 45, 4 * 13, 3), v = rig.planes(validity, 45, 13, 1);
+    pass.recordPack(rig.executor(), grid);
+    pass.recordHarmonics(rig.executor(), p, n, placed, kCalibration, {all, cl_int(all.rowStride * 13)}, v, counts);
+    pass.recordHarmonics(rig.executor(), p, n, placed, kCalibration, {}, rig.planes(other, 45, 13, 1), counts);
+    rig.device().finish();
+    const std::vector<float> expected = expectedBands(pixels, cells, hasNormals);
+    CHECK(disagreement(rig.downloadPlanes(all), expected) == "");
+    std::vector<float> valid(45 * 13);
+    cl_int missing = 0;
+    for (std::size_t i = 0; i < valid.size(); ++i) {
+        valid[i] = expected[i] != 0.0f ? 1.0f : 0.0f;
+        missing += valid[i] == 0.0f && (!hasNormals || i % 17 != 5) ? 1 : 0;
+    }
+    CHECK(rig.downloadPlanes(v) == valid);
+    CHECK(rig.downloadPlanes(rig.planes(other, 45, 13, 1)) == valid);
+    CHECK(missing > 50);
+    CHECK(rig.download<cl_int>(counts) == std::vector<cl_int>{0, 0, 2 * missing});
+}
 
 TEST_CASE("pixels read what a trilinear sum in double gives them; outside there is nothing", "[lpv_read]") {
     const std::uint32_t width = GENERATE(1u, 16u);

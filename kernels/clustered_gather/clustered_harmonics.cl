@@ -1,0 +1,38 @@
+// The light of clustered VPLs at points, in two bands of spherical harmonics, with the visibility of each cluster's map: what
+// clustered_gather_gather takes, before a surface's cosine is known. A point without a normal is seen as far as nothing lies
+// before it.
+#include "clustered_visibility.h"
+#include "shared/subset_order.h"
+#include "shared/vpl_bands.h"
+
+// One work-item = LW_WIDTH points of a row, of a width x height image of them. vpls: float[12] each, order.capacity (even) of them,
+// sorted by cluster. frames ... seconds: as lw_maps, of `size` texels a side. harmonics, counts: as in
+// interleaved_gather_harmonics.
+__kernel void clustered_gather_harmonics(__global const float* position, int4 positionLayout, __global const float* normal,
+                                         int4 normalLayout, int hasNormals, int width, int height,
+                                         __global const float* vpls, lw_subset_order order,
+                                         __global const lw_paraboloid* frames, __global const float* records,
+                                         __global const lw_paraboloid* secondFrames, __global const float* secondRecords,
+                                         int seconds, int size, __global float* harmonics, int4 harmonicsLayout, int band,
+                                         __global int* counts) {
+    const int x = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);
+    if (x >= width || y >= height) return;
+    const lw_maps maps = {frames, records, secondFrames, secondRecords, seconds, size};
+    const lw_surface s = load_point(position, positionLayout, normal, normalLayout, hasNormals, x, y);
+    lw_bands sum = no_bands();
+    if (any_(s.valid)) {
+        lw_current current = {-1.0f, -1.0f, (real)1.0f, (real)1.0f};
+        for (int k = 0; k < order.capacity; k += 2) {
+            __global const float* const vpl[2] = {vpls + 12 * k, vpls + 12 * k + 12};
+            real facing[2], from[2][3];
+            reach_two_points(facing, from, s, vpl);
+            LW_UNROLL for (int u = 0; u < 2; ++u) {
+                const real seen = visibility_of(&current, maps, vpl[u], s);
+                add_bands(&sum, facing[u], from[u], seen, vpl[u]);
+            }
+        }
+    }
+    const mask saturated = store_bands(finish_bands(sum), s.valid, harmonics, harmonicsLayout, band, x, y);
+    const mask counted = and_(saturated, lanei_iota() + x < width);
+    if (any_(counted)) atomic_add(counts + 2, count_(counted));
+}

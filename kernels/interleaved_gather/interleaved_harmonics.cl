@@ -1,0 +1,27 @@
+// The light of all VPLs at points, in two bands of spherical harmonics: what the gather of irradiance at LW_INTERLEAVE 1 takes,
+// before a surface's cosine is known.
+#include "shared/subset_order.h"
+#include "shared/vpl_bands.h"
+
+// One work-item = LW_WIDTH points of a row, of a width x height image of them. vpls: float[12] each, order.capacity (even) of them.
+// harmonics: as store_bands; W/(sr m^2) sqrt(sr). counts[2]: points whose light was brought down.
+__kernel void interleaved_gather_harmonics(__global const float* position, int4 positionLayout, __global const float* normal,
+                                           int4 normalLayout, int hasNormals, int width, int height,
+                                           __global const float* vpls, lw_subset_order order, __global float* harmonics,
+                                           int4 harmonicsLayout, int band, __global int* counts) {
+    const int x = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);
+    if (x >= width || y >= height) return;
+    const lw_surface s = load_point(position, positionLayout, normal, normalLayout, hasNormals, x, y);
+    lw_bands sum = no_bands();
+    if (any_(s.valid)) {
+        for (int k = 0; k < order.capacity; k += 2) {
+            __global const float* const vpl[2] = {vpls + 12 * k, vpls + 12 * k + 12};
+            real facing[2], from[2][3];
+            reach_two_points(facing, from, s, vpl);
+            LW_UNROLL for (int u = 0; u < 2; ++u) add_bands(&sum, facing[u], from[u], (real)1.0f, vpl[u]);
+        }
+    }
+    const mask saturated = store_bands(finish_bands(sum), s.valid, harmonics, harmonicsLayout, band, x, y);
+    const mask counted = and_(saturated, lanei_iota() + x < width);
+    if (any_(counted)) atomic_add(counts + 2, count_(counted));
+}
