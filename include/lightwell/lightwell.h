@@ -45,8 +45,9 @@
  *
  * ERRORS: every fallible call returns an LWStatus. The first failure since the last lwGetLastError is
  * kept with a message that names the argument, what was expected and what came. After a failed call
- * the objects are as they were before it, unless memory or the device failed: a technique then asks for
- * another lwUpdate (LW_ERROR_NOT_UPDATED). Errors of the device's execution surface at the calls that wait,
+ * the objects are as they were before it, unless memory or the device failed: after an lwUpdate a technique then asks
+ * for another one (LW_ERROR_NOT_UPDATED); lwRender may be repeated, and what techniques keep from frame to frame starts
+ * anew with the next lwUpdate. Errors of the device's execution surface at the calls that wait,
  * and at the next lwUpdate or lwRender; whose command it was is not known, so all of the device's techniques
  * then ask for another lwUpdate.
  */

@@ -74,6 +74,15 @@ struct TechniqueObject : Object {
     bool isWhole() const {
         return !broken && std::all_of(parts.begin(), parts.end(), [](const auto& part) { return part->isWhole(); });
     }
+    void breakOff() {
+        setBroken(true);
+        lose();
+    }
+    // See Technique::lose.
+    void lose() {
+        technique->lose();
+        for (const auto& part : parts) part->lose();
+    }
     void setBroken(bool is) {
         broken = is;
         for (const auto& part : parts) part->setBroken(is);

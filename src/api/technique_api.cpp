@@ -47,6 +47,32 @@ void checkOutput(const LWOutput& output) {
     fail(LW_ERROR_INVALID_ARGUMENT, "output: expected at least one image, got none");
 }
 
+// Records what a view or points get of the last update, by `record`.
+template <class Record>
+void light(TechniqueObject& object, const LWSync* sync, Record record) {
+    if (!object.updated || !object.isWhole())
+        fail(LW_ERROR_NOT_UPDATED, "technique: expected a successful lwUpdate before, got none");
+    object.device->device.raiseFailure();
+    if (!object.current())
+        fail(LW_ERROR_NOT_UPDATED, "technique: expected another lwUpdate since commands failed on the device, got none");
+    Executor& executor = object.record->executor;
+    try {
+        executor.waitFor(sync);
+        record();
+        executor.signal(sync);
+        executor.flush();
+    } catch (const Error& error) {
+        executor.forgetWaits();  // the host may release its events as soon as the call is back
+        // The world part stays whole; what views keep may not. (Outputs that a technique has not are UNSUPPORTED, found out first.)
+        if (!refusedUnchanged(error.status()) && error.status() != LW_ERROR_UNSUPPORTED) object.lose();
+        throw;
+    } catch (...) {
+        executor.forgetWaits();
+        object.lose();
+        throw;
+    }
+}
+
 // Of it and of all of its parts.
 void checkMakesPoints(const TechniqueObject& object) {
     if (!object.entry->info.points) {
@@ -216,10 +242,10 @@ LWStatus lwUpdate(LWTechnique technique, const LWFrame* frame) {
             record->executor.signal(sync.get());
             record->executor.flush();
         } catch (const Error& error) {
-            if (!refusedUnchanged(error.status())) object->setBroken(true);
+            if (!refusedUnchanged(error.status())) object->breakOff();
             throw;
         } catch (...) {
-            object->setBroken(true);
+            object->breakOff();
             throw;
         }
         object->setBroken(false);
@@ -238,21 +264,7 @@ LWStatus lwRender(LWTechnique technique, LWView view, const LWGBuffer* gbuffer, 
         const LWOutput ownOutput = readStruct(output, "output");
         checkOutput(ownOutput);
         const SyncArgument sync(ownOutput.sync, call.owner()->device.context(), "output.sync");
-        if (!object->updated || !object->isWhole())
-            fail(LW_ERROR_NOT_UPDATED, "technique: expected a successful lwUpdate before, got none");
-        call.owner()->device.raiseFailure();
-        if (!object->current())
-            fail(LW_ERROR_NOT_UPDATED, "technique: expected another lwUpdate since commands failed on the device, got none");
-        Executor& executor = object->record->executor;
-        try {
-            executor.waitFor(sync.get());
-            object->technique->render(executor, own, ownGBuffer, ownOutput);
-            executor.signal(sync.get());
-            executor.flush();
-        } catch (...) {
-            executor.forgetWaits();  // the host may release its events as soon as the call is back
-            throw;
-        }
+        light(*object, sync.get(), [&] { object->technique->render(object->record->executor, own, ownGBuffer, ownOutput); });
     });
 }
 
@@ -263,20 +275,6 @@ LWStatus lwRenderPoints(LWTechnique technique, const LWImage* positions, const L
         const PointsArgument own(positions, normals, count, output);
         const SyncArgument sync(own.get().output.sync, call.owner()->device.context(), "output.sync");
         checkMakesPoints(*object);
-        if (!object->updated || !object->isWhole())
-            fail(LW_ERROR_NOT_UPDATED, "technique: expected a successful lwUpdate before, got none");
-        call.owner()->device.raiseFailure();
-        if (!object->current())
-            fail(LW_ERROR_NOT_UPDATED, "technique: expected another lwUpdate since commands failed on the device, got none");
-        Executor& executor = object->record->executor;
-        try {
-            executor.waitFor(sync.get());
-            object->technique->renderPoints(executor, own.get());
-            executor.signal(sync.get());
-            executor.flush();
-        } catch (...) {
-            executor.forgetWaits();  // the host may release its events as soon as the call is back
-            throw;
-        }
+        light(*object, sync.get(), [&] { object->technique->renderPoints(object->record->executor, own.get()); });
     });
 }

@@ -43,8 +43,7 @@ public:
           ambient_(device, pointOptions(desc, false)) {}
 
     void update(Executor&, const LWFrame& frame) override {
-        const bool lost = device_.failures() != failures_, forget = frame.reset != 0 || lost;
-        failures_ = device_.failures();
+        const bool lost = continuity_.beginLost(), forget = frame.reset != 0 || lost;
         if (desc_.history) turn_ = forget ? 0 : turn_ + 1;
         if (lost) {  // tables and borders that are written once may never have been
             states_.clear();
@@ -76,6 +75,8 @@ public:
         state.end(executor, passes_);
     }
 
+    void lose() override { continuity_.lose(); }
+
     void prewarm(Executor& executor, const std::shared_ptr<View>&) override {
         LWAoDesc desc = desc_;
         desc.method = LW_AO_SSDO;  // whose kernels are those of both
@@ -106,7 +107,7 @@ public:
 private:
     Device& device_;
     LWAoDesc desc_;
-    std::uint64_t failures_ = 0;  // that the device had seen when the last update began
+    Continuity continuity_{device_};
     std::uint32_t turn_ = 0;      // of the pattern, one a frame while there is a history
     ScreenPasses passes_;
     PointOcclusion light_, ambient_;

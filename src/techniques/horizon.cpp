@@ -50,8 +50,7 @@ public:
           ambient_(device, {patternOf(desc), false, desc.weighting == LW_AMBIENT_UNIFORM}) {}
 
     void update(Executor&, const LWFrame& frame) override {
-        const bool lost = device_.failures() != failures_, forget = frame.reset != 0 || lost;
-        failures_ = device_.failures();
+        const bool lost = continuity_.beginLost(), forget = frame.reset != 0 || lost;
         if (desc_.history) turn_ = forget ? 0 : turn_ + 1;
         if (lost) {  // tables and borders that are written once may never have been
             states_.clear();
@@ -89,6 +88,8 @@ public:
         screen.end(executor, passes_);
     }
 
+    void lose() override { continuity_.lose(); }
+
     void prewarm(Executor& executor, const std::shared_ptr<View>&) override {
         HorizonTechnique twin(device_, desc_);
         exerciseTechnique(executor, twin, true);
@@ -120,7 +121,7 @@ public:
 private:
     Device& device_;
     LWHorizonDesc desc_;
-    std::uint64_t failures_ = 0;  // that the device had seen when the last update began
+    Continuity continuity_{device_};
     std::uint32_t turn_ = 0;      // of the pattern, one a frame while there is a history
     ScreenPasses passes_;
     HorizonGather light_, ambient_;

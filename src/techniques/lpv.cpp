@@ -44,27 +44,24 @@ void checkEnvironment(const LWFrame& frame) {
 class LpvTechnique final : public Technique {
 public:
     LpvTechnique(Device& device, const LWLpvDesc& desc, int hidden = 0)
-        : device_(device), desc_(desc), hidden_(hidden), failures_(device.failures()), volume_(makeLpvVolume(device, desc, hidden)) {
+        : device_(device), desc_(desc), hidden_(hidden), volume_(makeLpvVolume(device, desc, hidden)) {
         if (isHalf(desc)) bilateral_.emplace(device);
         for (int a = 0; a < 3; ++a) placement_.centre[a] = desc.center[a];
         placement_.extent = desc.extent;
     }
 
     void update(Executor& executor, const LWFrame& frame) override {
-        const bool failed = device_.failures() != failures_ || isCut_;
-        if (failed) remake();
         checkEnvironment(frame);
         volume_->check(frame);
         box_.look(frame.geometry);
         rsms_.import(executor, frame);
-        isCut_ = true;
-        failures_ = device_.failures();
-        place(frame, failed);
+        const bool lost = continuity_.beginLost();
+        if (lost) remake();
+        place(frame, lost);
         volume_->record(executor, frame, rsms_, placement_);
         choices_ = unusedInputs(frame);
         const double side = desc_.extent > 0.0f ? double(desc_.extent) : double(box_.longest());
         for (const LWChoice& choice : volume_->choices(frame, side)) choices_.push_back(choice);
-        isCut_ = false;
         states_.purge();
         states_.each([](LpvView& state) { state.startFrame(); });
         if (points_) points_->startFrame();
@@ -82,6 +79,8 @@ public:
         points_->render(executor, points, *volume_);
     }
 
+    void lose() override { continuity_.lose(); }
+
     void prewarm(Executor& executor, const std::shared_ptr<View>&) override {
         if (desc_.transport == LW_LPV_TRANSPORT_SWEEP)
             prewarmSweep(executor);
@@ -96,17 +95,15 @@ public:
 private:
     // What its memory holds is not known.
     void remake() {
-        isCut_ = true;
-        volume_.reset();
         volume_ = makeLpvVolume(device_, desc_, hidden_);
     }
-    void place(const LWFrame& frame, bool failed) {
+    void place(const LWFrame& frame, bool lost) {
         placement_.hasBox = box_.isSome();
         for (int a = 0; a < 3; ++a) {
             placement_.low[a] = box_.low()[a];
             placement_.high[a] = box_.high()[a];
         }
-        placement_.refit = frame.reset != 0 || failed;
+        placement_.refit = frame.reset != 0 || lost;
         placement_.hasFocus = frame.focus != nullptr;
         for (int a = 0; a < 3; ++a) placement_.focus[a] = frame.focus ? frame.focus[a] : 0.0f;
     }
@@ -150,8 +147,7 @@ private:
     Device& device_;
     LWLpvDesc desc_;
     int hidden_;              // see makeLpvVolume
-    std::uint64_t failures_;  // that the device had seen when the last update began
-    bool isCut_ = false;      // the last update was not recorded to its end: what is kept from frame to frame may be half made
+    Continuity continuity_{device_};
     GeometryBox box_;
     LpvPlacement placement_;
     RsmInput rsms_;
@@ -166,7 +162,7 @@ Report LpvTechnique::report() {
     Report report;
     rsms_.report(report);
     for (const LWChoice& choice : choices_) report.choose(choice.name, choice.reason);
-    if (volume_) volume_->report(report);
+    volume_->report(report);
     LpvView::startReport(report);
     states_.each([&](const LpvView& state) { state.report(device_, report); });
     if (points_) points_->report(report);
@@ -175,13 +171,13 @@ Report LpvTechnique::report() {
 
 std::vector<DebugView> LpvTechnique::debugViews(const View* view) {
     std::vector<DebugView> views;
-    if (volume_) volume_->addDebugViews(views);
+    volume_->addDebugViews(views);
     if (const LpvView* state = states_.find(view)) state->addDebugViews(views);
     return views;
 }
 
 std::uint64_t LpvTechnique::bytes() const {
-    std::uint64_t total = rsms_.bytes() + (volume_ ? volume_->bytes() : 0) + (points_ ? points_->bytes() : 0);
+    std::uint64_t total = rsms_.bytes() + volume_->bytes() + (points_ ? points_->bytes() : 0);
     states_.each([&](const LpvView& state) { total += state.bytes(); });
     return total;
 }

@@ -60,9 +60,8 @@ public:
     }
 
     void update(Executor& executor, const LWFrame& frame) override {
-        const bool forget = frame.reset != 0 || device_.failures() != failures_;
-        failures_ = device_.failures();
         rsms_.import(executor, frame);
+        const bool forget = continuity_.beginLost() || frame.reset != 0;
         if (history_) sampling_.turn(forget ? turns_ = 0 : ++turns_);
         sampling_.record(executor, rsms_, frame.vpls, frame.vplCount);
         unused_ = unusedInputs(frame);
@@ -91,6 +90,8 @@ public:
         points_->render(executor, points, sampling_.vpls(), sampling_.order());
     }
 
+    void lose() override { continuity_.lose(); }
+
     void prewarm(Executor& executor, const std::shared_ptr<View>&) override {
         // A twin, so that this technique's frame stays as it is; kernels belong to the device.
         LWRsmDesc desc = desc_;
@@ -109,7 +110,7 @@ private:
 
     Device& device_;
     LWRsmDesc desc_;
-    std::uint64_t failures_ = 0;  // that the device had seen when the last update began
+    Continuity continuity_{device_};
     std::uint32_t turns_ = 0;     // of the sample set, one a frame while there is a history
     RsmInput rsms_;
     VplSampling sampling_;

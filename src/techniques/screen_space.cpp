@@ -71,8 +71,7 @@ public:
             ScreenPicture::check(device_, options_, sourceView(gbuffer, sourceName(i)), gbuffer, sourceName(i));
         }
         unused_ = unusedInputs(frame, desc_.cameras != 0);
-        const bool lost = device_.failures() != failures_, forget = frame.reset != 0 || lost;
-        failures_ = device_.failures();
+        const bool lost = continuity_.beginLost(), forget = frame.reset != 0 || lost;
         if (options_.keeps()) turn_ = forget ? 0 : turn_ + 1;
         if (lost) {  // patterns and borders that are written once may never have been
             states_.clear();
@@ -102,6 +101,8 @@ public:
         state.irradiance.end(executor);
         state.validity.end(executor);
     }
+
+    void lose() override { continuity_.lose(); }
 
     void prewarm(Executor& executor, const std::shared_ptr<View>&) override {
         ScreenSpaceTechnique twin(device_, desc_);
@@ -154,7 +155,7 @@ private:
     LWScreenSpaceDesc desc_;
     ScreenSpaceOptions options_;
     ScreenSpacePasses passes_;
-    std::uint64_t failures_ = 0;  // that the device had seen when the last update began
+    Continuity continuity_{device_};
     std::uint32_t turn_ = 0;      // of the sample patterns, one a frame while there is a history
     PerView<ViewState> states_;
     std::vector<Source> sources_;

@@ -63,12 +63,10 @@ public:
 
     void update(Executor& executor, const LWFrame& frame) override {
         maps_.check(frame);
-        // Commands of an earlier frame may have been lost: what it should have left of geometry, maps and clusters is not there.
-        const bool lost = device_.failures() != failures_;
-        if (lost) maps_.forget();
-        failures_ = device_.failures();
-        const bool restart = lost || frame.reset != 0;
         rsms_.import(executor, frame);
+        // Of an earlier frame may be lost what it should have left of geometry, maps and clusters.
+        const bool lost = continuity_.beginLost(), restart = lost || frame.reset != 0;
+        if (lost) maps_.forget();
         maps_.import(executor, frame, rsms_);
         if (plan_) plan_->begin(executor, restart);
         if (history_) sampling_.turn(restart ? turns_ = 0 : ++turns_);
@@ -121,6 +119,8 @@ public:
         if (!points_) points_.emplace(device_, visibilityOf(desc_));
         points_->render(executor, points, lists_, mapsRead());
     }
+
+    void lose() override { continuity_.lose(); }
 
     void prewarm(Executor& executor, const std::shared_ptr<View>&) override {
         // Twins, so that this technique's frame stays as it is; one for each source of maps that a frame may bring.
@@ -175,7 +175,7 @@ private:
 
     Device& device_;
     LWSsvpDesc desc_;
-    std::uint64_t failures_ = 0;  // that the device had seen when the last update began
+    Continuity continuity_{device_};
     std::uint32_t turns_ = 0;     // of the sample set, one a frame while there is a history
     RsmInput rsms_;
     VplSampling sampling_;

@@ -35,6 +35,22 @@ struct Points {
     LWPointOutput output{};
 };
 
+// Whether what earlier frames have left on the device can be built upon.
+class Continuity {
+public:
+    explicit Continuity(Device& device);
+    // Not in the next update(): a call broke off half-way.
+    void lose() { isLost_ = true; }
+    // Of an update() that will change things: whether all before it may be half made, be it that a call broke off or that
+    // commands failed on the device.
+    bool beginLost();
+
+private:
+    Device& device_;
+    std::uint64_t failures_;  // that the device had seen when the last update began
+    bool isLost_ = false;
+};
+
 class Technique {
 public:
     virtual ~Technique() = default;
@@ -48,6 +64,8 @@ public:
     virtual void renderPoints(Executor&, const Points&) {
         fail(LW_ERROR_INTERNAL, "technique: expected one that has light at points, got another");
     }
+    // A call has broken off half-way, for want of memory or of the device: what is kept from frame to frame may be half made.
+    virtual void lose() {}
     // Builds and launches every kernel that the parameters can need.
     virtual void prewarm(Executor& executor, const std::shared_ptr<View>& view) = 0;
 
