@@ -108,9 +108,11 @@ __kernel void lpv_blocking_triangles(__global const float* triangles, int stride
     const int t = lw_list_index();
     if (t >= count || !state->stale) return;
     const lpv_raster r = raster_of(triangles, stride, t, *grid, size);
+    if (r.lastU < r.firstU || r.lastV < r.firstV) return;
     const float full = r.area * LPV_WHOLE, most = (float)(size + 1);
     const float linear = (LPV_SIDE(r.nx, r.ny, r.nz) < 0.0f ? -LPV_LOBE1 : LPV_LOBE1) * full;
-    long run[LW_LPV_BANDS] = {0, 0, 0, 0};
+    const long units[LW_LPV_BANDS] = {(long)(LPV_LOBE0 * full), (long)(linear * r.nx), (long)(linear * r.ny), (long)(linear * r.nz)};
+    long run[LW_LPV_BANDS], found = 0;  // samples of the run's corner
     int corner = -1;
     for (int v = r.firstV; v <= r.lastV; ++v)
         for (int u = r.firstU; u <= r.lastU; ++u) {
@@ -120,15 +122,14 @@ __kernel void lpv_blocking_triangles(__global const float* triangles, int stride
             const int isNear = x >= 0.0f && x < most && y >= 0.0f && y < most && z >= 0.0f && z < most;
             const int to = isNear ? ((int)z * (size + 1) + (int)y) * (size + 1) + (int)x : -1;
             if (to != corner) {
+                for (int b = 0; b < LW_LPV_BANDS; ++b) run[b] = found * units[b];
                 end_run(run, corner, sums);
                 corner = to;
+                found = 0;
             }
-            if (to < 0) continue;
-            run[0] += (long)(LPV_LOBE0 * full);
-            run[1] += (long)(linear * r.nx);
-            run[2] += (long)(linear * r.ny);
-            run[3] += (long)(linear * r.nz);
+            ++found;
         }
+    for (int b = 0; b < LW_LPV_BANDS; ++b) run[b] = found * units[b];
     end_run(run, corner, sums);
 }
 
