@@ -7,6 +7,7 @@
 
 #include "compute/buffer.h"
 #include "compute/executor.h"
+#include "inputs/geometry_input.h"
 #include "inputs/rsm_input.h"
 #include "inputs/surfel_set.h"
 #include "passes/harmonics.h"
@@ -33,6 +34,7 @@ struct LpvSweepInput {
     float areaScale;      // of the surfels
     bool restart;         // nothing of the frames before is right any more
     const float* environment = nullptr;  // radiance from outside of the grid, of three colours; none: 0
+    const GeometryInput* triangles = nullptr;  // block in place of the surfels, as samples on the grid's own lattice
 };
 
 class LpvSweep {
@@ -103,8 +105,8 @@ private:
 
     Device& device_;
     LpvSweepOptions options_;
-    Kernel &injectTexels_, &injectVpls_, &unit_, &relight_, &begin_, &clear_, &coverTexels_, &coverSurfels_, &resolve_, &march_,
-        &combine_, &pack_, &gather_, &harmonics_;
+    Kernel &injectTexels_, &injectVpls_, &unit_, &relight_, &begin_, &clear_, &coverTexels_, &coverSurfels_, &coverTriangles_,
+        &resolve_, &march_, &combine_, &pack_, &gather_, &harmonics_;
     std::shared_ptr<Scratch> scratch_;
     std::shared_ptr<Flight> flights_[kFields];
     bool ownsScratch_, ownsFlights_;

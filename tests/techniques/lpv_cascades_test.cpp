@@ -112,6 +112,35 @@ TEST_CASE("sweeps through cascades: far light in a fine grid is no worse than th
     CHECK(fine < coarse + 0.01);
 }
 
+// All of the room lies where the finest grid, of side 2, has all of a pixel's light; no triangles, which a single grid draws by chance.
+TEST_CASE("cascades: what lies in the finest grid alone has the bits of that grid alone", "[lpv_cascades]") {
+    TestDevice device(16);
+    Room room;
+    room.triangles.geometry = LWGeometry{};
+    room.triangles.geometry.structSize = sizeof(LWGeometry);
+    const LWLpvTransport transport = anyTransport();
+    LWLpvDesc nested = descOf(transport, 3, 8.0f), one = descOf(transport, 1, 2.0f);
+    nested.geometryVolume = one.geometryVolume = LW_GEOMETRY_VOLUME_OFF;
+    const std::array<float, 3> focus = {0.01f, 0.51f, 0.51f};
+    const std::vector<float> light = room.render(device, one, &focus);
+    CHECK(meanOf(light) > 0.0);
+    CHECK((room.render(device, nested, &focus) == light));
+}
+
+// The finest grid holds the ceiling alone: it reads what a single grid as coarse as the next one has there, half a fine cell off the
+// ceiling where that is read half a coarse one off. (Propagated light does not reach a truth to compare with.)
+TEST_CASE("cascades: light of the coarser grid alone is that grid's", "[lpv_cascades]") {
+    TestDevice device(16);
+    Room room;
+    room.triangles.geometry = LWGeometry{};
+    room.triangles.geometry.structSize = sizeof(LWGeometry);
+    const LWLpvTransport transport = anyTransport();
+    LWLpvDesc nested = descOf(transport, 2, 4.0f), one = descOf(transport, 1, 4.0f);
+    nested.geometryVolume = one.geometryVolume = LW_GEOMETRY_VOLUME_OFF;
+    const std::array<float, 3> focus = {0.01f, 1.55f, 0.51f};
+    CHECK(difference(room.render(device, nested, &focus), room.render(device, one, &focus)) < 0.12);
+}
+
 // The ceiling lies in the finest grid, the floor in it (extent 8) or below (4).
 TEST_CASE("cascades: light of the world stays when grids move by a cell", "[lpv_cascades]") {
     TestDevice device(16);
