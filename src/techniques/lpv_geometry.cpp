@@ -20,6 +20,10 @@ std::uint32_t sampledCount(const LWLpvDesc& desc) { return kSurfelsOfSide * desc
 // Several grids take the triangles as they are, each on a lattice of its own.
 bool draws(const LWLpvDesc& desc) { return desc.cascades == 1; }
 
+// Nested grids of one size, or the levels of a pyramid.
+std::uint32_t gridsOf(const LWLpvDesc& desc, std::uint32_t levels) { return desc.cascades > 1 ? desc.cascades : levels; }
+std::uint32_t sizeOf(const LWLpvDesc& desc, std::uint32_t grid) { return desc.cascades > 1 ? desc.size : desc.size >> grid; }
+
 Source chosenSource(LWGeometryVolume volume, std::uint32_t triangles, std::uint32_t surfels) {
     switch (volume) {
         case LW_GEOMETRY_VOLUME_OFF:
@@ -53,10 +57,11 @@ const char* describe(Source source, bool draws) {
 
 }  // namespace
 
-LpvGeometry::LpvGeometry(Device& device, const LWLpvDesc& desc) : device_(device), desc_(desc) {
+LpvGeometry::LpvGeometry(Device& device, const LWLpvDesc& desc, std::uint32_t levels) : device_(device), desc_(desc) {
     if (desc.geometryVolume == LW_GEOMETRY_VOLUME_OFF) return;
     sampling_.emplace(device);
-    for (std::uint32_t c = 0; c < desc.cascades; ++c) blockings_.push_back(std::make_unique<LpvBlocking>(device, desc.size));
+    for (std::uint32_t grid = 0; grid < gridsOf(desc, levels); ++grid)
+        blockings_.push_back(std::make_unique<LpvBlocking>(device, sizeOf(desc, grid)));
 }
 
 Source LpvGeometry::sourceOf(const LWFrame& frame) const {
@@ -119,9 +124,9 @@ void LpvGeometry::importScreen(Executor& executor, const LWFrame& frame, const R
     }
 }
 
-std::optional<LpvBlockers> LpvGeometry::record(Executor& executor, const Buffer& place, std::size_t cascade) {
+std::optional<LpvBlockers> LpvGeometry::record(Executor& executor, const Buffer& place, std::size_t grid) {
     if (blockings_.empty()) return std::nullopt;
-    LpvBlocking& blocking = *blockings_[cascade];
+    LpvBlocking& blocking = *blockings_[grid];
     if (source_ == Source::triangles && !draws(desc_)) {
         blocking.record(executor, triangles_, place);
         return blocking.blockers();
@@ -156,7 +161,8 @@ void LpvGeometry::report(Report& report) const {
         if (draws(desc_)) report.counts.push_back({"surfels", sampling_->surfels().count});
     }
     report.counts.push_back({"surfels_outside", 0});
-    const Buffer& state = blockings_.back()->state();  // finer grids lie in the coarsest
+    // Finer cascades lie in the coarsest; a pyramid's levels all lie in one place, and the finest has the sharpest border.
+    const Buffer& state = (desc_.cascades > 1 ? blockings_.back() : blockings_.front())->state();
     if (state) report.read(device_, "surfels_outside", state, offsetof(LwLpvBlockers, surfelsOutside));
 }
 
@@ -166,9 +172,11 @@ std::uint64_t LpvGeometry::bytes() const {
     return total;
 }
 
-std::uint64_t LpvGeometry::estimateBytes(const LWLpvDesc& desc, const FrameShape& shape) {
+std::uint64_t LpvGeometry::estimateBytes(const LWLpvDesc& desc, const FrameShape& shape, std::uint32_t levels) {
     const Source source = chosenSource(desc.geometryVolume, shape.triangles, shape.surfels);
-    std::uint64_t total = source == Source::none ? 0 : desc.cascades * LpvBlocking::estimateBytes(desc.size);
+    std::uint64_t total = 0;
+    for (std::uint32_t grid = 0; source != Source::none && grid < gridsOf(desc, levels); ++grid)
+        total += LpvBlocking::estimateBytes(sizeOf(desc, grid));
     if (source == Source::triangles) total += GeometryInput::estimateBytes(shape.triangles);
     if (source == Source::triangles && draws(desc)) total += SurfelSampling::estimateBytes(shape.triangles, sampledCount(desc));
     if (source == Source::surfels) total += SurfelInput::estimateBytes(shape.surfels, shape.uploads);

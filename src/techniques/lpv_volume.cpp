@@ -1,14 +1,26 @@
 #include "techniques/lpv_volume.h"
 
+#include "compute/error.h"
+#include "techniques/lpv_pyramid_volume.h"
 #include "techniques/lpv_step_cascades.h"
 #include "techniques/lpv_step_volume.h"
 #include "techniques/lpv_sweep_cascades.h"
 #include "techniques/lpv_sweep_volume.h"
 
 namespace lightwell {
+namespace {
+
+const LWLpvDesc& checkedPyramid(const LWLpvDesc& desc) {
+    if (desc.cascades > 1)
+        fail(LW_ERROR_INVALID_ARGUMENT, "desc.cascades: expected 1 with transport=coarse_to_fine, got ", desc.cascades);
+    return desc;
+}
+
+}  // namespace
 
 std::unique_ptr<LpvVolume> makeLpvVolume(Device& device, const LWLpvDesc& desc, int hidden) {
     const bool sweeps = desc.transport == LW_LPV_TRANSPORT_SWEEP;
+    if (desc.transport == LW_LPV_TRANSPORT_COARSE_TO_FINE) return std::make_unique<LpvPyramidVolume>(device, checkedPyramid(desc));
     if (desc.cascades > 1 && sweeps) return std::make_unique<LpvSweepCascades>(device, desc, hidden);
     if (desc.cascades > 1) return std::make_unique<LpvStepCascades>(device, desc);
     if (sweeps) return std::make_unique<LpvSweepVolume>(device, desc, hidden);
@@ -17,6 +29,7 @@ std::unique_ptr<LpvVolume> makeLpvVolume(Device& device, const LWLpvDesc& desc, 
 
 std::uint64_t estimateLpvVolumeBytes(const LWLpvDesc& desc, const FrameShape& shape) {
     const bool sweeps = desc.transport == LW_LPV_TRANSPORT_SWEEP;
+    if (desc.transport == LW_LPV_TRANSPORT_COARSE_TO_FINE) return LpvPyramidVolume::estimateBytes(checkedPyramid(desc), shape);
     if (desc.cascades > 1) return sweeps ? LpvSweepCascades::estimateBytes(desc, shape) : LpvStepCascades::estimateBytes(desc, shape);
     return sweeps ? LpvSweepVolume::estimateBytes(desc, shape) : LpvStepVolume::estimateBytes(desc, shape);
 }
