@@ -63,74 +63,7 @@ LW_FN float4 light_at(__global const float16* cells, int size, const float* at, 
     return v.s0123 * LPV_LOBE0 - (v.s4567 * nx + v.s89ab * ny + v.scdef * nz) * LPV_LOBE1;
 }
 
-// One work-item = LW_WIDTH pixels of a row. hasIrradiance, hasValidity: which are wanted; the other's arguments are not
-// touched. Validity is 1 where the grid has the surface, 0 elsewhere, where irradiance is 0 as well. counts[0]: pixels that are
-// neither surface nor background; counts[1]: whose light was brought down; counts[2]: surfaces that the grid does not have.
-__kernel void lpv_read_gather(__global const float* position, int4 positionLayout, __global const float* normal,
-                            int4 normalLayout, int width, int height, __global const LwLpvPlace* grid, int size,
-                            __global const float16* cells, float calibration, int isDamped, int hasIrradiance, int hasValidity,
-                            __global float* irradiance, int4 irradianceLayout, __global float* validity, int4 validityLayout,
-                            __global int* counts) {
-    const int x = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);
-    if (x >= width || y >= height) return;
-    const LwLpvPlace place = *grid;
-    const lw_surface s = load_surface(position, positionLayout, normal, normalLayout, x, y);
-    const mask shown = lanei_iota() + x < width;
-    const float inverse = place.origin.w, most = (float)size;
-    // In cells from the grid's corner, half a cell off the surface.
-    const real gx = fma_(s.nx, (real)0.5f, (s.px - place.origin.x) * inverse);
-    const real gy = fma_(s.ny, (real)0.5f, (s.py - place.origin.y) * inverse);
-    const real gz = fma_(s.nz, (real)0.5f, (s.pz - place.origin.z) * inverse);
-    const mask within = and_(and_(and_(gx >= 0.0f, gx <= most), and_(gy >= 0.0f, gy <= most)), and_(gz >= 0.0f, gz <= most));
-    const mask has = and_(s.valid, and_(within, splat_mask(inverse > 0.0f)));
-
-    const mask rejected = and_(s.rejected, shown), missing = and_(and_(s.valid, not_(has)), shown);
-    if (any_(rejected)) atomic_add(counts, count_(rejected));
-    if (any_(missing)) atomic_add(counts + 2, count_(missing));
-    if (hasValidity) store(ones_(has), validity, validityLayout.x + y * validityLayout.y + x);
-    if (!hasIrradiance) return;
-
-    lanei ix, iy, iz;
-    const real none = (real)0.0f;
-    const real fx = split(select_(none, gx - 0.5f, has), size, &ix), fy = split(select_(none, gy - 0.5f, has), size, &iy),
-               fz = split(select_(none, gz - 0.5f, has), size, &iz);
-    // Pixel by pixel: one load takes all of a cell, where lanes of pixels would gather every number alone.
-    float px[LW_WIDTH], py[LW_WIDTH], pz[LW_WIDTH], nx[LW_WIDTH], ny[LW_WIDTH], nz[LW_WIDTH];
-    float light[LW_LPV_COLOURS][LW_WIDTH];
-    int corner[LW_WIDTH];
-    store(fx, px, 0);
-    store(fy, py, 0);
-    store(fz, pz, 0);
-    store(s.nx, nx, 0);
-    store(s.ny, ny, 0);
-    store(s.nz, nz, 0);
-    store((iz * size + iy) * size + ix, corner, 0);
-    for (int l = 0; l < LW_WIDTH; ++l) {
-        const float16 v = interpolate(cells + corner[l], size, px[l], py[l], pz[l]);
-        float4 e = v.s0123 * LPV_LOBE0 - (v.s4567 * nx[l] + v.s89ab * ny[l] + v.scdef * nz[l]) * LPV_LOBE1;
-        if (isDamped) {
-            const int lower = corner[l];
-            const float further[3] = {(float)(lower % size) + px[l] + nx[l], (float)(lower / size % size) + py[l] + ny[l],
-                                      (float)(lower / (size * size)) + pz[l] + nz[l]};
-            e = fmin(e, light_at(cells, size, further, nx[l], ny[l], nz[l]));
-        }
-        light[0][l] = e.x;
-        light[1][l] = e.y;
-        light[2][l] = e.z;
-    }
-    const int e = irradianceLayout.x + y * irradianceLayout.y + x;
-    mask saturated = splat_mask(0);
-    for (int c = 0; c < LW_LPV_COLOURS; ++c) {
-        const real found = fmax(load(light[c], 0), none) * calibration * inverse * inverse;
-        const real value = select_(none, found, has);
-        saturated = or_(saturated, value > LW_LARGEST_IRRADIANCE);
-        store(fmin(value, (real)LW_LARGEST_IRRADIANCE), irradiance, e + c * irradianceLayout.z);
-    }
-    saturated = and_(saturated, shown);
-    if (any_(saturated)) atomic_add(counts + 1, count_(saturated));
-}
-
-// Where points read, in cells from the grid's corner: half a cell off their surfaces; and which of them the grid has.
+// Where surfaces read, in cells from the grid's corner: half a cell off; and which of them the grid has.
 typedef struct {
     real x, y, z;
     mask has;
@@ -155,6 +88,68 @@ LW_FN lanei corner_of(const lpv_reader r, int size, real* fx, real* fy, real* fz
     *fy = split(select_(none, r.y - 0.5f, r.has), size, &iy);
     *fz = split(select_(none, r.z - 0.5f, r.has), size, &iz);
     return (iz * size + iy) * size + ix;
+}
+
+// One work-item = LW_WIDTH pixels of a row. hasIrradiance, hasValidity: which are wanted; the other's arguments are not
+// touched. Validity is 1 where the grid has the surface, 0 elsewhere, where irradiance is 0 as well. counts[0]: pixels that are
+// neither surface nor background; counts[1]: whose light was brought down; counts[2]: surfaces that the grid does not have.
+__kernel void lpv_read_gather(__global const float* position, int4 positionLayout, __global const float* normal,
+                            int4 normalLayout, int width, int height, __global const LwLpvPlace* grid, int size,
+                            __global const float16* cells, float calibration, int isDamped, int hasIrradiance, int hasValidity,
+                            __global float* irradiance, int4 irradianceLayout, __global float* validity, int4 validityLayout,
+                            __global int* counts) {
+    const int x = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);
+    if (x >= width || y >= height) return;
+    const LwLpvPlace place = *grid;
+    const lw_surface s = load_surface(position, positionLayout, normal, normalLayout, x, y);
+    const mask shown = lanei_iota() + x < width;
+    const lpv_reader reader = reader_of(s, place, size);
+    const mask has = reader.has;
+    const float inverse = place.origin.w;
+
+    const mask rejected = and_(s.rejected, shown), missing = and_(and_(s.valid, not_(has)), shown);
+    if (any_(rejected)) atomic_add(counts, count_(rejected));
+    if (any_(missing)) atomic_add(counts + 2, count_(missing));
+    if (hasValidity) store(ones_(has), validity, validityLayout.x + y * validityLayout.y + x);
+    if (!hasIrradiance) return;
+
+    const real none = (real)0.0f;
+    real fx, fy, fz;
+    const lanei corners = corner_of(reader, size, &fx, &fy, &fz);
+    // Pixel by pixel: one load takes all of a cell, where lanes of pixels would gather every number alone.
+    float px[LW_WIDTH], py[LW_WIDTH], pz[LW_WIDTH], nx[LW_WIDTH], ny[LW_WIDTH], nz[LW_WIDTH];
+    float light[LW_LPV_COLOURS][LW_WIDTH];
+    int corner[LW_WIDTH];
+    store(fx, px, 0);
+    store(fy, py, 0);
+    store(fz, pz, 0);
+    store(s.nx, nx, 0);
+    store(s.ny, ny, 0);
+    store(s.nz, nz, 0);
+    store(corners, corner, 0);
+    for (int l = 0; l < LW_WIDTH; ++l) {
+        const float16 v = interpolate(cells + corner[l], size, px[l], py[l], pz[l]);
+        float4 e = v.s0123 * LPV_LOBE0 - (v.s4567 * nx[l] + v.s89ab * ny[l] + v.scdef * nz[l]) * LPV_LOBE1;
+        if (isDamped) {
+            const int lower = corner[l];
+            const float further[3] = {(float)(lower % size) + px[l] + nx[l], (float)(lower / size % size) + py[l] + ny[l],
+                                      (float)(lower / (size * size)) + pz[l] + nz[l]};
+            e = fmin(e, light_at(cells, size, further, nx[l], ny[l], nz[l]));
+        }
+        light[0][l] = e.x;
+        light[1][l] = e.y;
+        light[2][l] = e.z;
+    }
+    const int e = irradianceLayout.x + y * irradianceLayout.y + x;
+    mask saturated = splat_mask(0);
+    for (int c = 0; c < LW_LPV_COLOURS; ++c) {
+        const real found = fmax(load(light[c], 0), none) * calibration * inverse * inverse;
+        const real value = select_(none, found, has);
+        saturated = or_(saturated, value > LW_LARGEST_IRRADIANCE);
+        store(fmin(value, (real)LW_LARGEST_IRRADIANCE), irradiance, e + c * irradianceLayout.z);
+    }
+    saturated = and_(saturated, shown);
+    if (any_(saturated)) atomic_add(counts + 1, count_(saturated));
 }
 
 // One work-item = LW_WIDTH points of a row: the light that arrives there, in two bands. A cell's is radiant intensity of light that
