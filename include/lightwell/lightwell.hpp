@@ -173,6 +173,9 @@ public:
     void render(const View& view, const LWGBuffer& gbuffer, const LWOutput& output) {
         check(lwRender(get(), view.get(), &gbuffer, &output), device_.get());
     }
+    void renderPoints(const LWImage& positions, const LWImage* normals, std::uint32_t count, const LWPointOutput& output) {
+        check(lwRenderPoints(get(), &positions, normals, count, &output), device_.get());
+    }
     // The arrays it points to live until the next call.
     LWStats stats() const {
         auto result = make<LWStats>();

@@ -107,7 +107,7 @@ __kernel void lpv_sweep_gather(__global const float* position, int4 positionLayo
 
 // One work-item = LW_WIDTH points of a row: the light that arrives there, in two bands. The cells know q, the irradiance of their
 // six sides. Those of an axis differ by the light's vector along it, so that c1 = Y1 (q(+) - q(-)) is exact; c0 = sum q / (6 pi Y0) is
-// what fits all six best, and exact for light that comes alike from opposite sides of each axis: of light from one direction d it is
+// what fits all six best, and exact for light that is the same from everywhere: of light from one direction d it is
 // 2/3 (|d.x| + |d.y| + |d.z|) of what it should be, 0.67 along an axis, 1.15 along a diagonal, 1 on average. Read once, half a cell
 // off a surface; points without normals read where they are. hasHarmonics, hasValidity, validity and counts: as
 // lpv_sweep_gather's.

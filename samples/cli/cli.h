@@ -91,6 +91,7 @@ void addTriptych(CLI::App& app);
 void addChart(CLI::App& app);
 void addSplit(CLI::App& app);
 void addVisibility(CLI::App& app);
+void addProbes(CLI::App& app);
 void addStability(CLI::App& app);
 void addCheck(CLI::App& app);
 

@@ -79,6 +79,7 @@ int main(int argc, char** argv) {
         cli::addChart(app);
         cli::addSplit(app);
         cli::addVisibility(app);
+        cli::addProbes(app);
         cli::addStability(app);
         cli::addCheck(app);
         return parse(app, argc, argv);
