@@ -16,6 +16,7 @@ from program import ROOT, caller, read_options, write_between
 
 BEGIN, END = "<!-- begin: figures -->", "<!-- end: figures -->"
 COLOURS = ("R", "G", "B")
+SHADING = [f"{layer}.{c}" for layer in ("direct", "albedo", "normal") for c in COLOURS]
 # The hemisphere of the source's SSAO, evenly covered and packed towards its centre; its radius is not published.
 SSAO = ["method=ssao", "weighting=uniform", "resolution=full"]
 SPONZA = {"cameras": [{"name": "overview", "position": [-9.5, 2.2, -0.3], "target": [5, 3, 0], "vertical_fov_degrees": 55},
@@ -57,19 +58,16 @@ class Setting:
             return picture
         out = picture.with_name(picture.stem + "_ssao.exr")
         if not out.exists():
-            names = (*COLOURS, *(f"{layer}.{c}" for layer in ("direct", "albedo") for c in COLOURS), *(f"normal.{a}" for a in "XYZ"))
-            planes = exr_planes.read_planes(picture, names)
+            planes = exr_planes.read_planes(picture, [*COLOURS, *SHADING])
             planes[..., :3] *= exr_planes.read_planes(self.render("ao", SSAO, "--quantity", "ambient-occlusion"), ("R",))
-            exr_planes.write_planes(out, {name: planes[..., i] for i, name in enumerate(names)})
+            write(out, planes)
         return out
 
-    def one_bounce(self):
-        """The truth's own first bounce, as a reference."""
-        out = self.path("truth_bounce1")
+    def part(self, layer):
+        """A layer of the truth as a picture of its own: "bounce1", the first bounce; "a.all" and "b.all", halves of the paths."""
+        out = self.path("truth_" + layer)
         if not out.exists():
-            shading = [f"{layer}.{c}" for layer in ("direct", "albedo") for c in COLOURS] + [f"normal.{a}" for a in "XYZ"]
-            planes = exr_planes.read_planes(self.truth, [f"bounce1.{c}" for c in COLOURS] + shading)
-            exr_planes.write_planes(out, {name: planes[..., i] for i, name in enumerate([*COLOURS, *shading])})
+            write(out, exr_planes.read_planes(self.truth, [*(f"{layer}.{c}" for c in COLOURS), *SHADING]))
         return out
 
     def figures(self, picture, truth=None):
@@ -80,15 +78,11 @@ class Setting:
 
     def floor(self):
         """Score of one half of the truth's paths against the other: what noise alone costs, twice over."""
-        halves = []
-        for half in "ab":
-            out = self.path(f"truth_{half}")
-            if not out.exists():
-                shading = [f"{layer}.{c}" for layer in ("direct", "albedo") for c in COLOURS]
-                planes = exr_planes.read_planes(self.truth, [f"{half}.all.{c}" for c in COLOURS] + shading)
-                exr_planes.write_planes(out, {name: planes[..., i] for i, name in enumerate([*COLOURS, *shading])})
-            halves.append(out)
-        return json.loads(self.call("compare", *halves, "--json"))["score"]
+        return self.figures(self.part("a.all"), self.part("b.all"))["score"]
+
+
+def write(path, planes):
+    exr_planes.write_planes(path, {name: planes[..., i] for i, name in enumerate([*COLOURS, *SHADING])})
 
 
 def scene_file(options, call, scene):
@@ -154,7 +148,7 @@ def own_table(settings, scene):
         for view in views:
             setting = settings[scene, view]
             picture = setting.row(*what)
-            found, one = setting.figures(picture), setting.figures(picture, setting.one_bounce())
+            found, one = setting.figures(picture), setting.figures(picture, setting.part("bounce1"))
             cells.append(f"{found['score']:.2f} | {found['relMSE']:.3g} | {one['relMSE']:.3g} | {percent(found['bias'])}")
         lines.append(f"| {row} | " + " | ".join(cells) + " |")
     return lines + [""]

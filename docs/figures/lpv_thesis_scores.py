@@ -3,8 +3,9 @@
 SCENES = {"basic": {"title": "Basic scene", "views": ["overview", "bleeding"], "size": "1280x720"},
           "sponza": {"title": "Sponza", "views": ["overview", "cloth"], "size": "640x480"}}
 
-# Its geometry volume is made of the shadow map and the camera's depth. Cascades: four grids, the finest 10 units wide.
-PLAIN, NESTED = ["geometry_volume=screen"], ["geometry_volume=screen", "cascades=4", "extent=10"]
+# Its geometry volume is made of the shadow map and the camera's depth. Cascades: four grids, the finest 10 m wide (ours is this Sponza's
+# unit; the source does not say what its own is), so the largest 80.
+PLAIN, NESTED = ["geometry_volume=screen"], ["geometry_volume=screen", "cascades=4", "extent=80"]
 # Row: technique, settings, whether its light is multiplied by SSAO.
 ROWS = {
     "LPV 32": ("lpv", ["size=32", *PLAIN], False), "LPV 32, SSAO": ("lpv", ["size=32", *PLAIN], True),
