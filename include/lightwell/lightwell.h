@@ -356,6 +356,8 @@ typedef struct LWFrame {
     const LWGeometry* geometry;
     float environment[3];      /**< radiance from infinity, constant over directions */
     const LWSync* sync;
+    const float* focus;        /**< xyz in world space, host memory: what grids that do not hold all of the scene lie around,
+                                    the eye or a point ahead of it ("lpv"); or null */
 } LWFrame;
 
 /** Where results go; each image optional (format LW_FORMAT_NONE), at least one given. Writable host
@@ -370,6 +372,19 @@ typedef struct LWOutput {
     LWImage shadow;            /**< 1 channel */
     const LWSync* sync;
 } LWOutput;
+
+/** Where the light at points goes (lwRenderPoints): writable host memory or cl_mem; each image optional, at least one of the
+ *  three given. */
+typedef struct LWPointOutput {
+    uint32_t structSize;
+    LWImage irradiance; /**< indirect diffuse irradiance at each point's normal, 3 channels, count x 1 pixels, W/m^2 */
+    LWImage harmonics;  /**< the indirect radiance that arrives, in two bands of spherical harmonics, 3 channels, count x 4 pixels:
+                             rows c0, c1.x, c1.y, c1.z of L(d) = Y0 c0 + Y1 (c1 . d), d towards the light,
+                             Y0 = 1 / (2 sqrt(pi)), Y1 = sqrt(3 / (4 pi)). Irradiance of a normal n:
+                             max(0, pi Y0 c0 + (2 pi / 3) Y1 (c1 . n)) */
+    LWImage validity;   /**< 1 channel in [0,1], count x 1 pixels */
+    const LWSync* sync;
+} LWPointOutput;
 
 /* ---------------------------------------------------------------------------------------- views */
 
@@ -577,8 +592,9 @@ typedef enum LWGeometryVolume {
 /** How technique "lpv" carries light through its grid. */
 typedef enum LWLpvTransport {
     LW_LPV_TRANSPORT_PROPAGATE = 0, /**< from cell to cell, as light propagation volumes do: short range */
-    LW_LPV_TRANSPORT_SWEEP = 1      /**< straight through the grid in a fixed set of directions, stopped by LWGeometry's triangles,
+    LW_LPV_TRANSPORT_SWEEP = 1,     /**< straight through the grid in a fixed set of directions, stopped by LWGeometry's triangles,
                                          else its surfels, else the RSMs' texels; `size` at most 64 */
+    LW_LPV_TRANSPORT_COARSE_TO_FINE = 2 /**< from cell to cell on a pyramid of grids, a few steps on each */
 } LWLpvTransport;
 
 /** Technique "lpv": the light of RSMs and authored VPLs spread through a cubic grid of cells, as two bands of spherical
@@ -598,6 +614,9 @@ typedef struct LWLpvDesc {
     uint32_t bounces;    /**< of sweeps: 1 .. 8, from the second on by what the triangles or surfels send on */
     uint32_t frames;     /**< that each bounce of a sweep is spread over: 1, 2, 4, 6, 8, 12, 24; the last result shows meanwhile */
     LWResolution resolution; /**< HALF: light is read on every second pixel and row, then up-sampled; validity of every pixel */
+    uint32_t cascades;   /**< 1 .. 6 grids of `size` cells, each half as large as the one around it, `extent` the largest one's */
+    float autoError;     /**< of propagation, above 0: `steps` is the most, and light that is still on its way is dropped once it
+                              is less than this share of all; 0: always all steps; 0 .. 1 */
 } LWLpvDesc;
 
 LW_API void lwDefaultLpv(LWLpvDesc* desc);
@@ -645,6 +664,7 @@ typedef struct LWTechniqueInfo {
                                     parameter `bounces`, that parameter says it */
     const LWSetting* settings; /**< beside the sweeps of the parameters; or null */
     uint32_t settingCount;
+    uint32_t points;           /**< 1: lwRenderPoints can have its light */
 } LWTechniqueInfo;
 
 LW_API uint32_t lwCountTechniques(void);
@@ -688,6 +708,14 @@ LW_API LWStatus lwUpdate(LWTechnique technique, const LWFrame* frame);
  *  view's current size. Errors: INVALID_*, NOT_UPDATED, OUT_OF_MEMORY. */
 LW_API LWStatus lwRender(LWTechnique technique, LWView view, const LWGBuffer* gbuffer,
                          const LWOutput* output);
+
+/** Enqueues the indirect light at `count` points from the last lwUpdate: of objects that are lit forward, particles, probes.
+ *  `positions`, `normals`: 3 channels, world space, count x 1 pixels. `normals` may be null where irradiance is not asked for.
+ *  A point without a finite position, or with a zero normal, gets 0 and validity 0, and is counted ("rejected_points").
+ *  Techniques that take their light from a view's own pixels have none at points (LWTechniqueInfo::points).
+ *  Errors: INVALID_*, UNSUPPORTED, NOT_UPDATED, OUT_OF_MEMORY. */
+LW_API LWStatus lwRenderPoints(LWTechnique technique, const LWImage* positions, const LWImage* normals, uint32_t count,
+                               const LWPointOutput* output);
 
 /* ------------------------------------------------------------------------------ checking inputs */
 

@@ -94,6 +94,8 @@ __kernel void lpv_grid_scan_vpls(__global const lw_vpl* vpls, int count, __globa
 // Sides of cells from which on their squares and the squares' inverses are finite.
 #define LPV_LEAST_CELL 1e-18f
 #define LPV_LARGEST_CELL 1e18f
+// Cells from the world's origin to a place at most, so that no place is infinite.
+#define LPV_MOST_CELLS 1e18f
 
 // A grid about the box: the last one where it still fits, else that one moved by whole cells, else one of another size.
 LW_FN LwLpvPlace fitted(LwLpvPlace last, LwLpvFit fit, const float* low, const float* high) {
@@ -116,14 +118,40 @@ LW_FN LwLpvPlace fitted(LwLpvPlace last, LwLpvFit fit, const float* low, const f
     return place;
 }
 
+// Where the grid around a place begins, in cells from the world's origin: at whole ones, so that it stays where it is while the place
+// moves within a cell, and all of its cells are cells of the world that light and blockers find again when it moves.
+LW_FN float3 snapped(float3 centre, float cell, int size) {
+    return clamp(floor(centre / cell), -LPV_MOST_CELLS, LPV_MOST_CELLS) - (float)(size / 2);
+}
+
+// One work-item in all: a grid of cells half as large around a place, or around the middle of the one that it lies in; between its
+// border and the other's is a cell of the other at least, so that what lies in it lies in the other as well.
+__kernel void lpv_grid_nest(__global const LwLpvPlace* outer, float4 focus, int size, __global LwLpvPlace* place) {
+    if (get_global_id(0) != 0) return;
+    LwLpvPlace to = *outer;
+    const float cell = 0.5f * to.cell.x;
+    if (to.origin.w > 0.0f && cell > LPV_LEAST_CELL) {
+        const float3 middle = to.origin.xyz + to.cell.x * (float)(size / 2);
+        const float3 corner = to.origin.xyz / cell;
+        const float3 from = snapped(focus.w > 0.0f ? focus.xyz : middle, cell, size);
+        to.origin.xyz = cell * clamp(from, ceil(corner) + 2.0f, floor(corner) + (float)(size - 2));
+        to.origin.w = 1.0f / cell;
+        to.cell.x = cell;
+    } else {
+        to.origin = (float4)(0.0f);
+    }
+    *place = to;
+}
+
 // One work-item in all.
 __kernel void lpv_grid_fit(__global const uint* state, LwLpvFit fit, __global LwLpvPlace* place) {
     if (get_global_id(0) != 0) return;
     LwLpvPlace to = *place;
     if (fit.centre.w > 0.0f) {
         const float half_ = 0.5f * fit.centre.w;
-        to.origin = (float4)(fit.centre.x - half_, fit.centre.y - half_, fit.centre.z - half_, 0.0f);
         to.cell.x = fit.centre.w / (float)fit.size;
+        to.origin = (float4)(fit.centre.x - half_, fit.centre.y - half_, fit.centre.z - half_, 0.0f);
+        if (fit.snaps) to.origin.xyz = to.cell.x * snapped(fit.centre.xyz, to.cell.x, fit.size);
     } else {
         float low[3] = {fit.low.x, fit.low.y, fit.low.z}, high[3] = {fit.high.x, fit.high.y, fit.high.z};
         int some = fit.low.w > 0.0f;
@@ -192,11 +220,13 @@ LW_FN lpv_run empty_run(void) {
     return run;
 }
 
-// One work-item = LPV_RUN texels of all maps. sums: two halves of 64 bits for each of a cell's planes.
+// One work-item = LPV_RUN texels of all maps. sums: two halves of 64 bits for each of a cell's planes. Where there is an `inner`
+// grid the lights in its cells are left out, and those that no cell takes not counted.
 __kernel void lpv_grid_inject_texels(__global const float* texels, int4 layout, int count, __global const LwLpvPlace* grid,
-                                     int size, __global uint* sums, __global uint* state) {
+                                     __global const LwLpvPlace* innerGrid, int hasInner, int size, __global uint* sums,
+                                     __global uint* state) {
     const int first = lw_list_index() * LPV_RUN, last = min(first + LPV_RUN, count), stride = layout.z;
-    const LwLpvPlace place = *grid;
+    const LwLpvPlace place = *grid, inner = *innerGrid;
     __global const float* base = texels + layout.x;
     lpv_run run = empty_run();
     int outside = 0;
@@ -205,19 +235,21 @@ __kernel void lpv_grid_inject_texels(__global const float* texels, int4 layout, 
         const float flux[3] = {p[LW_RSM_FLUX * stride], p[(LW_RSM_FLUX + 1) * stride], p[(LW_RSM_FLUX + 2) * stride]};
         if (!(fmax(fmax(flux[0], flux[1]), flux[2]) > 0.0f)) continue;
         const float nx = p[LW_RSM_NORMAL * stride], ny = p[(LW_RSM_NORMAL + 1) * stride], nz = p[(LW_RSM_NORMAL + 2) * stride];
-        const int cell = cell_of(place, size, p[LW_RSM_POSITION * stride], p[(LW_RSM_POSITION + 1) * stride],
-                                 p[(LW_RSM_POSITION + 2) * stride], nx, ny, nz, 0.5f);
+        const float px = p[LW_RSM_POSITION * stride], py = p[(LW_RSM_POSITION + 1) * stride], pz = p[(LW_RSM_POSITION + 2) * stride];
+        if (hasInner && cell_of(inner, size, px, py, pz, nx, ny, nz, 0.5f) >= 0) continue;
+        const int cell = cell_of(place, size, px, py, pz, nx, ny, nz, 0.5f);
         outside += add_light(&run, place, cell, flux, nx, ny, nz, sums);
     }
     end_run(&run, sums);
-    if (outside) atomic_add(state + LW_LPV_OUTSIDE, (uint)outside);
+    if (outside && !hasInner) atomic_add(state + LW_LPV_OUTSIDE, (uint)outside);
 }
 
 // One work-item = LPV_RUN of the host's own VPLs.
-__kernel void lpv_grid_inject_vpls(__global const lw_vpl* vpls, int count, __global const LwLpvPlace* grid, int size,
-                                   __global uint* sums, __global uint* state) {
+__kernel void lpv_grid_inject_vpls(__global const lw_vpl* vpls, int count, __global const LwLpvPlace* grid,
+                                   __global const LwLpvPlace* innerGrid, int hasInner, int size, __global uint* sums,
+                                   __global uint* state) {
     const int first = lw_list_index() * LPV_RUN, last = min(first + LPV_RUN, count);
-    const LwLpvPlace place = *grid;
+    const LwLpvPlace place = *grid, inner = *innerGrid;
     lpv_run run = empty_run();
     int outside = 0;
     for (int i = first; i < last; ++i) {
@@ -227,11 +259,13 @@ __kernel void lpv_grid_inject_vpls(__global const lw_vpl* vpls, int count, __glo
         // Hosts' normals may be 2 % off unit length.
         const float scale = rsqrt(vpl.normal.x * vpl.normal.x + vpl.normal.y * vpl.normal.y + vpl.normal.z * vpl.normal.z);
         const float nx = vpl.normal.x * scale, ny = vpl.normal.y * scale, nz = vpl.normal.z * scale;
-        const int cell = cell_of(place, size, vpl.positionArea.x, vpl.positionArea.y, vpl.positionArea.z, nx, ny, nz, 0.5f);
+        const float px = vpl.positionArea.x, py = vpl.positionArea.y, pz = vpl.positionArea.z;
+        if (hasInner && cell_of(inner, size, px, py, pz, nx, ny, nz, 0.5f) >= 0) continue;
+        const int cell = cell_of(place, size, px, py, pz, nx, ny, nz, 0.5f);
         outside += add_light(&run, place, cell, flux, nx, ny, nz, sums);
     }
     end_run(&run, sums);
-    if (outside) atomic_add(state + LW_LPV_OUTSIDE, (uint)outside);
+    if (outside && !hasInner) atomic_add(state + LW_LPV_OUTSIDE, (uint)outside);
 }
 
 // One work-item = one cell (x; y and z): its sums as floats, in W/sr.

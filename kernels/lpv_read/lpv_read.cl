@@ -7,6 +7,7 @@
 // Damped, it is what is read a cell further off as well, where that is less: light that falls on a surface has come through
 // the cells in front of it, and light that grows weaker away from it has come through the surface, or from it.
 #include "shared/input_limits.h"
+#include "shared/lpv_layers.h"
 #include "shared/lpv_types.h"
 #include "shared/surface.h"
 #include "shared/wide.h"
@@ -65,14 +66,17 @@ LW_FN float4 light_at(__global const float16* cells, int size, const float* at, 
 // One work-item = LW_WIDTH pixels of a row. hasIrradiance, hasValidity: which are wanted; the other's arguments are not
 // touched. Validity is 1 where the grid has the surface, 0 elsewhere, where irradiance is 0 as well. counts[0]: pixels that are
 // neither surface nor background; counts[1]: whose light was brought down; counts[2]: surfaces that the grid does not have.
+//
+// grids: of `layers` nested ones this is number `layer` (shared/lpv_layers.h). All but the coarsest, the last, change irradiance alone.
 __kernel void lpv_read_gather(__global const float* position, int4 positionLayout, __global const float* normal,
-                            int4 normalLayout, int width, int height, __global const LwLpvPlace* grid, int size,
+                            int4 normalLayout, int width, int height, __global const LwLpvPlace* grids, int layer, int layers, int size,
                             __global const float16* cells, float calibration, int isDamped, int hasIrradiance, int hasValidity,
                             __global float* irradiance, int4 irradianceLayout, __global float* validity, int4 validityLayout,
                             __global int* counts) {
     const int x = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);
     if (x >= width || y >= height) return;
-    const LwLpvPlace place = *grid;
+    const LwLpvPlace place = grids[layer];
+    const int isCoarsest = layer + 1 == layers;
     const lw_surface s = load_surface(position, positionLayout, normal, normalLayout, x, y);
     const mask shown = lanei_iota() + x < width;
     const float inverse = place.origin.w, most = (float)size;
@@ -83,18 +87,24 @@ __kernel void lpv_read_gather(__global const float* position, int4 positionLayou
     const mask within = and_(and_(and_(gx >= 0.0f, gx <= most), and_(gy >= 0.0f, gy <= most)), and_(gz >= 0.0f, gz <= most));
     const mask has = and_(s.valid, and_(within, splat_mask(inverse > 0.0f)));
 
-    const mask rejected = and_(s.rejected, shown), missing = and_(and_(s.valid, not_(has)), shown);
-    if (any_(rejected)) atomic_add(counts, count_(rejected));
-    if (any_(missing)) atomic_add(counts + 2, count_(missing));
-    if (hasValidity) store(ones_(has), validity, validityLayout.x + y * validityLayout.y + x);
+    if (isCoarsest) {
+        const mask rejected = and_(s.rejected, shown), missing = and_(and_(s.valid, not_(has)), shown);
+        if (any_(rejected)) atomic_add(counts, count_(rejected));
+        if (any_(missing)) atomic_add(counts + 2, count_(missing));
+        if (hasValidity) store(ones_(has), validity, validityLayout.x + y * validityLayout.y + x);
+    }
     if (!hasIrradiance) return;
+    mask some = s.valid;
+    if (isCoarsest) some = has;
+    const lpv_layer own = layer_of(grids, layer, layers, size, s.px, s.py, s.pz, some);
+    if (!isCoarsest && !any_(and_(own.read, shown))) return;
 
     lanei ix, iy, iz;
     const real none = (real)0.0f;
-    const real fx = split(select_(none, gx - 0.5f, has), size, &ix), fy = split(select_(none, gy - 0.5f, has), size, &iy),
-               fz = split(select_(none, gz - 0.5f, has), size, &iz);
+    const real fx = split(select_(none, gx - 0.5f, own.read), size, &ix), fy = split(select_(none, gy - 0.5f, own.read), size, &iy),
+               fz = split(select_(none, gz - 0.5f, own.read), size, &iz);
     // Pixel by pixel: one load takes all of a cell, where lanes of pixels would gather every number alone.
-    float px[LW_WIDTH], py[LW_WIDTH], pz[LW_WIDTH], nx[LW_WIDTH], ny[LW_WIDTH], nz[LW_WIDTH];
+    float px[LW_WIDTH], py[LW_WIDTH], pz[LW_WIDTH], nx[LW_WIDTH], ny[LW_WIDTH], nz[LW_WIDTH], reads[LW_WIDTH];
     float light[LW_LPV_COLOURS][LW_WIDTH];
     int corner[LW_WIDTH];
     store(fx, px, 0);
@@ -103,8 +113,13 @@ __kernel void lpv_read_gather(__global const float* position, int4 positionLayou
     store(s.nx, nx, 0);
     store(s.ny, ny, 0);
     store(s.nz, nz, 0);
+    store(ones_(own.read), reads, 0);
     store((iz * size + iy) * size + ix, corner, 0);
     for (int l = 0; l < LW_WIDTH; ++l) {
+        if (layers > 1 && reads[l] == 0.0f) {
+            light[0][l] = light[1][l] = light[2][l] = 0.0f;
+            continue;
+        }
         const float16 v = interpolate(cells + corner[l], size, px[l], py[l], pz[l]);
         float4 e = v.s0123 * LPV_LOBE0 - (v.s4567 * nx[l] + v.s89ab * ny[l] + v.scdef * nz[l]) * LPV_LOBE1;
         if (isDamped) {
@@ -120,11 +135,14 @@ __kernel void lpv_read_gather(__global const float* position, int4 positionLayou
     const int e = irradianceLayout.x + y * irradianceLayout.y + x;
     mask saturated = splat_mask(0);
     for (int c = 0; c < LW_LPV_COLOURS; ++c) {
-        const real found = fmax(load(light[c], 0), none) * calibration * inverse * inverse;
-        const real value = select_(none, found, has);
-        saturated = or_(saturated, value > LW_LARGEST_IRRADIANCE);
-        store(fmin(value, (real)LW_LARGEST_IRRADIANCE), irradiance, e + c * irradianceLayout.z);
+        const int at = e + c * irradianceLayout.z;
+        real coarser = none;
+        if (!isCoarsest) coarser = load(irradiance, at);
+        const real found = select_(none, fmax(load(light[c], 0), none) * calibration * inverse * inverse, own.read);
+        saturated = or_(saturated, or_(found > LW_LARGEST_IRRADIANCE, and_(coarser >= LW_LARGEST_IRRADIANCE, own.share < 1.0f)));
+        store(layered(own, coarser, fmin(found, (real)LW_LARGEST_IRRADIANCE)), irradiance, at);
     }
+    saturated = and_(saturated, own.isLast);
     saturated = and_(saturated, shown);
     if (any_(saturated)) atomic_add(counts + 1, count_(saturated));
 }

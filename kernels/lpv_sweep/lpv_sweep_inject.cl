@@ -55,11 +55,12 @@ LW_FN int add_light(sweep_lights* run, const LwLpvPlace place, int cell, const f
     return 0;
 }
 
-// One work-item = LW_SWEEP_RUN texels of all maps.
+// One work-item = LW_SWEEP_RUN texels of all maps. Where there is an `inner` grid the lights in its cells are left out.
 __kernel void lpv_sweep_inject_texels(__global const float* texels, int4 layout, int count, __global const LwLpvPlace* grid,
-                                      int size, __global uint* sums, __global uint* outside) {
+                                      __global const LwLpvPlace* innerGrid, int hasInner, int size, __global uint* sums,
+                                      __global uint* outside) {
     const int first = lw_list_index() * LW_SWEEP_RUN, last = min(first + LW_SWEEP_RUN, count), stride = layout.z;
-    const LwLpvPlace place = *grid;
+    const LwLpvPlace place = *grid, inner = *innerGrid;
     __global uint* marks = sums + sweep_light_marks(size);
     __global const float* base = texels + layout.x;
     sweep_lights run;
@@ -70,8 +71,9 @@ __kernel void lpv_sweep_inject_texels(__global const float* texels, int4 layout,
         const float flux[3] = {p[LW_RSM_FLUX * stride], p[(LW_RSM_FLUX + 1) * stride], p[(LW_RSM_FLUX + 2) * stride]};
         if (!(fmax(fmax(flux[0], flux[1]), flux[2]) > 0.0f)) continue;
         const float nx = p[LW_RSM_NORMAL * stride], ny = p[(LW_RSM_NORMAL + 1) * stride], nz = p[(LW_RSM_NORMAL + 2) * stride];
-        const int cell = cell_of(place, size, p[LW_RSM_POSITION * stride], p[(LW_RSM_POSITION + 1) * stride],
-                                 p[(LW_RSM_POSITION + 2) * stride], nx, ny, nz, 0.5f);
+        const float px = p[LW_RSM_POSITION * stride], py = p[(LW_RSM_POSITION + 1) * stride], pz = p[(LW_RSM_POSITION + 2) * stride];
+        if (hasInner && cell_of(inner, size, px, py, pz, nx, ny, nz, 0.5f) >= 0) continue;
+        const int cell = cell_of(place, size, px, py, pz, nx, ny, nz, 0.5f);
         missed += add_light(&run, place, cell, flux, nx, ny, nz, sums, marks);
     }
     end_lights(&run, sums, marks);
@@ -79,10 +81,11 @@ __kernel void lpv_sweep_inject_texels(__global const float* texels, int4 layout,
 }
 
 // One work-item = LW_SWEEP_RUN of the host's own VPLs.
-__kernel void lpv_sweep_inject_vpls(__global const lw_vpl* vpls, int count, __global const LwLpvPlace* grid, int size,
-                                    __global uint* sums, __global uint* outside) {
+__kernel void lpv_sweep_inject_vpls(__global const lw_vpl* vpls, int count, __global const LwLpvPlace* grid,
+                                    __global const LwLpvPlace* innerGrid, int hasInner, int size, __global uint* sums,
+                                    __global uint* outside) {
     const int first = lw_list_index() * LW_SWEEP_RUN, last = min(first + LW_SWEEP_RUN, count);
-    const LwLpvPlace place = *grid;
+    const LwLpvPlace place = *grid, inner = *innerGrid;
     __global uint* marks = sums + sweep_light_marks(size);
     sweep_lights run;
     no_lights(&run);
@@ -94,7 +97,9 @@ __kernel void lpv_sweep_inject_vpls(__global const lw_vpl* vpls, int count, __gl
         // Hosts' normals may be 2 % off unit length.
         const float scale = rsqrt(vpl.normal.x * vpl.normal.x + vpl.normal.y * vpl.normal.y + vpl.normal.z * vpl.normal.z);
         const float nx = vpl.normal.x * scale, ny = vpl.normal.y * scale, nz = vpl.normal.z * scale;
-        const int cell = cell_of(place, size, vpl.positionArea.x, vpl.positionArea.y, vpl.positionArea.z, nx, ny, nz, 0.5f);
+        const float px = vpl.positionArea.x, py = vpl.positionArea.y, pz = vpl.positionArea.z;
+        if (hasInner && cell_of(inner, size, px, py, pz, nx, ny, nz, 0.5f) >= 0) continue;
+        const int cell = cell_of(place, size, px, py, pz, nx, ny, nz, 0.5f);
         missed += add_light(&run, place, cell, flux, nx, ny, nz, sums, marks);
     }
     end_lights(&run, sums, marks);
@@ -122,10 +127,11 @@ __kernel void lpv_sweep_unit(__global const LwLpvPlace* grid, __global const uin
 }
 
 // One work-item = LW_SWEEP_RUN surfels: what they send of what arrives at them.
-__kernel void lpv_sweep_relight(__global const float* surfels, int stride, int count, __global const LwLpvPlace* grid, int size,
-                                __global const float16* cells, __global uint* sums) {
+__kernel void lpv_sweep_relight(__global const float* surfels, int stride, int count, __global const LwLpvPlace* grid,
+                                __global const LwLpvPlace* innerGrid, int hasInner, int size, __global const float16* cells,
+                                __global uint* sums) {
     const int first = lw_list_index() * LW_SWEEP_RUN, last = min(first + LW_SWEEP_RUN, count);
-    const LwLpvPlace place = *grid;
+    const LwLpvPlace place = *grid, inner = *innerGrid;
     const float inverse = place.origin.w, most = LW_SWEEP_MOST_AREA * place.cell.x * place.cell.x;
     if (!(inverse > 0.0f)) return;
     __global uint* marks = sums + sweep_light_marks(size);
@@ -139,7 +145,7 @@ __kernel void lpv_sweep_relight(__global const float* surfels, int stride, int c
                     pz = p[(LW_SURFEL_POSITION + 2) * stride], nx = p[LW_SURFEL_NORMAL * stride],
                     ny = p[(LW_SURFEL_NORMAL + 1) * stride], nz = p[(LW_SURFEL_NORMAL + 2) * stride];
         const int cell = cell_of(place, size, px, py, pz, nx, ny, nz, 0.5f);
-        if (cell < 0) continue;
+        if (cell < 0 || (hasInner && cell_of(inner, size, px, py, pz, nx, ny, nz, 0.5f) >= 0)) continue;
         const float4 e = sweep_read_twice(cells, size, (px - place.origin.x) * inverse, (py - place.origin.y) * inverse,
                                           (pz - place.origin.z) * inverse, nx, ny, nz);
         const float area = fmin(M_PI_F * radius * radius, most) * (1.0f / 1023.0f);

@@ -1,5 +1,6 @@
 // Irradiance of pixels, and of surfels that send light on, from the cells of a sweep.
 #include "shared/input_limits.h"
+#include "shared/lpv_layers.h"
 #include "shared/lpv_sweep_cells.h"
 #include "shared/lpv_types.h"
 #include "shared/surface.h"
@@ -15,13 +16,16 @@ LW_FN real split(real g, int size, lanei* lower) {
 // One work-item = LW_WIDTH pixels of a row. hasIrradiance, hasValidity: which are wanted; the other's arguments are not
 // touched. Validity is 1 where the grid has the surface, 0 elsewhere, where irradiance is 0 as well. counts[0]: pixels that are
 // neither surface nor background; counts[1]: whose light was brought down; counts[2]: surfaces that the grid does not have.
+//
+// grids: of `layers` nested ones this is number `layer` (shared/lpv_layers.h). All but the coarsest, the last, change irradiance alone.
 __kernel void lpv_sweep_gather(__global const float* position, int4 positionLayout, __global const float* normal,
-                               int4 normalLayout, int width, int height, __global const LwLpvPlace* grid, int size,
-                               __global const float16* cells, int hasIrradiance, int hasValidity, __global float* irradiance,
+                               int4 normalLayout, int width, int height, __global const LwLpvPlace* grids, int layer, int layers,
+                               int size, __global const float16* cells, int hasIrradiance, int hasValidity, __global float* irradiance,
                                int4 irradianceLayout, __global float* validity, int4 validityLayout, __global int* counts) {
     const int x = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);
     if (x >= width || y >= height) return;
-    const LwLpvPlace place = *grid;
+    const LwLpvPlace place = grids[layer];
+    const int isCoarsest = layer + 1 == layers;
     const lw_surface s = load_surface(position, positionLayout, normal, normalLayout, x, y);
     const mask shown = lanei_iota() + x < width;
     const float inverse = place.origin.w, most = (float)size;
@@ -32,18 +36,24 @@ __kernel void lpv_sweep_gather(__global const float* position, int4 positionLayo
     const mask within = and_(and_(and_(rx >= 0.0f, rx <= most), and_(ry >= 0.0f, ry <= most)), and_(rz >= 0.0f, rz <= most));
     const mask has = and_(s.valid, and_(within, splat_mask(inverse > 0.0f)));
 
-    const mask rejected = and_(s.rejected, shown), missing = and_(and_(s.valid, not_(has)), shown);
-    if (any_(rejected)) atomic_add(counts, count_(rejected));
-    if (any_(missing)) atomic_add(counts + 2, count_(missing));
-    if (hasValidity) store(ones_(has), validity, validityLayout.x + y * validityLayout.y + x);
+    if (isCoarsest) {
+        const mask rejected = and_(s.rejected, shown), missing = and_(and_(s.valid, not_(has)), shown);
+        if (any_(rejected)) atomic_add(counts, count_(rejected));
+        if (any_(missing)) atomic_add(counts + 2, count_(missing));
+        if (hasValidity) store(ones_(has), validity, validityLayout.x + y * validityLayout.y + x);
+    }
     if (!hasIrradiance) return;
+    mask some = s.valid;
+    if (isCoarsest) some = has;
+    const lpv_layer own = layer_of(grids, layer, layers, size, s.px, s.py, s.pz, some);
+    if (!isCoarsest && !any_(and_(own.read, shown))) return;
 
     // Pixel by pixel: one load takes all of a cell's side, where lanes of pixels would gather every number alone.
     const real none = (real)0.0f;
     // Any unit normal where there is none, so that nothing is divided by 0.
-    const real p[3] = {select_(none, gx, has), select_(none, gy, has), select_(none, gz, has)},
-               n[3] = {select_((real)1.0f, s.nx, has), select_(none, s.ny, has), select_(none, s.nz, has)};
-    float weights[2][8][LW_WIDTH], plus[3][LW_WIDTH], minus[3][LW_WIDTH], light[LW_SWEEP_COLOURS][LW_WIDTH];
+    const real p[3] = {select_(none, gx, own.read), select_(none, gy, own.read), select_(none, gz, own.read)},
+               n[3] = {select_((real)1.0f, s.nx, own.read), select_(none, s.ny, own.read), select_(none, s.nz, own.read)};
+    float weights[2][8][LW_WIDTH], plus[3][LW_WIDTH], minus[3][LW_WIDTH], light[LW_SWEEP_COLOURS][LW_WIDTH], reads[LW_WIDTH];
     int corner[2][LW_WIDTH];
     for (int i = 0; i < 2; ++i) {
         const float above = (float)i + 0.5f;
@@ -63,7 +73,12 @@ __kernel void lpv_sweep_gather(__global const float* position, int4 positionLayo
         store(sq(fmax(n[axis], none)), plus[axis], 0);
         store(sq(fmin(n[axis], none)), minus[axis], 0);
     }
+    store(ones_(own.read), reads, 0);
     for (int l = 0; l < LW_WIDTH; ++l) {
+        if (layers > 1 && reads[l] == 0.0f) {
+            light[0][l] = light[1][l] = light[2][l] = 0.0f;
+            continue;
+        }
         const float2 nx = (float2)(plus[0][l], minus[0][l]), ny = (float2)(plus[1][l], minus[1][l]), nz = (float2)(plus[2][l], minus[2][l]);
         const float4 near = sweep_sides(cells + corner[0][l], size, &weights[0][0][l], LW_WIDTH, nx, ny, nz),
                      far = sweep_sides(cells + corner[1][l], size, &weights[1][0][l], LW_WIDTH, nx, ny, nz);
@@ -75,10 +90,15 @@ __kernel void lpv_sweep_gather(__global const float* position, int4 positionLayo
     const int e = irradianceLayout.x + y * irradianceLayout.y + x;
     mask saturated = splat_mask(0);
     for (int c = 0; c < LW_SWEEP_COLOURS; ++c) {
-        const real value = select_(none, load(light[c], 0), has);
-        saturated = or_(saturated, not_(value <= LW_LARGEST_IRRADIANCE));  // beyond float's range it is not a number
-        store(fmin(value, (real)LW_LARGEST_IRRADIANCE), irradiance, e + c * irradianceLayout.z);
+        const int at = e + c * irradianceLayout.z;
+        real coarser = none;
+        if (!isCoarsest) coarser = load(irradiance, at);
+        const real found = select_(none, load(light[c], 0), own.read);
+        // Beyond float's range it is not a number.
+        saturated = or_(saturated, or_(not_(found <= LW_LARGEST_IRRADIANCE), and_(coarser >= LW_LARGEST_IRRADIANCE, own.share < 1.0f)));
+        store(layered(own, coarser, fmin(found, (real)LW_LARGEST_IRRADIANCE)), irradiance, at);
     }
+    saturated = and_(saturated, own.isLast);
     saturated = and_(saturated, shown);
     if (any_(saturated)) atomic_add(counts + 1, count_(saturated));
 }

@@ -69,7 +69,8 @@ typedef struct {
     lw_float4 low, high;     // xyz: a box to fit to as well; low.w: 1 where there is one
     lw_int refit;            // 1: whatever the last frame's grid was
     lw_int bits;             // of the largest whole number that one texel's light may make
-    lw_int size, reserved;
+    lw_int size;
+    lw_int snaps;            // 1: with an extent, the grid begins at whole cells of the world
 } LwLpvFit;
 LW_SIZE_CHECK(LwLpvFit, 64);
 

@@ -5,6 +5,7 @@
 
 #include "api/call.h"
 #include "api/structs.h"
+#include "compute/raw_enum.h"
 #include "inputs/rsm_input.h"
 #include "shared/input_limits.h"
 
@@ -17,6 +18,7 @@ constexpr std::uint32_t kMaxVpls = 1u << 24;
 constexpr std::uint32_t kMaxBlockers = 1u << 20;
 constexpr std::uint32_t kMaxSourceViews = 64;
 constexpr std::uint32_t kMaxWaitEvents = 1024;
+constexpr std::uint32_t kMaxPoints = 1u << 24;
 
 void checkCount(std::uint32_t count, const void* array, std::uint32_t most, const std::string& name,
                 const char* countField, const char* arrayField) {
@@ -111,6 +113,7 @@ void FrameArgument::copySourceViews(Call& call) {
 
 void FrameArgument::checkNumbers() const {
     checkFinite(frame_.environment, 3, "frame.environment", true);
+    if (frame_.focus) checkFinite(frame_.focus, 3, "frame.focus");
     for (std::uint32_t i = 0; i < frame_.vplCount; ++i) {
         const LWVpl& vpl = frame_.vpls[i];
         const float* p = vpl.position;
@@ -136,6 +139,20 @@ void FrameArgument::checkNumbers() const {
         checkFinite(blocker.center, 3, "frame.blockers[" + std::to_string(i) + "].center");
         checkFinite(&blocker.radius, 1, "frame.blockers[" + std::to_string(i) + "].radius", true);
     }
+}
+
+PointsArgument::PointsArgument(const LWImage* positions, const LWImage* normals, std::uint32_t count, const LWPointOutput* output) {
+    if (!positions) fail(LW_ERROR_INVALID_ARGUMENT, "positions: expected an image, got null");
+    if (count == 0 || count > kMaxPoints) fail(LW_ERROR_INVALID_ARGUMENT, "count: expected 1 .. ", kMaxPoints, ", got ", count);
+    points_.output = readStruct(output, "output");
+    points_.positions = *positions;
+    if (normals) points_.normals = *normals;
+    points_.count = count;
+    const auto given = [](const LWImage& image) { return rawEnum(image.format) != LW_FORMAT_NONE; };
+    if (!given(points_.output.irradiance) && !given(points_.output.harmonics) && !given(points_.output.validity))
+        fail(LW_ERROR_INVALID_ARGUMENT, "output: expected irradiance, harmonics or validity, got none");
+    if (given(points_.output.irradiance) && !given(points_.normals))
+        fail(LW_ERROR_INVALID_ARGUMENT, "normals: expected an image, as irradiance is asked for, got none");
 }
 
 }  // namespace lightwell

@@ -2,9 +2,11 @@
 // checked.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "lightwell/lightwell.h"
+#include "techniques/technique.h"
 
 namespace lightwell {
 
@@ -40,6 +42,16 @@ private:
     std::vector<LWSourceView> sourceViews_;
     std::vector<LWGBuffer> sourceGBuffers_;
     LWGeometry geometry_{};
+};
+
+// What lwRenderPoints is asked for; images are the technique's to check.
+class PointsArgument {
+public:
+    PointsArgument(const LWImage* positions, const LWImage* normals, std::uint32_t count, const LWPointOutput* output);
+    const Points& get() const { return points_; }
+
+private:
+    Points points_;
 };
 
 }  // namespace lightwell

@@ -1,5 +1,6 @@
 // Entry points: techniques and frames.
 #include <cmath>
+#include <string>
 
 #include "api/call.h"
 #include "api/frame_arguments.h"
@@ -44,6 +45,18 @@ void checkOutput(const LWOutput& output) {
                                  &output.specularRadiance, &output.shadow})
         if (rawEnum(image->format) != LW_FORMAT_NONE || image->host || image->clMem) return;
     fail(LW_ERROR_INVALID_ARGUMENT, "output: expected at least one image, got none");
+}
+
+// Of it and of all of its parts.
+void checkMakesPoints(const TechniqueObject& object) {
+    if (!object.entry->info.points) {
+        std::string makers;
+        for (const TechniqueEntry& entry : techniqueEntries())
+            if (entry.info.points) makers += (makers.empty() ? "" : ", ") + std::string(entry.info.name);
+        fail(LW_ERROR_UNSUPPORTED, "technique: ", object.entry->info.name,
+             " takes its light from a view's own pixels and has none at points; techniques that have: ", makers.empty() ? "none" : makers);
+    }
+    for (const auto& part : object.parts) checkMakesPoints(*part);
 }
 
 constexpr std::uint32_t kMaxSide = 16384;  // of views and RSMs
@@ -234,6 +247,31 @@ LWStatus lwRender(LWTechnique technique, LWView view, const LWGBuffer* gbuffer, 
         try {
             executor.waitFor(sync.get());
             object->technique->render(executor, own, ownGBuffer, ownOutput);
+            executor.signal(sync.get());
+            executor.flush();
+        } catch (...) {
+            executor.forgetWaits();  // the host may release its events as soon as the call is back
+            throw;
+        }
+    });
+}
+
+LWStatus lwRenderPoints(LWTechnique technique, const LWImage* positions, const LWImage* normals, std::uint32_t count,
+                        const LWPointOutput* output) {
+    return enter("lwRenderPoints", [&](Call& call) {
+        const auto object = call.technique(technique);
+        const PointsArgument own(positions, normals, count, output);
+        const SyncArgument sync(own.get().output.sync, call.owner()->device.context(), "output.sync");
+        checkMakesPoints(*object);
+        if (!object->updated || !object->isWhole())
+            fail(LW_ERROR_NOT_UPDATED, "technique: expected a successful lwUpdate before, got none");
+        call.owner()->device.raiseFailure();
+        if (!object->current())
+            fail(LW_ERROR_NOT_UPDATED, "technique: expected another lwUpdate since commands failed on the device, got none");
+        Executor& executor = object->record->executor;
+        try {
+            executor.waitFor(sync.get());
+            object->technique->renderPoints(executor, own.get());
             executor.signal(sync.get());
             executor.flush();
         } catch (...) {

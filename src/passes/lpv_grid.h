@@ -17,6 +17,10 @@ struct LpvPlacement {
     bool hasBox = false;
     float low[3] = {0.0f, 0.0f, 0.0f}, high[3] = {0.0f, 0.0f, 0.0f};
     bool refit = false;  // whatever the last frame's grid was
+    // What grids lie around that begin at whole cells of the world: with an extent all of them, else those that lie in a fitted one,
+    // which without a focus lie in its middle.
+    bool hasFocus = false;
+    float focus[3] = {0.0f, 0.0f, 0.0f};
 };
 
 class LpvGrid {
@@ -33,7 +37,14 @@ public:
     // Its two halves; the second one where cells shall hold spherical harmonics.
     void recordPlace(Executor& executor, const RsmInput& rsms, const LWVpl* authored, std::uint32_t authoredCount,
                      const LpvPlacement& placement);
-    void recordInject(Executor& executor, const RsmInput& rsms, std::uint32_t authoredCount);
+    void recordInject(Executor& executor, const RsmInput& rsms, std::uint32_t authoredCount) {
+        recordInject(executor, rsms, authored_, authoredCount, nullptr);
+    }
+    // In place of recordPlace: with cells half as large as those of `outer`, which it lies in.
+    void recordNested(Executor& executor, const LpvGrid& outer, const LpvPlacement& placement);
+    // authored: as authored() has them. inner: none, or the place of a grid whose lights are left out.
+    void recordInject(Executor& executor, const RsmInput& rsms, const Buffer& authored, std::uint32_t authoredCount,
+                      const Buffer* inner);
 
     const Buffer& injected() const { return injected_; }  // a grid of LpvPropagation's
     const Buffer& place() const { return place_; }        // LwLpvPlace
@@ -42,11 +53,15 @@ public:
     std::uint64_t bytes() const;
     static std::uint64_t estimateBytes(std::uint32_t size, std::uint32_t authoredCount);
     static std::uint64_t estimatePlaceBytes(std::uint32_t authoredCount);  // of recordPlace alone
+    static std::uint64_t estimateNestedBytes();                            // of recordNested alone
+    static std::uint64_t estimateInjectBytes(std::uint32_t size);          // of recordInject alone
 
 private:
+    void reservePlace(Executor& executor);
+
     Device& device_;
     std::uint32_t size_;
-    Kernel &scanTexels_, &scanVpls_, &fit_, &injectTexels_, &injectVpls_, &resolve_;
+    Kernel &scanTexels_, &scanVpls_, &fit_, &nest_, &injectTexels_, &injectVpls_, &resolve_;
     Buffer state_, place_, sums_, injected_, authored_;
 };
 

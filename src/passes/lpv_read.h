@@ -5,6 +5,7 @@
 
 #include "compute/buffer.h"
 #include "compute/executor.h"
+#include "passes/lpv_cascades.h"
 
 namespace lightwell {
 
@@ -16,11 +17,13 @@ public:
     void recordPack(Executor& executor, const Buffer& grid);
     // Pass "lpv_read.gather". place: LpvGrid's. isDamped: no more light than a cell further off. irradiance, validity: none where
     // not wanted. counts: kCounts ints, raised by the number of pixels that are neither surface nor background, of those whose
-    // light was brought down, and of surfaces that the grid does not have.
+    // light was brought down, and of surfaces that the grid does not have. layer: one of several grids, and `place` those of all of
+    // them; the coarsest is read first.
     static constexpr std::size_t kCounts = 3;
     void recordGather(Executor& executor, const Planes& position, const Planes& normal, const Buffer& place, double calibration,
-                      bool isDamped, const Planes& irradiance, const Planes& validity, const Buffer& counts);
+                      bool isDamped, const Planes& irradiance, const Planes& validity, const Buffer& counts, LpvLayer layer = {});
 
+    const Buffer& cells() const { return cells_; }  // of 16 floats
     std::uint64_t bytes() const { return cells_.bytes(); }
     static std::uint64_t estimateBytes(std::uint32_t size);
 

@@ -1,6 +1,7 @@
 #include "passes/lpv_sweep.h"
 
 #include <algorithm>
+#include <initializer_list>
 #include <vector>
 
 #include "compute/device.h"
@@ -45,7 +46,7 @@ std::uint64_t tableBytes(const LpvSweepOptions& o) { return std::uint64_t(o.dire
 
 }  // namespace
 
-LpvSweep::LpvSweep(Device& device, const LpvSweepOptions& options)
+LpvSweep::LpvSweep(Device& device, const LpvSweepOptions& options, const LpvSweep* sharing)
     : device_(device),
       options_(options),
       injectTexels_(device.programs().kernel(kInject, "lpv_sweep_inject_texels")),
@@ -60,7 +61,22 @@ LpvSweep::LpvSweep(Device& device, const LpvSweepOptions& options)
       march_(device.programs().kernel(kSweep, "lpv_sweep_march")),
       combine_(device.programs().kernel(kSweep, "lpv_sweep_combine")),
       pack_(device.programs().kernel(kSweep, "lpv_sweep_pack")),
-      gather_(device.programs().kernel("lpv_sweep/lpv_sweep_read", "lpv_sweep_gather")) {}
+      gather_(device.programs().kernel("lpv_sweep/lpv_sweep_read", "lpv_sweep_gather")),
+      scratch_(sharing ? sharing->scratch_ : std::make_shared<Scratch>()),
+      ownsScratch_(!sharing),
+      ownsFlights_(!sharing || options.frames > 1) {
+    flights_[kAll] = ownsFlights_ ? std::make_shared<Flight>() : sharing->flights_[kAll];
+    flights_[kOuter] = options.frames > 1 && options.hasInner ? std::make_shared<Flight>() : flights_[kAll];
+}
+
+void LpvSweep::reserve(Flight& flight) const {
+    if (flight.parts) return;
+    const auto make = [&](std::uint64_t bytes, const char* what) { return Buffer(device_, std::size_t(bytes), what); };
+    flight.sources = make(sourceBytes(options_), "light that cells send");
+    flight.sheets = make(sheetBytes(options_), "cover of cells");
+    flight.used = make(usedBytes(options_), "normals of rows");
+    flight.parts = make(partBytes(options_), "light that arrives in cells");
+}
 
 void LpvSweep::reserve(Executor& executor) {
     if (totalCells_) return;
@@ -70,23 +86,24 @@ void LpvSweep::reserve(Executor& executor) {
         executor.fill("lpv_sweep.clear", buffer, 0, 0, buffer.bytes());
         return buffer;
     };
-    const std::vector<float> table = sweepTable(sweepDirections(options_.directions));
-    directions_ = make(tableBytes(options_), "directions of sweeps");
-    executor.writeCopy("lpv_sweep.upload", directions_, 0, directions_.bytes(), table.data());
-    lights_ = make(lightBytes(options_), "sums of light");
+    if (!scratch_->sides) {
+        const std::vector<float> table = sweepTable(sweepDirections(options_.directions));
+        scratch_->directions = make(tableBytes(options_), "directions of sweeps");
+        executor.writeCopy("lpv_sweep.upload", scratch_->directions, 0, scratch_->directions.bytes(), table.data());
+        scratch_->lights = make(lightBytes(options_), "sums of light");
+        scratch_->carried = make(carriedBytes(options_), "planes of light");
+        scratch_->sides = make(sideBytes(options_), "light that arrives at cells' sides");
+    }
+    for (const std::shared_ptr<Flight>& flight : flights_) reserve(*flight);
     areas_ = cleared(areaBytes(options_), "sums of area");
     cover_ = cleared(sizeof(LwSweepCover), "state of what covers");
-    sources_ = make(sourceBytes(options_), "light that cells send");
-    sheets_ = make(sheetBytes(options_), "cover of cells");
-    used_ = make(usedBytes(options_), "normals of rows");
-    carried_ = make(carriedBytes(options_), "planes of light");
-    parts_ = make(partBytes(options_), "light that arrives in cells");
-    sides_ = make(sideBytes(options_), "light that arrives at cells' sides");
     outside_ = cleared(sizeof(cl_uint), "lights outside of the grid");
     largest_ = make(sizeof(cl_uint), "the most that arrives");
     place_ = cleared(sizeof(LwLpvPlace), "place of a sweep");
     unitPlace_ = cleared(sizeof(LwLpvPlace), "place of a bounce");
     shownPlace_ = cleared(sizeof(LwLpvPlace), "place of what is shown");
+    if (options_.hasInner) outerLargest_ = make(sizeof(cl_uint), "the most that arrives from outside");
+    if (options_.hasInner) outerCells_ = make(packedBytes(options_), "cells of light from outside");
     if (options_.bounces > 1) bounceCells_ = make(packedBytes(options_), "cells of a bounce");
     if (options_.frames > 1) shownCells_ = make(packedBytes(options_), "cells that are shown");
     totalCells_ = make(packedBytes(options_), "cells of sweeps");
@@ -110,100 +127,138 @@ void LpvSweep::recordCover(Executor& executor, const LpvSweepInput& input) {
     }
 }
 
-void LpvSweep::recordLights(Executor& executor, const LpvSweepInput& input) {
-    executor.fill("lpv_sweep.clear", lights_, 0, 0, lights_.bytes());
+void LpvSweep::recordLights(Executor& executor, const LpvSweepInput& input, const Buffer* inner) {
+    const Buffer& left = inner ? *inner : place_;  // a kernel's argument must be some memory
+    const cl_int hasInner = inner ? 1 : 0;
+    executor.fill("lpv_sweep.clear", scratch_->lights, 0, 0, scratch_->lights.bytes());
     executor.fill("lpv_sweep.clear", outside_, 0, 0, outside_.bytes());
     if (input.rsms.texels)
         executor.run("lpv_sweep.inject", injectTexels_, runsOf(input.rsms.texels.width), kListGroup, input.rsms.texels,
-                     cl_int(input.rsms.texels.width), place_, cl_int(options_.size), lights_, outside_);
+                     cl_int(input.rsms.texels.width), place_, left, hasInner, cl_int(options_.size), scratch_->lights, outside_);
     if (input.authoredCount)
         executor.run("lpv_sweep.inject", injectVpls_, runsOf(input.authoredCount), kListGroup, input.authored,
-                     cl_int(input.authoredCount), place_, cl_int(options_.size), lights_, outside_);
+                     cl_int(input.authoredCount), place_, left, hasInner, cl_int(options_.size), scratch_->lights, outside_);
 }
 
-void LpvSweep::recordRelight(Executor& executor, const SurfelSet& surfels) {
-    executor.fill("lpv_sweep.clear", lights_, 0, 0, lights_.bytes());
+void LpvSweep::recordRelight(Executor& executor, const SurfelSet& surfels, const Buffer* inner) {
+    executor.fill("lpv_sweep.clear", scratch_->lights, 0, 0, scratch_->lights.bytes());
     executor.run("lpv_sweep.unit", unit_, {1, 1}, {1, 1}, place_, largest_, bitsFor(surfels.count), unitPlace_);
     if (surfels.count == 0) return;
-    const Buffer& last = bounce_ == 1 ? totalCells_ : bounceCells_;
     executor.run("lpv_sweep.relight", relight_, runsOf(surfels.count), kListGroup, surfels.planes.memory,
-                 cl_int(surfels.planes.planeStride), cl_int(surfels.count), unitPlace_, cl_int(options_.size), last, lights_);
+                 cl_int(surfels.planes.planeStride), cl_int(surfels.count), unitPlace_, inner ? *inner : place_,
+                 cl_int(inner ? 1 : 0), cl_int(options_.size), bounceCells(), scratch_->lights);
 }
 
-void LpvSweep::recordResolve(Executor& executor, const Buffer& place) {
+void LpvSweep::recordResolve(Executor& executor, const Buffer& place, const Flight& flight) {
     const std::size_t size = options_.size;
-    executor.run("lpv_sweep.resolve", resolve_, {size, LW_SWEEP_ORDERS * size}, {4, 1}, lights_, areas_, place,
-                 cl_int(size), sources_, sheets_, used_);
+    executor.run("lpv_sweep.resolve", resolve_, {size, LW_SWEEP_ORDERS * size}, {4, 1}, scratch_->lights, areas_, place,
+                 cl_int(size), flight.sources, flight.sheets, flight.used);
 }
 
-void LpvSweep::recordGroups(Executor& executor, std::uint32_t count) {
-    executor.run("lpv_sweep.march", march_, {count, 1}, {1, 1}, sources_, sheets_, used_, directions_,
-                 cl_int(options_.directions / LW_SWEEP_GROUPS), cl_int(options_.size), cl_int(nextGroup_), cl_int(count), carried_,
-                 parts_);
-    nextGroup_ += count;
+void LpvSweep::recordGroups(Executor& executor, const Flight& flight) {
+    executor.run("lpv_sweep.march", march_, {step_, 1}, {1, 1}, flight.sources, flight.sheets, flight.used, scratch_->directions,
+                 cl_int(options_.directions / LW_SWEEP_GROUPS), cl_int(options_.size), cl_int(nextGroup_), cl_int(step_),
+                 scratch_->carried, flight.parts);
 }
 
 // What arrived in all groups becomes cells to read.
-void LpvSweep::recordBounce(Executor& executor) {
+void LpvSweep::recordBounce(Executor& executor, Field field) {
     const std::size_t size = options_.size;
-    const bool isFirst = bounce_ == 0;
-    executor.fill("lpv_sweep.clear", largest_, 0, 0, largest_.bytes());
+    const bool adds = field == kAll && bounce_ > 0;
+    const Flight& flight = *flights_[field];
+    const Buffer& largest = field == kAll ? largest_ : outerLargest_;
+    const Buffer& cells = field == kOuter ? outerCells_ : adds ? bounceCells_ : totalCells_;
+    executor.fill("lpv_sweep.clear", largest, 0, 0, largest.bytes());
     const std::size_t vectors = std::size_t(cellsOf(options_)) / combine_.width();
-    executor.run("lpv_sweep.combine", combine_, {vectors, LW_SWEEP_ORDERS * LW_SWEEP_SIDES * LW_SWEEP_COLOURS}, {64, 1}, parts_, cl_int(size), sides_);
-    executor.run("lpv_sweep.pack", pack_, {size, size * size}, kCellGroup, sides_, sheets_, cl_int(size), cl_int(isFirst ? 0 : 1),
-                 isFirst ? totalCells_ : bounceCells_, totalCells_, largest_);
-    nextGroup_ = 0;
-    ++bounce_;
+    executor.run("lpv_sweep.combine", combine_, {vectors, LW_SWEEP_ORDERS * LW_SWEEP_SIDES * LW_SWEEP_COLOURS}, {64, 1},
+                 flight.parts, cl_int(size), scratch_->sides);
+    executor.run("lpv_sweep.pack", pack_, {size, size * size}, kCellGroup, scratch_->sides, flight.sheets, cl_int(size),
+                 cl_int(adds ? 1 : 0), cells, totalCells_, largest);
 }
 
-void LpvSweep::record(Executor& executor, const LpvSweepInput& input) {
+bool LpvSweep::begin(Executor& executor, bool restart) {
     reserve(executor);
-    const bool all = input.restart || !isShown_ || options_.frames == 1;
+    const bool all = restart || !isShown_ || options_.frames == 1;
     if (all) nextGroup_ = bounce_ = 0;
-    const std::uint32_t step = all ? LW_SWEEP_GROUPS : LW_SWEEP_GROUPS / options_.frames;
-    do {
-        if (nextGroup_ == 0 && bounce_ == 0) {
-            executor.copy("lpv_sweep.place", input.place.get(), place_.get(), 0, 0, sizeof(LwLpvPlace));
-            recordCover(executor, input);
-            recordLights(executor, input);
-            recordResolve(executor, place_);
-        } else if (nextGroup_ == 0) {
-            recordRelight(executor, input.surfels);
-            recordResolve(executor, unitPlace_);
-        }
-        recordGroups(executor, step);
-        if (nextGroup_ == LW_SWEEP_GROUPS) recordBounce(executor);
-    } while (all && bounce_ < options_.bounces);
-    if (bounce_ < options_.bounces) return;
+    step_ = all ? LW_SWEEP_GROUPS : LW_SWEEP_GROUPS / options_.frames;
+    return all;
+}
+
+void LpvSweep::recordStart(Executor& executor, const LpvSweepInput& input) {
+    executor.copy("lpv_sweep.place", input.place.get(), place_.get(), 0, 0, sizeof(LwLpvPlace));
+    recordCover(executor, input);
+}
+
+// Light from outside first: its surfels read what arrived in all, which the next bounce's takes the place of.
+bool LpvSweep::recordPart(Executor& executor, const LpvSweepInput& input, const Buffer* inner) {
+    const bool isLast = nextGroup_ + step_ == LW_SWEEP_GROUPS;
+    for (const Field field : {kOuter, kAll}) {
+        if (field == kOuter && !options_.hasInner) continue;
+        const Flight& flight = *flights_[field];
+        if (nextGroup_ == 0 && bounce_ == 0)
+            recordLights(executor, input, field == kOuter ? inner : nullptr);
+        else if (nextGroup_ == 0)
+            recordRelight(executor, input.surfels, field == kOuter ? inner : nullptr);
+        if (nextGroup_ == 0) recordResolve(executor, bounce_ == 0 ? place_ : unitPlace_, flight);
+        recordGroups(executor, flight);
+        if (isLast) recordBounce(executor, field);
+    }
+    nextGroup_ = isLast ? 0 : nextGroup_ + step_;
+    if (isLast) ++bounce_;
+    return isLast;
+}
+
+void LpvSweep::recordEnd(Executor& executor) {
     bounce_ = 0;
     isShown_ = true;
     executor.copy("lpv_sweep.place", place_.get(), shownPlace_.get(), 0, 0, sizeof(LwLpvPlace));
     if (options_.frames > 1) std::swap(totalCells_, shownCells_);
 }
 
+void LpvSweep::record(Executor& executor, const LpvSweepInput& input) {
+    const bool all = begin(executor, input.restart);
+    do {
+        if (isAtStart()) recordStart(executor, input);
+        recordPart(executor, input, nullptr);
+    } while (all && !isDone());
+    if (isDone()) recordEnd(executor);
+}
+
 void LpvSweep::recordGather(Executor& executor, const Planes& position, const Planes& normal, const Planes& irradiance,
-                            const Planes& validity, const Buffer& counts) {
+                            const Planes& validity, const Buffer& counts, const Buffer* places, LpvLayer layer) {
     // A kernel's argument must be some memory, also where it is not touched.
     const auto orElse = [&](const Planes& planes) { return planes ? planes : position; };
     const Range items{(position.width + gather_.width() - 1) / gather_.width(), position.height};
     executor.run("lpv_sweep.gather", gather_, items, gather_.width() == 1 ? Range{64, 1} : Range{8, 1}, position, normal,
-                 cl_int(position.width), cl_int(position.height), shownPlace_, cl_int(options_.size),
+                 cl_int(position.width), cl_int(position.height), places ? *places : shownPlace_, cl_int(layer.index),
+                 cl_int(layer.count), cl_int(options_.size),
                  options_.frames > 1 ? shownCells_ : totalCells_, cl_int(irradiance ? 1 : 0), cl_int(validity ? 1 : 0),
                  orElse(irradiance), orElse(validity), counts);
 }
 
 std::uint64_t LpvSweep::bytes() const {
     std::uint64_t total = 0;
-    for (const Buffer* b : {&directions_, &lights_, &areas_, &cover_, &sources_, &sheets_, &used_, &carried_, &parts_, &sides_, &outside_,
-                            &largest_, &place_, &unitPlace_, &shownPlace_, &bounceCells_, &totalCells_, &shownCells_})
-        total += b->bytes();
+    const auto add = [&](std::initializer_list<const Buffer*> buffers) {
+        for (const Buffer* b : buffers) total += b->bytes();
+    };
+    add({&areas_, &cover_, &outside_, &largest_, &outerLargest_, &place_, &unitPlace_, &shownPlace_, &bounceCells_, &totalCells_,
+         &shownCells_, &outerCells_});
+    if (ownsScratch_) add({&scratch_->directions, &scratch_->lights, &scratch_->carried, &scratch_->sides});
+    for (int f = 0; f < kFields; ++f) {
+        const Flight& flight = *flights_[f];
+        if (f == kAll ? ownsFlights_ : flights_[f] != flights_[kAll])
+            add({&flight.sources, &flight.sheets, &flight.used, &flight.parts});
+    }
     return total;
 }
 
-std::uint64_t LpvSweep::estimateBytes(const LpvSweepOptions& o) {
+std::uint64_t LpvSweep::estimateBytes(const LpvSweepOptions& o, std::uint32_t grids) {
+    const std::uint64_t flight = sourceBytes(o) + sheetBytes(o) + usedBytes(o) + partBytes(o), fields = 2 * grids - 1;
     const std::uint64_t cellSets = 1 + (o.bounces > 1 ? 1 : 0) + (o.frames > 1 ? 1 : 0);
-    return tableBytes(o) + lightBytes(o) + areaBytes(o) + sizeof(LwSweepCover) + sourceBytes(o) + sheetBytes(o) + usedBytes(o) +
-           carriedBytes(o) + partBytes(o) + sideBytes(o) + 2 * sizeof(cl_uint) + 3 * sizeof(LwLpvPlace) + cellSets * packedBytes(o);
+    const std::uint64_t own = areaBytes(o) + sizeof(LwSweepCover) + 2 * sizeof(cl_uint) + 3 * sizeof(LwLpvPlace) + cellSets * packedBytes(o);
+    const std::uint64_t outer = sizeof(cl_uint) + packedBytes(o);
+    return tableBytes(o) + lightBytes(o) + carriedBytes(o) + sideBytes(o) + (o.frames > 1 ? fields : 1) * flight + grids * own +
+           (grids - 1) * outer;
 }
 
 }  // namespace lightwell

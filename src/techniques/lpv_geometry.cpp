@@ -1,5 +1,6 @@
 #include "techniques/lpv_geometry.h"
 
+#include <algorithm>
 #include <cstddef>
 
 #include "compute/device.h"
@@ -14,8 +15,13 @@ using Source = LpvGeometry::Source;
 // Surfels that triangles are sampled to, for each of a side's cells squared: where they have as much area as twenty of the grid's
 // sides, six of them to a cell's. Fewer: walls get holes; more: time, when the triangles or the grid's place change.
 constexpr std::uint32_t kSurfelsOfSide = 128;
+// Each finer grid takes four times as many, in all no more than so many (or than one grid's): more memory, and time when a grid moves.
+constexpr std::uint64_t kMostSurfels = std::uint64_t(1) << 22;
 
-std::uint32_t sampledCount(std::uint32_t size) { return kSurfelsOfSide * size * size; }
+std::uint32_t sampledCount(const LWLpvDesc& desc) {
+    const std::uint64_t one = kSurfelsOfSide * std::uint64_t(desc.size) * desc.size;
+    return std::uint32_t(std::max(one, std::min(one << 2 * (desc.cascades - 1), kMostSurfels)));
+}
 
 Source chosenSource(LWGeometryVolume volume, std::uint32_t triangles, std::uint32_t surfels) {
     switch (volume) {
@@ -53,7 +59,7 @@ const char* describe(Source source) {
 LpvGeometry::LpvGeometry(Device& device, const LWLpvDesc& desc) : device_(device), desc_(desc) {
     if (desc.geometryVolume == LW_GEOMETRY_VOLUME_OFF) return;
     sampling_.emplace(device);
-    blocking_.emplace(device, desc.size);
+    for (std::uint32_t c = 0; c < desc.cascades; ++c) blockings_.push_back(std::make_unique<LpvBlocking>(device, desc.size));
 }
 
 Source LpvGeometry::sourceOf(const LWFrame& frame) const {
@@ -78,16 +84,20 @@ void LpvGeometry::check(const LWFrame& frame) const {
 void LpvGeometry::forget() {
     triangles_.forget();
     hostSurfels_.forget();
-    if (blocking_) blocking_->forget();
+    forgetBlockers();
+}
+
+void LpvGeometry::forgetBlockers() {
+    for (const std::unique_ptr<LpvBlocking>& blocking : blockings_) blocking->forget();
 }
 
 void LpvGeometry::import(Executor& executor, const LWFrame& frame, const RsmInput& rsms) {
     const Source source = sourceOf(frame);
-    if (source != source_ && blocking_) blocking_->forget();  // revisions count within a source
+    if (source != source_) forgetBlockers();  // revisions count within a source
     source_ = source;
     if (source == Source::triangles) {
         triangles_.import(executor, frame.geometry);
-        sampling_->record(executor, triangles_, sampledCount(desc_.size));
+        sampling_->record(executor, triangles_, sampledCount(desc_));
     }
     if (source == Source::surfels) hostSurfels_.import(executor, frame.geometry);
     if (source == Source::screen) importScreen(executor, frame, rsms);
@@ -112,14 +122,15 @@ void LpvGeometry::importScreen(Executor& executor, const LWFrame& frame, const R
     }
 }
 
-std::optional<LpvBlockers> LpvGeometry::record(Executor& executor, const Buffer& place) {
-    if (!blocking_) return std::nullopt;
+std::optional<LpvBlockers> LpvGeometry::record(Executor& executor, const Buffer& place, std::size_t cascade) {
+    if (blockings_.empty()) return std::nullopt;
     const SurfelSet set = source_ == Source::screen    ? screen_.surfels()
                           : source_ == Source::surfels ? hostSurfels_.surfels()
                                                        : sampling_->surfels();
     const std::vector<SurfelRange> all = {{0, set.count}};
-    blocking_->record(executor, set, source_ == Source::screen ? views_ : all, place);
-    return blocking_->blockers();
+    LpvBlocking& blocking = *blockings_[cascade];
+    blocking.record(executor, set, source_ == Source::screen ? views_ : all, place);
+    return blocking.blockers();
 }
 
 std::vector<LWChoice> LpvGeometry::choices(const LWFrame& frame) const {
@@ -144,21 +155,22 @@ void LpvGeometry::report(Report& report) const {
         report.counts.push_back({"surfels", sampling_->surfels().count});
     }
     report.counts.push_back({"surfels_outside", 0});
-    if (blocking_->state())
-        report.read(device_, "surfels_outside", blocking_->state(), offsetof(LwLpvBlockers, surfelsOutside));
+    const Buffer& state = blockings_.back()->state();  // finer grids lie in the coarsest
+    if (state) report.read(device_, "surfels_outside", state, offsetof(LwLpvBlockers, surfelsOutside));
 }
 
 std::uint64_t LpvGeometry::bytes() const {
-    return triangles_.bytes() + hostSurfels_.bytes() + screen_.bytes() + (sampling_ ? sampling_->bytes() : 0) +
-           (blocking_ ? blocking_->bytes() : 0);
+    std::uint64_t total = triangles_.bytes() + hostSurfels_.bytes() + screen_.bytes() + (sampling_ ? sampling_->bytes() : 0);
+    for (const std::unique_ptr<LpvBlocking>& blocking : blockings_) total += blocking->bytes();
+    return total;
 }
 
 std::uint64_t LpvGeometry::estimateBytes(const LWLpvDesc& desc, const FrameShape& shape) {
     const Source source = chosenSource(desc.geometryVolume, shape.triangles, shape.surfels);
-    std::uint64_t total = source == Source::none ? 0 : LpvBlocking::estimateBytes(desc.size);
+    std::uint64_t total = source == Source::none ? 0 : desc.cascades * LpvBlocking::estimateBytes(desc.size);
     if (source == Source::triangles)
         total += GeometryInput::estimateBytes(shape.triangles) +
-                 SurfelSampling::estimateBytes(shape.triangles, sampledCount(desc.size));
+                 SurfelSampling::estimateBytes(shape.triangles, sampledCount(desc));
     if (source == Source::surfels) total += SurfelInput::estimateBytes(shape.surfels, shape.uploads);
     if (source == Source::screen) total += ScreenSurfels::estimateBytes(shape);
     return total;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -27,8 +28,8 @@ public:
     void import(Executor& executor, const LWFrame& frame, const RsmInput& rsms);
     // After commands failed on the device: the next import() and record() do all anew.
     void forget();
-    // What blocks in the grid that lies at `place`; none where the parameter is off.
-    std::optional<LpvBlockers> record(Executor& executor, const Buffer& place);
+    // What blocks in a grid that lies at `place`, from the finest on; none where the parameter is off.
+    std::optional<LpvBlockers> record(Executor& executor, const Buffer& place, std::size_t cascade = 0);
 
     // What of the frame's geometry and views is used, and what is not.
     std::vector<LWChoice> choices(const LWFrame& frame) const;
@@ -37,6 +38,7 @@ public:
     static std::uint64_t estimateBytes(const LWLpvDesc& desc, const FrameShape& shape);
 
 private:
+    void forgetBlockers();
     Source sourceOf(const LWFrame& frame) const;
     void importScreen(Executor& executor, const LWFrame& frame, const RsmInput& rsms);
 
@@ -47,7 +49,7 @@ private:
     SurfelInput hostSurfels_;
     ScreenSurfels screen_;
     std::optional<SurfelSampling> sampling_;
-    std::optional<LpvBlocking> blocking_;
+    std::vector<std::unique_ptr<LpvBlocking>> blockings_;  // of each grid; none where the parameter is off
     std::vector<SurfelRange> views_;  // of what the screen shows
 };
 

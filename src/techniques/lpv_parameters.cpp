@@ -15,6 +15,7 @@ constexpr const char* kVolumeNames[] = {"off", "auto", "triangles", "surfels", "
 constexpr const char* kTransports[] = {"propagate", "sweep", nullptr};
 constexpr double kDirectionValues[] = {24, 48, 96, 216, 384, 864, 1536};
 constexpr double kFrameValues[] = {1, 2, 4, 6, 8, 12, 24};
+constexpr double kCascadeSweep[] = {1, 3};
 constexpr const char* kResolutionNames[] = {"full", "half", nullptr};
 constexpr double kResolutionSweep[] = {LW_RESOLUTION_FULL, LW_RESOLUTION_HALF};
 
@@ -70,13 +71,19 @@ const std::vector<LWParameter>& lpvParameters() {
         swept(choosing(parameter("resolution", "pixels that light is read at; half: every second column and row, up-sampled after",
                                  LW_PARAMETER_ENUM, offsetof(LWLpvDesc, resolution), 0, 1, LW_RESOLUTION_FULL),
                        kResolutionNames),
-              kResolutionSweep)};
+              kResolutionSweep),
+        swept(parameter("cascades",
+                        "grids of `size` cells, each half as large as the one around it: finer light near the eye (or the middle, without a "
+                        "focus); time grows with twice their number",
+                        LW_PARAMETER_UINT, offsetof(LWLpvDesc, cascades), 1, 6, 1),
+              kCascadeSweep)};
     return table;
 }
 
 const std::vector<LWSetting>& lpvSettings() {
     static const std::vector<LWSetting> settings = {{"fast", "size=16 steps=16"}, {"fine", "size=64 steps=32"}, {"sweep", "transport=sweep size=16"},
-                                                   {"sweep fine", "transport=sweep size=32"}};
+                                                   {"sweep fine", "transport=sweep size=32"},
+                                                   {"cascaded", "cascades=3"}, {"sweep cascaded", "transport=sweep size=16 cascades=3"}};
     return settings;
 }
 
@@ -92,4 +99,5 @@ extern "C" void lwDefaultLpv(LWLpvDesc* desc) {
     desc->directions = 384;
     desc->bounces = desc->frames = 1;
     desc->resolution = LW_RESOLUTION_FULL;
+    desc->cascades = 1;
 }

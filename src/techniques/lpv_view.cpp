@@ -22,16 +22,16 @@ LpvView::LpvView(Device& device, const View& view, bool half) : half_(half), cou
 }
 
 void LpvView::render(Executor& executor, const View& view, const LWGBuffer& gbuffer, const LWOutput& output,
-                     JointBilateral* bilateral, const Gather& gather) {
+                     JointBilateral* bilateral, LpvVolume& volume) {
     gbuffer_.import(executor, view, gbuffer, 0, "gbuffer");
     lastHalf_ = Planes{};
     executor.fill("lpv_read.counts", counts_, 0, 0, kCountBytes);
     const Planes irradiance = irradiance_.begin(executor, view, output.irradiance, 3, "output.irradiance");
     const Planes validity = validity_.begin(executor, view, output.validity, 1, "output.validity");
     if (half_ && irradiance)
-        lightHalf(executor, irradiance, validity, *bilateral, gather);
+        lightHalf(executor, irradiance, validity, *bilateral, volume);
     else
-        gather(gbuffer_.position, gbuffer_.normal, irradiance, validity, counts_);
+        volume.recordGather(executor, gbuffer_.position, gbuffer_.normal, irradiance, validity, counts_);
     irradiance_.end(executor);
     validity_.end(executor);
     isRendered_ = true;
@@ -39,18 +39,18 @@ void LpvView::render(Executor& executor, const View& view, const LWGBuffer& gbuf
 
 // Validity is a bound on positions, cheap and sharp: it is made of every pixel, other than light.
 void LpvView::lightHalf(Executor& executor, const Planes& irradiance, const Planes& validity, JointBilateral& bilateral,
-                        const Gather& gather) {
+                        LpvVolume& volume) {
     const Planes &position = gbuffer_.position, &normal = gbuffer_.normal;
     const std::uint32_t w = JointBilateral::halved(position.width), h = JointBilateral::halved(position.height);
     const Planes halfPosition = halfPosition_.planes(w, h), halfNormal = halfNormal_.planes(w, h), light = halfLight_.planes(w, h);
     executor.fill("lpv_read.counts", upsampleCounts_, 0, 0, kUpsampleCountBytes);
     bilateral.recordDownsample(executor, position, normal, halfPosition, halfNormal);
-    gather(halfPosition, halfNormal, light, {}, counts_);
+    volume.recordGather(executor, halfPosition, halfNormal, light, {}, counts_);
     bilateral.recordUpsample(executor, position, normal, halfPosition, halfNormal, light, irradiance, upsampleCounts_);
     lastHalf_ = light;
     if (!validity) return;
     executor.fill("lpv_read.counts", validityCounts_, 0, 0, kCountBytes);
-    gather(position, normal, {}, validity, validityCounts_);
+    volume.recordGather(executor, position, normal, {}, validity, validityCounts_);
 }
 
 void LpvView::startReport(Report& report) {

@@ -1,28 +1,24 @@
 // What technique lpv keeps of a view: light read at every pixel, or at every second column and row and up-sampled.
 #pragma once
 
-#include <functional>
 #include <vector>
 
 #include "inputs/gbuffer_input.h"
 #include "inputs/output_target.h"
 #include "passes/joint_bilateral.h"
+#include "techniques/lpv_volume.h"
 #include "techniques/technique.h"
 
 namespace lightwell {
 
 class LpvView {
 public:
-    // Records a gather as LpvRead::recordGather describes it.
-    using Gather = std::function<void(const Planes& position, const Planes& normal, const Planes& irradiance, const Planes& validity,
-                                      const Buffer& counts)>;
-
     LpvView(Device& device, const View& view, bool half);
 
     void startFrame() { isRendered_ = false; }
     // bilateral: of three channels, with half resolution only.
     void render(Executor& executor, const View& view, const LWGBuffer& gbuffer, const LWOutput& output, JointBilateral* bilateral,
-                const Gather& gather);
+                LpvVolume& volume);
 
     static void startReport(Report& report);
     void report(Device& device, Report& report) const;
@@ -32,7 +28,7 @@ public:
 
 private:
     void lightHalf(Executor& executor, const Planes& irradiance, const Planes& validity, JointBilateral& bilateral,
-                   const Gather& gather);
+                   LpvVolume& volume);
 
     bool half_, isRendered_ = false;
     GBufferInput gbuffer_;

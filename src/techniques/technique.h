@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "compute/error.h"
 #include "compute/executor.h"
 #include "compute/report.h"
 #include "inputs/frame_shape.h"
@@ -27,6 +28,13 @@ struct DebugView {
     std::function<void(Executor&, const Planes&)> fill;
 };
 
+// What lwRenderPoints is asked for: images of count x 1 pixels (harmonics: count x 4), those that are absent of LW_FORMAT_NONE.
+struct Points {
+    LWImage positions{}, normals{};
+    std::uint32_t count = 0;
+    LWPointOutput output{};
+};
+
 class Technique {
 public:
     virtual ~Technique() = default;
@@ -36,6 +44,10 @@ public:
     virtual void update(Executor& executor, const LWFrame& frame) = 0;
     virtual void render(Executor& executor, const std::shared_ptr<View>& view, const LWGBuffer& gbuffer,
                         const LWOutput& output) = 0;
+    // Of techniques whose entry says that they have light at points (LWTechniqueInfo::points); others are not asked.
+    virtual void renderPoints(Executor&, const Points&) {
+        fail(LW_ERROR_INTERNAL, "technique: expected one that has light at points, got another");
+    }
     // Builds and launches every kernel that the parameters can need.
     virtual void prewarm(Executor& executor, const std::shared_ptr<View>& view) = 0;
 

@@ -1,0 +1,95 @@
+#include "techniques/lpv_surfaces.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "compute/device.h"
+
+namespace lightwell {
+namespace {
+
+// Surfels that triangles are drawn as, for each cell of a face of the grid: what covers a cell is then known to some percent.
+// Fewer: walls of a cell's size leak; more: time, when triangles change.
+constexpr std::uint32_t kSurfelsPerSide = 256;
+// Each finer grid takes four times as many, in all no more than so many (or than one grid's): more memory, and time when a grid moves.
+constexpr std::uint64_t kMostSurfels = std::uint64_t(1) << 22;
+// Of sampled surfels' areas, so that the chance of the draw leaves no holes in a wall. More: half covered cells are closed.
+constexpr float kSampledArea = 1.25f;
+
+// Surfels to a cell's side at least. With 6.4 a closed wall lets through 1 to 2 % of the light, 4 to 6 % with half as many, 40 % with
+// a tenth.
+constexpr double kLeastSurfels = 6.4;
+
+std::uint32_t sampledCount(const LWLpvDesc& desc) {
+    const std::uint64_t one = kSurfelsPerSide * std::uint64_t(desc.size) * desc.size;
+    return std::uint32_t(std::max(one, std::min(one << 2 * (desc.cascades - 1), kMostSurfels)));
+}
+
+}  // namespace
+
+LpvSurfaces::LpvSurfaces(Device& device, const LWLpvDesc& desc, int hidden)
+    : device_(device), desc_(desc), hidden_(hidden), sampling_(device) {}
+
+void LpvSurfaces::check(const LWFrame& frame) const {
+    const Source source = sourceOf(frame);
+    if (source == Source::triangles) triangles_.check(frame.geometry);
+    if (source == Source::surfels) SurfelInput::check(device_, frame.geometry);
+}
+
+bool LpvSurfaces::import(Executor& executor, const LWFrame& frame) {
+    Source source = sourceOf(frame);
+    set_ = SurfelSet{};
+    if (source == Source::triangles) {
+        triangles_.import(executor, frame.geometry);
+        sampling_.record(executor, triangles_, sampledCount(desc_));
+        set_ = sampling_.surfels();
+        if (triangles_.triangleCount == 0) source = Source::none;
+    } else if (source == Source::surfels) {
+        surfels_.import(executor, frame.geometry);
+        set_ = surfels_.surfels();
+    }
+    areaScale_ = source == Source::triangles ? kSampledArea : 1.0f;
+    const bool isOther = source != source_;  // revisions count within a source
+    source_ = source;
+    return isOther;
+}
+
+std::vector<LWChoice> LpvSurfaces::choices(const LWFrame& frame, double side) const {
+    std::vector<LWChoice> choices = {
+        {"blockers", source_ == Source::triangles ? "triangles, sampled to surfels by area"
+                     : source_ == Source::surfels ? "the host's surfels"
+                                                  : "the texels of all RSMs: what no light sees blocks nothing"}};
+    if (frame.sourceViewCount)
+        choices.push_back({"frame.sourceViews", "not used: they block nothing, and technique lpv takes light from RSMs and "
+                                                "authored VPLs only"});
+    if (source_ == Source::none && desc_.bounces > 1)
+        choices.push_back({"bounces", "one: without triangles and surfels there is nothing to send light on"});
+    if (source_ == Source::none && frame.geometry && sourceOf(frame) == Source::triangles)
+        choices.push_back({"frame.geometry", "not used: no triangle has an area and lies within reach"});
+    const double cell = std::ldexp(side, 1 - int(desc_.cascades)) / desc_.size;  // of the finest grid
+    if (source_ == Source::triangles && triangles_.area * kLeastSurfels > double(sampledCount(desc_)) * cell * cell)
+        choices.push_back({"blockers.holes", desc_.cascades > 1
+                                                 ? "triangles of more area than surfels are drawn for: too few for each cell of the finest grid to be closed"
+                                                 : "triangles of more than 40 faces of the grid: too few surfels for each cell to be closed"});
+    if (source_ == Source::triangles && frame.geometry->surfelCount)
+        choices.push_back({"frame.geometry.surfels", "not used: the triangles are"});
+    return choices;
+}
+
+void LpvSurfaces::report(Report& report) const {
+    if (source_ == Source::triangles) {
+        triangles_.report(report);
+        report.counts.push_back({"surfels", sampling_.surfels().count});
+    } else if (source_ == Source::surfels) {
+        surfels_.report(report);
+    }
+}
+
+std::uint64_t LpvSurfaces::estimateBytes(const LWLpvDesc& desc, const FrameShape& shape) {
+    const Source source = sourceOf(shape.surfels, shape.triangles);
+    if (source == Source::triangles)
+        return GeometryInput::estimateBytes(shape.triangles) + SurfelSampling::estimateBytes(shape.triangles, sampledCount(desc));
+    return source == Source::surfels ? SurfelInput::estimateBytes(shape.surfels, shape.uploads) : 0;
+}
+
+}  // namespace lightwell
