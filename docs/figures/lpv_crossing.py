@@ -16,7 +16,7 @@ import exr_planes
 from program import ROOT, caller, read_options, write_between
 
 BEGIN, END = "<!-- begin: figures -->", "<!-- end: figures -->"
-FRAMES = 17
+FRAMES = 13
 FOCUS = [-2.1, 3.2, 0.1]           # m: ahead of the camera
 STEP = [0.156, 0.017, 0.027]       # m a frame, askew: a quarter of the cell of 32 to 20 m, an eighth of that of 16
 CAMERA = {"name": "view", "position": [-9.5, 2.2, -0.3], "target": [5, 3, 0], "vertical_fov_degrees": 55}

@@ -68,7 +68,7 @@ def leak(options, call, lamp, thickness, phase, settings):
 
     def make(exr):
         call("render", options.work / f"leak_{lamp}_{thickness}.json", "--camera", "dark", "--technique", "lpv", "--size", options.size,
-             "--warmup", 0, "--frames", 1, *(part for s in ["size=32", *place, *settings] for part in ("--set", s)), "--out", exr)
+             "--focus", "none", "--warmup", 0, "--frames", 1, *(part for s in ["size=32", *place, *settings] for part in ("--set", s)), "--out", exr)
     return mean_light(options.work / f"{name}.exr", make)
 
 
