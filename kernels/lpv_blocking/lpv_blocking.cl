@@ -8,6 +8,7 @@
 //
 // Sums are whole numbers, the same bits in any order. Several views of one surface are not added up but merged: of each corner,
 // the view whose first coefficient is larger is taken whole.
+#include "shared/lpv_raster.h"
 #include "shared/lpv_types.h"
 #include "shared/surfel_types.h"
 #include "shared/vpl_list.h"
@@ -99,6 +100,36 @@ __kernel void lpv_blocking_inject(__global const float* surfels, int stride, int
     }
     end_run(run, corner, sums);
     if (outside) atomic_add(&state->surfelsOutside, outside);
+}
+
+// One work-item = one triangle: its samples on the grid's own lattice, those that a corner is nearest to.
+__kernel void lpv_blocking_triangles(__global const float* triangles, int stride, int count, __global const LwLpvPlace* grid,
+                                     int size, __global uint* sums, __global const LwLpvBlockers* state) {
+    const int t = lw_list_index();
+    if (t >= count || !state->stale) return;
+    const lpv_raster r = raster_of(triangles, stride, t, *grid, size);
+    const float full = r.area * LPV_WHOLE, most = (float)(size + 1);
+    const float linear = (LPV_SIDE(r.nx, r.ny, r.nz) < 0.0f ? -LPV_LOBE1 : LPV_LOBE1) * full;
+    long run[LW_LPV_BANDS] = {0, 0, 0, 0};
+    int corner = -1;
+    for (int v = r.firstV; v <= r.lastV; ++v)
+        for (int u = r.firstU; u <= r.lastU; ++u) {
+            float p[3];
+            if (!raster_sample(&r, u, v, p)) continue;
+            const float x = p[0] + 0.5f, y = p[1] + 0.5f, z = p[2] + 0.5f;
+            const int isNear = x >= 0.0f && x < most && y >= 0.0f && y < most && z >= 0.0f && z < most;
+            const int to = isNear ? ((int)z * (size + 1) + (int)y) * (size + 1) + (int)x : -1;
+            if (to != corner) {
+                end_run(run, corner, sums);
+                corner = to;
+            }
+            if (to < 0) continue;
+            run[0] += (long)(LPV_LOBE0 * full);
+            run[1] += (long)(linear * r.nx);
+            run[2] += (long)(linear * r.ny);
+            run[3] += (long)(linear * r.nz);
+        }
+    end_run(run, corner, sums);
 }
 
 // One work-item = one corner (x; y and z): its sums, which are emptied, as a vector; of the first view, or where it blocks more

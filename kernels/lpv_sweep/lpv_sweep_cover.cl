@@ -2,6 +2,7 @@
 // what the surface sends, half a cell in front of it, nor what arrives there is stopped by it. Sums are whole numbers of 64
 // bits: the same bits in any order.
 #include "shared/lpv_cells.h"
+#include "shared/lpv_raster.h"
 #include "shared/lpv_sweep_normal.h"
 #include "shared/lpv_types.h"
 #include "shared/rsm_types.h"
@@ -37,9 +38,8 @@ LW_FN sweep_areas no_areas(void) {
 
 LW_FN float largest_coordinate(float nx, float ny, float nz) { return fmax(fmax(fabs(nx), fabs(ny)), fabs(nz)); }
 
-LW_FN void add_area(sweep_areas* run, const LwLpvPlace place, int size, float area, float px, float py, float pz, float nx,
-                    float ny, float nz, __global uint* sums, __global uint* marks) {
-    const int cell = cell_of(place, size, px, py, pz, nx, ny, nz, -0.5f);
+// full: the area in sides of a cell, in the sums' units.
+LW_FN void add_full(sweep_areas* run, int cell, float full, float nx, float ny, float nz, __global uint* sums, __global uint* marks) {
     const sweep_normal n = normal_of(nx, ny, nz);
     int sheets[3];
     for (int k = 0; k < 3; ++k) sheets[k] = min(n.bins[k], LW_SWEEP_NORMALS - 1 - n.bins[k]);
@@ -49,10 +49,16 @@ LW_FN void add_area(sweep_areas* run, const LwLpvPlace place, int size, float ar
         for (int k = 0; k < 3; ++k) run->sheets[k] = sheets[k];
     }
     if (cell < 0) return;
-    // In sides of a cell. The shares as they are: a plane across a cell shall close it, and what is too much lies along the plane.
-    const float full = fmin(area * place.origin.w * place.origin.w, LW_SWEEP_MOST_AREA) * (float)(1 << LW_SWEEP_AREA_BITS);
+    // The shares as they are: a plane across a cell shall close it, and what is too much lies along the plane.
     for (int k = 0; k < 3; ++k) run->sums[k] += (long)(full * n.shares[k]);
     run->sums[3] += (long)(full * largest_coordinate(nx, ny, nz));
+}
+
+LW_FN void add_area(sweep_areas* run, const LwLpvPlace place, int size, float area, float px, float py, float pz, float nx,
+                    float ny, float nz, __global uint* sums, __global uint* marks) {
+    const int cell = cell_of(place, size, px, py, pz, nx, ny, nz, -0.5f);
+    const float full = fmin(area * place.origin.w * place.origin.w, LW_SWEEP_MOST_AREA) * (float)(1 << LW_SWEEP_AREA_BITS);
+    add_full(run, cell, full, nx, ny, nz, sums, marks);
 }
 
 // One work-item in all: is what covers the cells still right? anew: 1 where the host knows that it is not.
@@ -112,5 +118,25 @@ __kernel void lpv_sweep_cover_surfels(__global const float* surfels, int stride,
                  p[(LW_SURFEL_POSITION + 1) * stride], p[(LW_SURFEL_POSITION + 2) * stride], p[LW_SURFEL_NORMAL * stride],
                  p[(LW_SURFEL_NORMAL + 1) * stride], p[(LW_SURFEL_NORMAL + 2) * stride], sums, marks);
     }
+    end_areas(&run, sums, marks);
+}
+
+// One work-item = one triangle: its samples on the grid's own lattice.
+__kernel void lpv_sweep_cover_triangles(__global const float* triangles, int stride, int count, __global const LwLpvPlace* grid,
+                                        int size, __global const LwSweepCover* state, __global uint* sums) {
+    const int t = lw_list_index();
+    if (t >= count || !state->stale) return;
+    __global uint* marks = sums + sweep_area_marks(size);
+    const lpv_raster r = raster_of(triangles, stride, t, *grid, size);
+    const float full = r.area * (float)(1 << LW_SWEEP_AREA_BITS), most = (float)size;
+    sweep_areas run = no_areas();
+    for (int v = r.firstV; v <= r.lastV; ++v)
+        for (int u = r.firstU; u <= r.lastU; ++u) {
+            float p[3];
+            if (!raster_sample(&r, u, v, p)) continue;
+            const float x = p[0] - 0.5f * r.nx, y = p[1] - 0.5f * r.ny, z = p[2] - 0.5f * r.nz;
+            const int isInside = x >= 0.0f && x < most && y >= 0.0f && y < most && z >= 0.0f && z < most;
+            add_full(&run, isInside ? ((int)z * size + (int)y) * size + (int)x : -1, full, r.nx, r.ny, r.nz, sums, marks);
+        }
     end_areas(&run, sums, marks);
 }

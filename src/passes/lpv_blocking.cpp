@@ -28,6 +28,7 @@ LpvBlocking::LpvBlocking(Device& device, std::uint32_t size)
       size_(size),
       begin_(device.programs().kernel(kProgram, "lpv_blocking_begin")),
       inject_(device.programs().kernel(kProgram, "lpv_blocking_inject")),
+      rasterise_(device.programs().kernel(kProgram, "lpv_blocking_triangles")),
       merge_(device.programs().kernel(kProgram, "lpv_blocking_merge")),
       faceWays_(device.programs().kernel(kProgram, "lpv_blocking_faces")),
       markRuns_(device.programs().kernel(kProgram, "lpv_blocking_runs")) {}
@@ -44,31 +45,49 @@ void LpvBlocking::reserve(Executor& executor) {
     executor.fill("lpv_blocking.clear", state_, 0, 0, state_.bytes());
 }
 
-void LpvBlocking::record(Executor& executor, const SurfelSet& surfels, const std::vector<SurfelRange>& views,
-                         const Buffer& place) {
+void LpvBlocking::begin(Executor& executor, std::uint64_t revision, const Buffer& place) {
     reserve(executor);
-    executor.run("lpv_blocking.begin", begin_, {1, 1}, {1, 1}, place, cl_uint(surfels.revision), cl_uint(surfels.revision >> 32),
+    executor.run("lpv_blocking.begin", begin_, {1, 1}, {1, 1}, place, cl_uint(revision), cl_uint(revision >> 32),
                  cl_int(isKept_ ? 0 : 1), state_);
     isKept_ = true;
+}
+
+void LpvBlocking::merge(Executor& executor, bool isFirst) {
     const std::size_t side = size_ + 1;
-    const auto merge = [&](bool isFirst) {
-        executor.run("lpv_blocking.merge", merge_, {side, side * side}, kCellGroup, sums_, cl_int(size_), cl_int(isFirst ? 1 : 0),
-                     merged_, state_);
-    };
+    executor.run("lpv_blocking.merge", merge_, {side, side * side}, kCellGroup, sums_, cl_int(size_), cl_int(isFirst ? 1 : 0),
+                 merged_, state_);
+}
+
+void LpvBlocking::end(Executor& executor) {
+    const std::size_t lines = std::size_t(size_) * size_;
+    executor.run("lpv_blocking.faces", faceWays_, {size_, lines}, kCellGroup, merged_, cl_int(size_), faces_, state_);
+    executor.run("lpv_blocking.faces", markRuns_, {size_ / LW_LPV_BLOCK_RUN, lines}, kRunGroup, merged_, cl_int(size_), runs_,
+                 state_);
+}
+
+void LpvBlocking::record(Executor& executor, const SurfelSet& surfels, const std::vector<SurfelRange>& views,
+                         const Buffer& place) {
+    begin(executor, surfels.revision, place);
     bool isFirst = true;
     for (const SurfelRange& view : views) {
         if (view.count == 0 || !surfels.planes) continue;
         executor.run("lpv_blocking.inject", inject_, gridOver((view.count + kRun - 1) / kRun), kListGroup, surfels.planes.memory,
                      cl_int(surfels.planes.planeStride), cl_int(view.first), cl_int(view.count), place, cl_int(size_), sums_,
                      state_);
-        merge(isFirst);
+        merge(executor, isFirst);
         isFirst = false;
     }
-    if (isFirst) merge(true);  // nothing blocks
-    const std::size_t lines = std::size_t(size_) * size_;
-    executor.run("lpv_blocking.faces", faceWays_, {size_, lines}, kCellGroup, merged_, cl_int(size_), faces_, state_);
-    executor.run("lpv_blocking.faces", markRuns_, {size_ / LW_LPV_BLOCK_RUN, lines}, kRunGroup, merged_, cl_int(size_), runs_,
-                 state_);
+    if (isFirst) merge(executor, true);  // nothing blocks
+    end(executor);
+}
+
+void LpvBlocking::record(Executor& executor, const GeometryInput& geometry, const Buffer& place) {
+    begin(executor, geometry.revision, place);
+    if (geometry.triangleCount)
+        executor.run("lpv_blocking.inject", rasterise_, gridOver(geometry.triangleCount), kListGroup, geometry.triangles.memory,
+                     cl_int(geometry.triangles.planeStride), cl_int(geometry.triangleCount), place, cl_int(size_), sums_, state_);
+    merge(executor, true);
+    end(executor);
 }
 
 std::uint64_t LpvBlocking::bytes() const {

@@ -7,6 +7,7 @@
 
 #include "compute/buffer.h"
 #include "compute/executor.h"
+#include "inputs/geometry_input.h"
 #include "inputs/surfel_set.h"
 #include "passes/lpv_propagation.h"
 
@@ -23,6 +24,8 @@ public:
 
     // Passes "lpv_blocking.*". place: LpvGrid's. Made anew where the grid has moved or the surfels' revision is another.
     void record(Executor& executor, const SurfelSet& surfels, const std::vector<SurfelRange>& views, const Buffer& place);
+    // The same of triangles, as samples on the grid's own lattice.
+    void record(Executor& executor, const GeometryInput& triangles, const Buffer& place);
     void forget() { isKept_ = false; }  // the next record() makes all anew, whatever the revision
 
     LpvBlockers blockers() const { return {faces_, runs_}; }
@@ -32,10 +35,13 @@ public:
 
 private:
     void reserve(Executor& executor);
+    void begin(Executor& executor, std::uint64_t revision, const Buffer& place);
+    void merge(Executor& executor, bool isFirst);
+    void end(Executor& executor);
 
     Device& device_;
     std::uint32_t size_;
-    Kernel &begin_, &inject_, &merge_, &faceWays_, &markRuns_;
+    Kernel &begin_, &inject_, &rasterise_, &merge_, &faceWays_, &markRuns_;
     Buffer sums_, merged_, faces_, runs_, state_;
     bool isKept_ = false;
 };

@@ -57,6 +57,7 @@ LpvSweep::LpvSweep(Device& device, const LpvSweepOptions& options, const LpvSwee
       clear_(device.programs().kernel(kCover, "lpv_sweep_clear")),
       coverTexels_(device.programs().kernel(kCover, "lpv_sweep_cover_texels")),
       coverSurfels_(device.programs().kernel(kCover, "lpv_sweep_cover_surfels")),
+      coverTriangles_(device.programs().kernel(kCover, "lpv_sweep_cover_triangles")),
       resolve_(device.programs().kernel(kSweep, "lpv_sweep_resolve")),
       march_(device.programs().kernel(kSweep, "lpv_sweep_march")),
       combine_(device.programs().kernel(kSweep, "lpv_sweep_combine")),
@@ -110,13 +111,17 @@ void LpvSweep::reserve(Executor& executor) {
 }
 
 void LpvSweep::recordCover(Executor& executor, const LpvSweepInput& input) {
-    const bool hasSurfels = input.surfels.count > 0;
-    const std::uint64_t revision = hasSurfels ? input.surfels.revision : 0;
+    const bool hasTriangles = input.triangles != nullptr, hasSurfels = input.surfels.count > 0;
+    const std::uint64_t revision = hasTriangles ? input.triangles->revision : hasSurfels ? input.surfels.revision : 0;
     executor.run("lpv_sweep.begin", begin_, {1, 1}, {1, 1}, place_, cl_uint(revision), cl_uint(revision >> 32),
-                 cl_int(input.restart || !hasSurfels ? 1 : 0), cover_);
+                 cl_int(input.restart || !(hasTriangles || hasSurfels) ? 1 : 0), cover_);
     const auto vectors = std::size_t(areaBytes(options_) / (16 * sizeof(cl_uint)));
     executor.run("lpv_sweep.clear", clear_, gridOver(vectors), kListGroup, areas_, cl_int(vectors), cover_);
-    if (hasSurfels) {
+    if (hasTriangles) {
+        const Planes& planes = input.triangles->triangles;
+        executor.run("lpv_sweep.cover", coverTriangles_, gridOver(input.triangles->triangleCount), kListGroup, planes.memory,
+                     cl_int(planes.planeStride), cl_int(input.triangles->triangleCount), place_, cl_int(options_.size), cover_, areas_);
+    } else if (hasSurfels) {
         const Planes& planes = input.surfels.planes;
         executor.run("lpv_sweep.cover", coverSurfels_, runsOf(input.surfels.count), kListGroup, planes.memory,
                      cl_int(planes.planeStride), cl_int(input.surfels.count), place_, cl_int(options_.size),

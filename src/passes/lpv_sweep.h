@@ -7,6 +7,7 @@
 
 #include "compute/buffer.h"
 #include "compute/executor.h"
+#include "inputs/geometry_input.h"
 #include "inputs/rsm_input.h"
 #include "inputs/surfel_set.h"
 #include "passes/lpv_cascades.h"
@@ -31,6 +32,7 @@ struct LpvSweepInput {
     SurfelSet surfels;    // where it has none: the RSMs' texels
     float areaScale;      // of the surfels
     bool restart;         // nothing of the frames before is right any more
+    const GeometryInput* triangles = nullptr;  // block in place of the surfels, as samples on the grid's own lattice
 };
 
 class LpvSweep {
@@ -96,7 +98,7 @@ private:
 
     Device& device_;
     LpvSweepOptions options_;
-    Kernel &injectTexels_, &injectVpls_, &unit_, &relight_, &begin_, &clear_, &coverTexels_, &coverSurfels_, &resolve_, &march_,
+    Kernel &injectTexels_, &injectVpls_, &unit_, &relight_, &begin_, &clear_, &coverTexels_, &coverSurfels_, &coverTriangles_, &resolve_, &march_,
         &combine_, &pack_, &gather_;
     std::shared_ptr<Scratch> scratch_;
     std::shared_ptr<Flight> flights_[kFields];

@@ -1,6 +1,5 @@
 #include "techniques/lpv_geometry.h"
 
-#include <algorithm>
 #include <cstddef>
 
 #include "compute/device.h"
@@ -15,13 +14,11 @@ using Source = LpvGeometry::Source;
 // Surfels that triangles are sampled to, for each of a side's cells squared: where they have as much area as twenty of the grid's
 // sides, six of them to a cell's. Fewer: walls get holes; more: time, when the triangles or the grid's place change.
 constexpr std::uint32_t kSurfelsOfSide = 128;
-// Each finer grid takes four times as many, in all no more than so many (or than one grid's): more memory, and time when a grid moves.
-constexpr std::uint64_t kMostSurfels = std::uint64_t(1) << 22;
 
-std::uint32_t sampledCount(const LWLpvDesc& desc) {
-    const std::uint64_t one = kSurfelsOfSide * std::uint64_t(desc.size) * desc.size;
-    return std::uint32_t(std::max(one, std::min(one << 2 * (desc.cascades - 1), kMostSurfels)));
-}
+std::uint32_t sampledCount(const LWLpvDesc& desc) { return kSurfelsOfSide * desc.size * desc.size; }
+
+// Several grids take the triangles as they are, each on a lattice of its own.
+bool draws(const LWLpvDesc& desc) { return desc.cascades == 1; }
 
 Source chosenSource(LWGeometryVolume volume, std::uint32_t triangles, std::uint32_t surfels) {
     switch (volume) {
@@ -41,10 +38,10 @@ Source chosenSource(LWGeometryVolume volume, std::uint32_t triangles, std::uint3
 std::uint32_t trianglesOf(const LWFrame& frame) { return frame.geometry ? frame.geometry->triangleCount : 0; }
 std::uint32_t surfelsOf(const LWFrame& frame) { return frame.geometry ? frame.geometry->surfelCount : 0; }
 
-const char* describe(Source source) {
+const char* describe(Source source, bool draws) {
     switch (source) {
         case Source::triangles:
-            return "triangles, sampled to surfels by area";
+            return draws ? "triangles, sampled to surfels by area" : "triangles, 16 samples to a cell's side";
         case Source::surfels:
             return "the host's surfels";
         case Source::screen:
@@ -97,7 +94,7 @@ void LpvGeometry::import(Executor& executor, const LWFrame& frame, const RsmInpu
     source_ = source;
     if (source == Source::triangles) {
         triangles_.import(executor, frame.geometry);
-        sampling_->record(executor, triangles_, sampledCount(desc_));
+        if (draws(desc_)) sampling_->record(executor, triangles_, sampledCount(desc_));
     }
     if (source == Source::surfels) hostSurfels_.import(executor, frame.geometry);
     if (source == Source::screen) importScreen(executor, frame, rsms);
@@ -124,17 +121,21 @@ void LpvGeometry::importScreen(Executor& executor, const LWFrame& frame, const R
 
 std::optional<LpvBlockers> LpvGeometry::record(Executor& executor, const Buffer& place, std::size_t cascade) {
     if (blockings_.empty()) return std::nullopt;
+    LpvBlocking& blocking = *blockings_[cascade];
+    if (source_ == Source::triangles && !draws(desc_)) {
+        blocking.record(executor, triangles_, place);
+        return blocking.blockers();
+    }
     const SurfelSet set = source_ == Source::screen    ? screen_.surfels()
                           : source_ == Source::surfels ? hostSurfels_.surfels()
                                                        : sampling_->surfels();
     const std::vector<SurfelRange> all = {{0, set.count}};
-    LpvBlocking& blocking = *blockings_[cascade];
     blocking.record(executor, set, source_ == Source::screen ? views_ : all, place);
     return blocking.blockers();
 }
 
 std::vector<LWChoice> LpvGeometry::choices(const LWFrame& frame) const {
-    std::vector<LWChoice> choices = {{"geometry_volume", describe(source_)}};
+    std::vector<LWChoice> choices = {{"geometry_volume", describe(source_, draws(desc_))}};
     if (frame.sourceViewCount && source_ != Source::screen)
         choices.push_back({"frame.sourceViews", "not used: they block nothing, and technique lpv takes light from RSMs and "
                                                 "authored VPLs only"});
@@ -152,7 +153,7 @@ void LpvGeometry::report(Report& report) const {
     if (source_ == Source::screen) screen_.report(report);
     if (source_ == Source::triangles) {
         triangles_.report(report);
-        report.counts.push_back({"surfels", sampling_->surfels().count});
+        if (draws(desc_)) report.counts.push_back({"surfels", sampling_->surfels().count});
     }
     report.counts.push_back({"surfels_outside", 0});
     const Buffer& state = blockings_.back()->state();  // finer grids lie in the coarsest
@@ -168,9 +169,8 @@ std::uint64_t LpvGeometry::bytes() const {
 std::uint64_t LpvGeometry::estimateBytes(const LWLpvDesc& desc, const FrameShape& shape) {
     const Source source = chosenSource(desc.geometryVolume, shape.triangles, shape.surfels);
     std::uint64_t total = source == Source::none ? 0 : desc.cascades * LpvBlocking::estimateBytes(desc.size);
-    if (source == Source::triangles)
-        total += GeometryInput::estimateBytes(shape.triangles) +
-                 SurfelSampling::estimateBytes(shape.triangles, sampledCount(desc));
+    if (source == Source::triangles) total += GeometryInput::estimateBytes(shape.triangles);
+    if (source == Source::triangles && draws(desc)) total += SurfelSampling::estimateBytes(shape.triangles, sampledCount(desc));
     if (source == Source::surfels) total += SurfelInput::estimateBytes(shape.surfels, shape.uploads);
     if (source == Source::screen) total += ScreenSurfels::estimateBytes(shape);
     return total;

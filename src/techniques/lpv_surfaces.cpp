@@ -1,7 +1,6 @@
 #include "techniques/lpv_surfaces.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "compute/device.h"
 
@@ -11,18 +10,21 @@ namespace {
 // Surfels that triangles are drawn as, for each cell of a face of the grid: what covers a cell is then known to some percent.
 // Fewer: walls of a cell's size leak; more: time, when triangles change.
 constexpr std::uint32_t kSurfelsPerSide = 256;
-// Each finer grid takes four times as many, in all no more than so many (or than one grid's): more memory, and time when a grid moves.
-constexpr std::uint64_t kMostSurfels = std::uint64_t(1) << 22;
 // Of sampled surfels' areas, so that the chance of the draw leaves no holes in a wall. More: half covered cells are closed.
 constexpr float kSampledArea = 1.25f;
 
-// Surfels to a cell's side at least. With 6.4 a closed wall lets through 1 to 2 % of the light, 4 to 6 % with half as many, 40 % with
-// a tenth.
-constexpr double kLeastSurfels = 6.4;
+// Of triangles' area, in faces of the grid: from there on fewer than 6.4 surfels come to a cell's side. A closed wall lets
+// through 1 to 2 % of the light then, 4 to 6 % with half as many, 40 % with a tenth.
+constexpr double kMostFaces = 40.0;
+
+// Several grids: the surfels that send light on, four times as many for each finer grid but no more in all than so many (or than one
+// grid's). In finer grids than they suffice for, light that is sent on comes from too few cells.
+constexpr std::uint64_t kMostSending = std::uint64_t(1) << 22;
 
 std::uint32_t sampledCount(const LWLpvDesc& desc) {
     const std::uint64_t one = kSurfelsPerSide * std::uint64_t(desc.size) * desc.size;
-    return std::uint32_t(std::max(one, std::min(one << 2 * (desc.cascades - 1), kMostSurfels)));
+    if (desc.cascades == 1) return std::uint32_t(one);
+    return desc.bounces == 1 ? 0 : std::uint32_t(std::max(one, std::min(one << 2 * (desc.cascades - 1), kMostSending)));
 }
 
 }  // namespace
@@ -56,7 +58,8 @@ bool LpvSurfaces::import(Executor& executor, const LWFrame& frame) {
 
 std::vector<LWChoice> LpvSurfaces::choices(const LWFrame& frame, double side) const {
     std::vector<LWChoice> choices = {
-        {"blockers", source_ == Source::triangles ? "triangles, sampled to surfels by area"
+        {"blockers", triangles()                    ? "triangles, 16 samples to a cell's side"
+                     : source_ == Source::triangles ? "triangles, sampled to surfels by area"
                      : source_ == Source::surfels ? "the host's surfels"
                                                   : "the texels of all RSMs: what no light sees blocks nothing"}};
     if (frame.sourceViewCount)
@@ -66,11 +69,8 @@ std::vector<LWChoice> LpvSurfaces::choices(const LWFrame& frame, double side) co
         choices.push_back({"bounces", "one: without triangles and surfels there is nothing to send light on"});
     if (source_ == Source::none && frame.geometry && sourceOf(frame) == Source::triangles)
         choices.push_back({"frame.geometry", "not used: no triangle has an area and lies within reach"});
-    const double cell = std::ldexp(side, 1 - int(desc_.cascades)) / desc_.size;  // of the finest grid
-    if (source_ == Source::triangles && triangles_.area * kLeastSurfels > double(sampledCount(desc_)) * cell * cell)
-        choices.push_back({"blockers.holes", desc_.cascades > 1
-                                                 ? "triangles of more area than surfels are drawn for: too few for each cell of the finest grid to be closed"
-                                                 : "triangles of more than 40 faces of the grid: too few surfels for each cell to be closed"});
+    if (source_ == Source::triangles && !triangles() && triangles_.area > kMostFaces * side * side)
+        choices.push_back({"blockers.holes", "triangles of more than 40 faces of the grid: too few surfels for each cell to be closed"});
     if (source_ == Source::triangles && frame.geometry->surfelCount)
         choices.push_back({"frame.geometry.surfels", "not used: the triangles are"});
     return choices;

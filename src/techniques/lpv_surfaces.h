@@ -22,6 +22,9 @@ public:
     bool import(Executor& executor, const LWFrame& frame);
     const SurfelSet& surfels() const { return set_; }
     float areaScale() const { return areaScale_; }
+    // Of several grids each takes the triangles as they are; none: of one grid, or where there are no triangles. Surfels are what
+    // sends light on then, and are drawn for further bounces only.
+    const GeometryInput* triangles() const { return source_ == Source::triangles && desc_.cascades > 1 ? &triangles_ : nullptr; }
 
     // What of the last import's frame was used, and what not. side: of the coarsest grid, or less.
     std::vector<LWChoice> choices(const LWFrame& frame, double side) const;

@@ -22,7 +22,7 @@ void LpvSweepCascades::record(Executor& executor, const LWFrame& frame, const Rs
     bool all = false;
     for (std::size_t c = 0; c < sweeps_.size(); ++c) {
         inputs.push_back({rsms, places_.authored(), frame.vplCount, places_.grid(c).place(), surfaces_.surfels(), surfaces_.areaScale(),
-                          placement.refit || isOther});
+                          placement.refit || isOther, surfaces_.triangles()});
         all = sweeps_[c]->begin(executor, inputs[c].restart);
     }
     const LpvSweep& any = *sweeps_[0];
