@@ -10,6 +10,7 @@ import functools
 import json
 
 import exr_planes
+import lpv_thesis_factor
 import lpv_thesis_pictures
 from lpv_thesis_scores import CASCADED, OURS, PUBLISHED, ROWS, SCENES
 from program import ROOT, caller, read_options, write_between
@@ -100,18 +101,19 @@ def main():
     has_cascades = "\n    cascades=" in call("render", "--help")
     lines, ours = [], {}
     settings = {(scene, view): Setting(options, call, scene, view) for scene, s in SCENES.items() for view in s["views"]}
+
+    def rows_of(scene):
+        return [row for row in ROWS if row in PUBLISHED[scene, SCENES[scene]["views"][0]] and (has_cascades or row not in CASCADED)]
     for scene in SCENES:
-        rows = [row for row in ROWS if row in PUBLISHED[scene, SCENES[scene]["views"][0]]]
-        measured = [row for row in rows if has_cascades or row not in CASCADED]
-        lines += score_table(settings, scene, measured, rows, ours) + own_table(settings, scene)
-    lines += correlations(ours) + pairs_against(ours)
+        lines += score_table(settings, scene, rows_of(scene), ours) + own_table(settings, scene)
+    lines += correlations(ours) + pairs_against(ours) + lpv_thesis_factor.lines_of(settings, rows_of)
     lines += lpv_thesis_pictures.write(settings, ROOT / "docs/images")
     if not has_cascades:
         lines += ["This program's `lpv` has no `cascades`: those rows are not measured.", ""]
     write_between(ROOT / "docs/techniques/lpv_thesis.md", BEGIN, END, lines)
 
 
-def score_table(settings, scene, measured, rows, ours):
+def score_table(settings, scene, measured, ours):
     views = SCENES[scene]["views"]
     first = [settings[scene, view] for view in views]
     noise = ", ".join(f"`{s.view}` {s.figures(s.row(*ROWS[measured[0]]))['reference_noise']:.2g} and {s.floor():.2f}" for s in first)
@@ -119,7 +121,7 @@ def score_table(settings, scene, measured, rows, ours):
              f"Truths' noise (relMSE), and the score of one half of their paths against the other: {noise}.", "",
              "| | " + " | ".join(f"{v}: source | ours | relMSE | bias" for v in views) + " | mean: source | ours |",
              "| --- | " + " | ".join(["---:"] * (4 * len(views) + 2)) + " |"]
-    for row in rows:
+    for row in PUBLISHED[scene, views[0]]:
         cells = []
         for view in views:
             theirs = PUBLISHED[scene, view][row]
