@@ -1,4 +1,4 @@
-"""Planes of an EXR as numpy arrays: what tests/cli/exr.py reads value by value, by whole blocks. Needs numpy."""
+"""Planes of an EXR as numpy arrays: what tests/cli/exr.py reads value by value, by whole blocks; and the way back. Needs numpy."""
 import struct
 import sys
 import zlib
@@ -46,3 +46,24 @@ def unzip(block, size):
     half = (size + 1) // 2
     out[0::2], out[1::2] = raw[:half], raw[half:]
     return out.tobytes()
+
+
+def write_planes(path, planes):
+    """planes: arrays [height, width] by channel name; as floats, uncompressed."""
+    names = sorted(planes)  # the order that the format asks for
+    height, width = planes[names[0]].shape
+    window = struct.pack("<4i", 0, 0, width - 1, height - 1)
+    channels = b"".join(name.encode() + b"\0" + struct.pack("<iB3xii", 2, 0, 1, 1) for name in names) + b"\0"
+    attributes = [("channels", "chlist", channels), ("compression", "compression", b"\0"), ("dataWindow", "box2i", window),
+                  ("displayWindow", "box2i", window), ("lineOrder", "lineOrder", b"\0"), ("pixelAspectRatio", "float", struct.pack("<f", 1)),
+                  ("screenWindowCenter", "v2f", struct.pack("<2f", 0, 0)), ("screenWindowWidth", "float", struct.pack("<f", 1))]
+    header = struct.pack("<II", 20000630, 2)
+    for name, kind, value in attributes:
+        header += name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(value)) + value
+    header += b"\0"
+    size = 4 * width * len(names)
+    first = len(header) + 8 * height
+    offsets = struct.pack(f"<{height}Q", *(first + (8 + size) * y for y in range(height)))
+    rows = numpy.stack([planes[name] for name in names], axis=1).astype("<f4")  # [height, names, width]
+    blocks = b"".join(struct.pack("<ii", y, size) + rows[y].tobytes() for y in range(height))
+    path.write_bytes(header + offsets + blocks)

@@ -30,3 +30,10 @@ def caller(program):
             sys.exit(result.stderr.strip() or f"lightwell {arguments[0]} failed")
         return result.stdout
     return call
+
+
+def write_between(page, begin, end, lines):
+    """Puts lines between two marks of a page, in place of what stood there."""
+    before, rest = page.read_text(encoding="utf-8").split(begin)
+    page.write_text(before + begin + "\n" + "\n".join(lines) + "\n" + end + rest.split(end)[1], encoding="utf-8")
+    print(page)

@@ -3,21 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 
 #include "cli.h"
 
 namespace cli {
 namespace {
-
-// A view matrix turns and moves: the eye is where it has 0.
-std::array<float, 3> eyeOf(const LWCamera& camera) {
-    std::array<float, 3> eye{};
-    for (std::size_t axis = 0; axis < 3; ++axis)
-        for (std::size_t row = 0; row < 3; ++row) eye[axis] -= camera.view[4 * row + axis] * camera.view[4 * row + 3];
-    return eye;
-}
 
 // A name may come several times in a frame; its times are summed.
 std::vector<PassTime> passTimes(const LWStats& stats) {
@@ -127,8 +118,7 @@ FrameSample LibraryRenderer::renderFrame(const RenderInputs& inputs, bool reset)
     frame.sourceViewCount = std::uint32_t(sources.size());
     frame.geometry = &inputs.geometry();
     std::copy_n(inputs.environment(), 3, frame.environment);
-    const std::array<float, 3> eye = eyeOf(inputs.lwGBuffer().camera);
-    frame.focus = eye.data();
+    frame.focus = inputs.focus();
     technique_.update(frame);
     render(inputs.lwGBuffer());
     device_.finish();

@@ -23,7 +23,7 @@ constexpr const char* kNoTechnique = "none";
 struct RenderOptions {
     ViewOptions view;
     std::string quantity = "irradiance", technique, seed, vplsOut, device, debugView, exposure,
-                scale = "1", step = "0";
+                scale = "1", step = "0", focus = "eye";
     std::vector<std::string> assignments, outs, sourceViews;
     int frames = 9, warmup = 3, width = 0, rsmSize = 512, cascades = 1;
     bool asJson = false, printsHash = false;
@@ -68,6 +68,7 @@ void checkOptions(const RenderOptions& options) {
     if (!options.exposure.empty() && options.isAmbient())
         throw UsageError("--exposure: ambient occlusion is drawn as it is, 1 = white; leave it out");
     parsePositive("--scale", options.scale);
+    parseFocus("--focus", options.focus);
     const double step = parseNumber("--step", options.step);
     if (step < 0.0 || !std::isfinite(float(step)))
         throw UsageError(fmt::format("--step '{}': expected seconds, 0 or more", options.step));
@@ -199,6 +200,8 @@ void render(RenderOptions& options) {
     sequenceOptions.inputs.height = report.size.height;
     sequenceOptions.inputs.rsm.size = options.rsmSize;
     sequenceOptions.inputs.rsm.cascades = options.cascades;
+    sequenceOptions.inputs.focus = parseFocus("--focus", options.focus);
+    sequenceOptions.inputs.focus.point *= scale;
     Sequence sequence(scene, sequenceOptions);
     sequence.at(0);
     if (scene->lights.empty())
@@ -241,6 +244,11 @@ void declareExtras(CLI::App& command, RenderOptions& options) {
         .add_option("--step", options.step,
                     "Seconds from frame to frame: the frames run up to --time, with true motion vectors "
                     "and previous cameras; 0: all frames are at --time")
+        ->capture_default_str();
+    command
+        .add_option("--focus", options.focus,
+                    "What a technique's grids lie around that do not hold all of the scene: eye, a point "
+                    "X,Y,Z, or none, for its own center_x, ...")
         ->capture_default_str();
     command.add_flag("--hash", options.printsHash,
                      "Print a hash of the irradiance's bits (always in JSON)");

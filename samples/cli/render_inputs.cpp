@@ -103,7 +103,8 @@ RenderInputs::RenderInputs(const studio::RayScene& scene, const studio::Camera& 
           options.previousCamera != nullptr ? options.previousTime : options.time)),
       lwGBuffer_(describeGBuffer(gbuffer_)),
       triangles_(studio::sceneTriangles(scene)),
-      lwGeometry_(describeTriangles(triangles_)) {
+      lwGeometry_(describeTriangles(triangles_)),
+      hasFocus_(options.focus.kind != FrameFocus::Kind::None) {
     for (const auto& [source, before] : options.sources)
         sources_.push_back(studio::renderGBuffer(
             scene, source, options.width, options.height, before,
@@ -122,6 +123,7 @@ RenderInputs::RenderInputs(const studio::RayScene& scene, const studio::Camera& 
             describeLight(light, lwRsms_.back()));  // a moved vector keeps its data's address
     }
     copyVector(scene.scene().sky, environment_);
+    copyVector(options.focus.kind == FrameFocus::Kind::Point ? options.focus.point : camera.position, focus_);
 }
 
 std::uint64_t RenderInputs::rsmTexelCount() const {

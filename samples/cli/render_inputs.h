@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "frame_focus.h"
 #include "gbuffer.h"
 #include "lightwell/lightwell.h"
 #include "scene_triangles.h"
@@ -21,6 +22,7 @@ struct InputOptions {
     float previousTime = 0.0f;
     // Further source views of the frame: a camera, and the same one the frame before.
     std::vector<std::pair<studio::Camera, studio::Camera>> sources;
+    FrameFocus focus;
 };
 
 // The structs point into the buffers beside them: made once, never moved. `scene` must live as long.
@@ -39,6 +41,7 @@ public:
     const std::vector<LWLight>& lights() const { return lights_; }
     const LWGeometry& geometry() const { return lwGeometry_; }
     const float* environment() const { return environment_; }
+    const float* focus() const { return hasFocus_ ? focus_ : nullptr; }
     std::uint64_t rsmTexelCount() const;
 
 private:
@@ -53,6 +56,8 @@ private:
     studio::SceneTriangles triangles_;
     LWGeometry lwGeometry_{};
     float environment_[3] = {};
+    bool hasFocus_;
+    float focus_[3] = {};
 };
 
 // A planar buffer as an image that Lightwell uses in place.

@@ -102,6 +102,8 @@ class WrongArguments(CommandLine):
         self.refused([*rsm, "--time", "1e300", *out], "--time", "seconds")
         for value in ("-1", "nan"):
             self.refused([*rsm, "--step=" + value, *out], "--step", "'%s'" % value)
+        for value in ("ear", "1,2", "1,2,3,4", "1,nan,3", "1,2,2e9"):
+            self.refused([*rsm, "--focus=" + value, *out], "--focus '", "expected")
         self.refused([*rsm, "--cascades", "2", *out], "--cascades", "'2'", "no sun")
         self.refused([*rsm, "--cascades", "2", "--rsm-size", "511", *out], "--rsm-size", "'511'", "even")
 
@@ -305,6 +307,17 @@ class Render(CommandLine):
         for factor in ("10", "0.1"):
             self.render("--scale", factor, "--out", scaled)
             self.assertLess(self.json("compare", scaled, plain, "--json")["relMSE"], SCALE_ROUNDING)
+
+    def test_focus(self):
+        """Grids begin at whole cells around a focus, so that one within the same cell changes nothing; without one they lie where they are told."""
+        def grid(*arguments):
+            return self.json("render", "cornell", "--technique", "lpv", *SIZE, "--frames", "1", "--warmup", "0", "--json", "--set",
+                             "size=16", "extent=0.8", "center_x=0.28", "center_y=0.27", "center_z=0.26", *arguments)["hash"]
+        near, same = grid("--focus", "0.26,0.26,0.26"), grid("--focus", "0.27,0.255,0.265")  # cells are 5 cm wide
+        self.assertEqual(near, same)
+        self.assertNotEqual(near, grid("--focus", "0.36,0.26,0.26"))
+        self.assertNotEqual(near, grid("--focus", "none"))
+        self.assertEqual(grid(), grid("--focus", "eye"))
 
     def test_vpls_given_to_the_path_tracer(self):
         vpls, picture, truth = self.path("vpls.txt"), self.path("gather.exr"), self.path("sum.exr")
