@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "compute/device.h"
+#include "passes/lpv_specular.h"
 #include "passes/sweep_directions.h"
 #include "passes/vpl_list.h"
 #include "shared/lpv_sweep_types.h"
@@ -208,6 +209,8 @@ bool LpvSweep::recordPart(Executor& executor, const LpvSweepInput& input, const 
         else if (nextGroup_ == 0)
             recordRelight(executor, input.surfels, field == kOuter ? inner : nullptr);
         if (nextGroup_ == 0) recordResolve(executor, bounce_ == 0 ? place_ : unitPlace_, flight);
+        if (nextGroup_ == 0 && field == kAll && input.specular)
+            input.specular->recordPackSweep(executor, {flight.sources, flight.sheets, flight.used}, bounce_ > 0);
         recordGroups(executor, flight);
         if (isLast) recordBounce(executor, field);
     }
@@ -216,11 +219,12 @@ bool LpvSweep::recordPart(Executor& executor, const LpvSweepInput& input, const 
     return isLast;
 }
 
-void LpvSweep::recordEnd(Executor& executor) {
+void LpvSweep::recordEnd(Executor& executor, LpvSpecular* specular) {
     bounce_ = 0;
     isShown_ = true;
     executor.copy("lpv_sweep.place", place_.get(), shownPlace_.get(), 0, 0, sizeof(LwLpvPlace));
     if (options_.frames > 1) std::swap(totalCells_, shownCells_);
+    if (specular) specular->show(executor);
 }
 
 void LpvSweep::record(Executor& executor, const LpvSweepInput& input) {
@@ -229,7 +233,7 @@ void LpvSweep::record(Executor& executor, const LpvSweepInput& input) {
         if (isAtStart()) recordStart(executor, input);
         recordPart(executor, input, nullptr);
     } while (all && !isDone());
-    if (isDone()) recordEnd(executor);
+    if (isDone()) recordEnd(executor, input.specular);
 }
 
 void LpvSweep::recordGather(Executor& executor, const Planes& position, const Planes& normal, const Planes& irradiance,

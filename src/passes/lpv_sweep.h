@@ -16,6 +16,8 @@
 
 namespace lightwell {
 
+class LpvSpecular;
+
 struct LpvSweepOptions {
     std::uint32_t size = 16;         // cells a side, a multiple of 16
     std::uint32_t directions = 384;  // see sweep_directions.h
@@ -35,6 +37,12 @@ struct LpvSweepInput {
     bool restart;         // nothing of the frames before is right any more
     const float* environment = nullptr;  // radiance from outside of the grid, of three colours; none: 0
     const GeometryInput* triangles = nullptr;  // block in place of the surfels, as samples on the grid's own lattice
+    LpvSpecular* specular = nullptr;  // gets each bounce's light as well, and is told when to show it
+};
+
+// What surfaces send and cover in a bounce's cells, as lpv_sweep_resolve leaves it.
+struct LpvSweepSources {
+    const Buffer &sources, &sheets, &used;
 };
 
 class LpvSweep {
@@ -57,7 +65,7 @@ public:
     void recordStart(Executor& executor, const LpvSweepInput& input);
     // True once a bounce is complete. inner: place() of the grid within this one, with options.hasInner.
     bool recordPart(Executor& executor, const LpvSweepInput& input, const Buffer* inner);
-    void recordEnd(Executor& executor);
+    void recordEnd(Executor& executor, LpvSpecular* specular = nullptr);
 
     // After recordPart() has completed a bounce: its cells, those of the sum of all where they are others, and the largest that
     // arrives at a side; with options.hasInner the cells of the light of lights outside of that grid.

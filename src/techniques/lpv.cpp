@@ -59,6 +59,7 @@ public:
         if (lost) remake();
         place(frame, lost);
         volume_->record(executor, frame, rsms_, placement_);
+        for (std::size_t c = 0; c < 3; ++c) environment_[c] = frame.environment[c];
         choices_ = unusedInputs(frame);
         const double side = desc_.extent > 0.0f ? double(desc_.extent) : double(box_.longest());
         for (const LWChoice& choice : volume_->choices(frame, side)) choices_.push_back(choice);
@@ -68,9 +69,10 @@ public:
     }
 
     void render(Executor& executor, const std::shared_ptr<View>& view, const LWGBuffer& gbuffer, const LWOutput& output) override {
-        checkLightOutputs(device_, *view, output, "lpv");
+        checkLightOutputs(device_, *view, output, "lpv", volume_->hasSpecular());
+        const std::optional<LwSpecularRays> rays = LpvSpecularView::rays(*view, gbuffer, output, environment_);
         LpvView& state = states_.get(view, [&] { return std::make_unique<LpvView>(device_, *view, isHalf(desc_)); });
-        state.render(executor, *view, gbuffer, output, bilateral_ ? &*bilateral_ : nullptr, *volume_);
+        state.render(executor, *view, gbuffer, output, bilateral_ ? &*bilateral_ : nullptr, *volume_, rays);
     }
 
     void renderPoints(Executor& executor, const Points& points) override {
@@ -116,7 +118,7 @@ private:
             if (desc_.geometryVolume == LW_GEOMETRY_VOLUME_AUTO) desc.geometryVolume = LWGeometryVolume(source);
             else if (source != LW_GEOMETRY_VOLUME_TRIANGLES) break;
             LpvTechnique twin(device_, desc);
-            exerciseTechnique(executor, twin);
+            exerciseTechnique(executor, twin, false, twin.volume_->hasSpecular());
             exercisePoints(executor, twin);
         }
         desc.geometryVolume = LW_GEOMETRY_VOLUME_OFF;
@@ -129,7 +131,7 @@ private:
         for (int hidden = 0; hidden < kLpvBlockerKinds; ++hidden) {
             LpvTechnique twin(device_, desc, hidden);
             twin.prewarmVpls(executor);
-            exerciseTechnique(executor, twin);
+            exerciseTechnique(executor, twin, false, twin.volume_->hasSpecular());
             exercisePoints(executor, twin);
         }
     }
@@ -156,6 +158,7 @@ private:
     PerView<LpvView> states_;
     std::optional<LpvPoints> points_;  // from the first lwRenderPoints on
     std::vector<LWChoice> choices_;  // of the last update
+    float environment_[3] = {0.0f, 0.0f, 0.0f};
 };
 
 Report LpvTechnique::report() {

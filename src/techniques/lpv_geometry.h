@@ -32,6 +32,9 @@ public:
     // What blocks in a grid that lies at `place`, of cascades or levels from the finest on; none where the parameter is off.
     std::optional<LpvBlockers> record(Executor& executor, const Buffer& place, std::size_t grid = 0);
 
+    // LpvBlocking's, of the last record(); null where the parameter is off.
+    const Buffer* corners() const { return blocking_ ? &blocking_->corners() : nullptr; }
+
     // What of the frame's geometry and views is used, and what is not.
     std::vector<LWChoice> choices(const LWFrame& frame) const;
     void report(Report& report) const;

@@ -21,6 +21,8 @@ public:
                       const Planes& validity, const Buffer& counts) override;
     void recordHarmonics(Executor& executor, const Planes& position, const Planes& normal, const Harmonics& harmonics,
                          const Planes& validity, const Buffer& counts) override;
+    bool hasSpecular() const override { return true; }
+    LpvSpecularGrid specular(Executor& executor) override;
     std::vector<LWChoice> choices(const LWFrame& frame, double side) const override;
     void report(Report& report) const override;
     void addDebugViews(std::vector<DebugView>& views) const override;
@@ -43,6 +45,8 @@ private:
     LpvPropagation propagation_;
     LpvRead read_;
     std::optional<LpvProgress> progress_;  // with an error target
+    LpvSpecular specular_;
+    bool isSpecularPacked_ = false;  // of the last record
     const Buffer* propagated_ = nullptr;  // of the last record
 };
 

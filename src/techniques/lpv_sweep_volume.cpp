@@ -18,14 +18,18 @@ LpvSweepOptions LpvSweepVolume::optionsOf(const LWLpvDesc& desc) {
 }
 
 LpvSweepVolume::LpvSweepVolume(Device& device, const LWLpvDesc& desc, int hidden)
-    : device_(device), surfaces_(device, desc, hidden), grid_(device, desc.size), sweep_(device, optionsOf(desc)) {}
+    : device_(device),
+      surfaces_(device, desc, hidden),
+      grid_(device, desc.size),
+      sweep_(device, optionsOf(desc)),
+      specular_(device, desc.size, desc.frames > 1) {}
 
 void LpvSweepVolume::record(Executor& executor, const LWFrame& frame, const RsmInput& rsms,
                             const LpvPlacement& placement) {
     grid_.recordPlace(executor, rsms, frame.vpls, frame.vplCount, placement);
     const bool restart = surfaces_.import(executor, frame) || placement.refit;
     sweep_.record(executor, {rsms, grid_.authored(), frame.vplCount, grid_.place(), surfaces_.surfels(), surfaces_.areaScale(), restart,
-                             frame.environment});
+                             frame.environment, nullptr, &specular_});
 }
 
 void LpvSweepVolume::report(Report& report) const {
@@ -36,7 +40,7 @@ void LpvSweepVolume::report(Report& report) const {
 
 std::uint64_t LpvSweepVolume::estimateBytes(const LWLpvDesc& desc, const FrameShape& shape) {
     return LpvGrid::estimatePlaceBytes(shape.vplCount) + LpvSweep::estimateBytes(optionsOf(desc)) +
-           LpvSurfaces::estimateBytes(desc, shape);
+           LpvSpecular::estimateBytes(desc.size, desc.frames > 1) + LpvSurfaces::estimateBytes(desc, shape);
 }
 
 }  // namespace lightwell

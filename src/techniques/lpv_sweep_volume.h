@@ -22,10 +22,12 @@ public:
                          const Planes& validity, const Buffer& counts) override {
         sweep_.recordHarmonics(executor, position, normal, harmonics, validity, counts);
     }
+    bool hasSpecular() const override { return true; }
+    LpvSpecularGrid specular(Executor&) override { return {specular_, sweep_.shownPlace()}; }
     std::vector<LWChoice> choices(const LWFrame& frame, double side) const override { return surfaces_.choices(frame, side); }
     void report(Report& report) const override;
     std::uint64_t bytes() const override {
-        return grid_.bytes() + sweep_.bytes() + surfaces_.bytes();
+        return grid_.bytes() + sweep_.bytes() + specular_.bytes() + surfaces_.bytes();
     }
     static std::uint64_t estimateBytes(const LWLpvDesc& desc, const FrameShape& shape);
 
@@ -37,6 +39,7 @@ private:
     LpvSurfaces surfaces_;
     LpvGrid grid_;  // its place alone
     LpvSweep sweep_;
+    LpvSpecular specular_;
 };
 
 }  // namespace lightwell
