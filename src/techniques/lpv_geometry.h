@@ -33,7 +33,7 @@ public:
     std::optional<LpvBlockers> record(Executor& executor, const Buffer& place, std::size_t grid = 0);
 
     // LpvBlocking's, of the last record(); null where the parameter is off.
-    const Buffer* corners() const { return blocking_ ? &blocking_->corners() : nullptr; }
+    const Buffer* corners() const { return blockings_.empty() ? nullptr : &blockings_.front()->corners(); }
 
     // What of the frame's geometry and views is used, and what is not.
     std::vector<LWChoice> choices(const LWFrame& frame) const;

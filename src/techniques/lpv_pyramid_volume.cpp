@@ -32,6 +32,11 @@ void LpvPyramidVolume::recordGather(Executor& executor, const Planes& position, 
     read_.recordGather(executor, position, normal, grid_.place(), calibration_, desc_.damping != 0, irradiance, validity, counts);
 }
 
+void LpvPyramidVolume::recordHarmonics(Executor& executor, const Planes& position, const Planes& normal, const Harmonics& harmonics,
+                                       const Planes& validity, const Buffer& counts) {
+    read_.recordHarmonics(executor, position, normal, grid_.place(), calibration_, harmonics, validity, counts);
+}
+
 std::vector<LWChoice> LpvPyramidVolume::choices(const LWFrame& frame, double) const {
     std::vector<LWChoice> choices = geometry_.choices(frame);
     if (desc_.autoError > 0.0f)

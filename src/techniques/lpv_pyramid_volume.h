@@ -16,6 +16,8 @@ public:
     void record(Executor& executor, const LWFrame& frame, const RsmInput& rsms, const LpvPlacement& placement) override;
     void recordGather(Executor& executor, const Planes& position, const Planes& normal, const Planes& irradiance,
                       const Planes& validity, const Buffer& counts) override;
+    void recordHarmonics(Executor& executor, const Planes& position, const Planes& normal, const Harmonics& harmonics,
+                         const Planes& validity, const Buffer& counts) override;
     std::vector<LWChoice> choices(const LWFrame& frame, double side) const override;
     void report(Report& report) const override;
     void addDebugViews(std::vector<DebugView>& views) const override;
