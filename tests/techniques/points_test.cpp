@@ -49,7 +49,7 @@ Maker ssvpOf(LWVisibility visibility, std::uint32_t bounces, std::uint32_t shado
                 return std::make_unique<TestTechnique>(device, desc);
             }};
 }
-Maker lpvOf(LWLpvTransport transport, bool damped = false, std::uint32_t frames = 1) {
+Maker lpvOf(LWLpvTransport transport, bool damped = false, std::uint32_t frames = 1, std::uint32_t cascades = 1) {
     return {"lpv", [=](LWDevice device) {
                 LWLpvDesc desc;
                 lwDefaultLpv(&desc);
@@ -57,6 +57,7 @@ Maker lpvOf(LWLpvTransport transport, bool damped = false, std::uint32_t frames 
                 desc.transport = transport;
                 desc.damping = damped ? 1 : 0;
                 desc.frames = frames;
+                desc.cascades = cascades;
                 desc.geometryVolume = LW_GEOMETRY_VOLUME_AUTO;
                 return std::make_unique<TestTechnique>(device, "lpv", &desc);
             }};
@@ -64,7 +65,8 @@ Maker lpvOf(LWLpvTransport transport, bool damped = false, std::uint32_t frames 
 std::vector<Maker> makers() {
     return {rsmOf(256, 1), rsmOf(0, 1), ssvpOf(LW_VISIBILITY_HARD, 2), ssvpOf(LW_VISIBILITY_SOFT, 3, 2), ssvpOf(LW_VISIBILITY_NONE, 1),
             lpvOf(LW_LPV_TRANSPORT_PROPAGATE), lpvOf(LW_LPV_TRANSPORT_PROPAGATE, true), lpvOf(LW_LPV_TRANSPORT_SWEEP),
-            lpvOf(LW_LPV_TRANSPORT_SWEEP, false, 4)};
+            lpvOf(LW_LPV_TRANSPORT_SWEEP, false, 4), lpvOf(LW_LPV_TRANSPORT_COARSE_TO_FINE),
+            lpvOf(LW_LPV_TRANSPORT_PROPAGATE, false, 1, 3), lpvOf(LW_LPV_TRANSPORT_SWEEP, false, 1, 3)};
 }
 
 // The lit room with its triangles, as one frame.
