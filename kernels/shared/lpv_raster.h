@@ -42,7 +42,9 @@ LW_FN lpv_raster raster_of(__global const float* triangles, int stride, int t, c
         const float low = fmin(fmin(p, q), s), high = fmax(fmax(p, q), s);
         // What lies half a cell off is of use.
         isNear = isNear && high > -(float)LPV_RASTER && low < most + (float)LPV_RASTER;
-        spans += ceil(low - 0.5f) <= floor(high - 0.5f);
+        // The last sample below the upper end, if it lies above the lower one. (Rounding up or down takes PoCL long.)
+        const float upper = high - 0.5f;
+        spans += upper >= 0.0f && (float)(int)fmin(upper, most - 1.0f) + 0.5f >= low;
     }
     // Without samples along two axes there are none seen along any: most triangles are that small.
     if (!isNear || spans < 2 || !(place.origin.w > 0.0f)) return r;
@@ -66,10 +68,11 @@ LW_FN lpv_raster raster_of(__global const float* triangles, int stride, int t, c
     r.area = length / (float)(LPV_RASTER * LPV_RASTER);
     const float lowU = fmin(fmin(r.at[0][r.u], r.at[1][r.u]), r.at[2][r.u]), highU = fmax(fmax(r.at[0][r.u], r.at[1][r.u]), r.at[2][r.u]);
     const float lowV = fmin(fmin(r.at[0][r.v], r.at[1][r.v]), r.at[2][r.v]), highV = fmax(fmax(r.at[0][r.v], r.at[1][r.v]), r.at[2][r.v]);
-    r.firstU = (int)ceil(clamp(lowU - 0.5f, 0.0f, most));
-    r.lastU = (int)floor(clamp(highU - 0.5f, -1.0f, most - 1.0f));
-    r.firstV = (int)ceil(clamp(lowV - 0.5f, 0.0f, most));
-    r.lastV = (int)floor(clamp(highV - 0.5f, -1.0f, most - 1.0f));
+    // One too many does no harm.
+    r.firstU = (int)clamp(lowU - 0.5f, 0.0f, most);
+    r.lastU = (int)clamp(highU - 0.5f, 0.0f, most - 1.0f);
+    r.firstV = (int)clamp(lowV - 0.5f, 0.0f, most);
+    r.lastV = (int)clamp(highV - 0.5f, 0.0f, most - 1.0f);
     return r;
 }
 

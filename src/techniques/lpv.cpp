@@ -61,6 +61,7 @@ public:
         volume_->record(executor, frame, rsms_, placement_);
         for (std::size_t c = 0; c < 3; ++c) environment_[c] = frame.environment[c];
         choices_ = unusedInputs(frame);
+        if (desc_.extent > 0.0f && frame.focus) choices_.push_back({"center", "not used: the grid lies around frame.focus"});
         const double side = desc_.extent > 0.0f ? double(desc_.extent) : double(box_.longest());
         for (const LWChoice& choice : volume_->choices(frame, side)) choices_.push_back(choice);
         states_.purge();
