@@ -15,7 +15,9 @@ inline ScreenResult renderScreen(TestTechnique& technique, const TestView& view,
     if (outputs & kIrradiance) output.irradiance = irradiance.image();
     if (outputs & kValidity) output.validity = validity.image();
     if (outputs & kAmbient) output.ambientOcclusion = ambient.image();
-    technique.update(LWFrame{sizeof(LWFrame), 0, 0, 0, 0, 0, 0, nullptr, nullptr, nullptr, nullptr, nullptr, {0, 0, 0}, nullptr});
+    LWFrame frame;
+    LW_INIT(frame);
+    technique.update(frame);
     const LWStatus status = lwRender(technique, view, &gbuffer, &output);
     INFO(lastError(device));
     REQUIRE(status == LW_SUCCESS);
