@@ -106,8 +106,14 @@ void probes(const ProbeOptions& options) {
     const lightwell::Device device = openDevice(options.device, std::uint32_t(options.width));
     ProbeGrid grid = makeProbes(*scene, counts);
     studio::PlanarBuffer irradiance;
-    const ProbeTimes times = lightProbes(device, parameters, inputs, options.frames, options.asSurfaces, grid,
-                                         options.png.empty() ? nullptr : &irradiance);
+    ProbeTimes times;
+    try {
+        times = lightProbes(device, parameters, inputs, options.frames, options.asSurfaces, grid,
+                            options.png.empty() ? nullptr : &irradiance);
+    } catch (const lightwell::Error& error) {
+        if (error.status() == LW_ERROR_UNSUPPORTED) throw UsageError(fmt::format("--technique '{}': {}", options.technique, error.what()));
+        throw;
+    }
     const Json json = describe(options, parameters, grid, times, device.info());
     if (!options.out.empty()) writeProbes(options.out, json, grid);
     if (!options.png.empty()) writePicture(options, grid, inputs, irradiance);
