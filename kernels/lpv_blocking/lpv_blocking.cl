@@ -102,20 +102,17 @@ __kernel void lpv_blocking_inject(__global const float* surfels, int stride, int
     if (outside) atomic_add(&state->surfelsOutside, outside);
 }
 
-// One work-item = one triangle: its samples on the grid's own lattice, those that a corner is nearest to.
-__kernel void lpv_blocking_triangles(__global const float* triangles, int stride, int count, __global const LwLpvPlace* grid,
-                                     int size, __global uint* sums, __global const LwLpvBlockers* state) {
-    const int t = lw_list_index();
-    if (t >= count || !state->stale) return;
-    const lpv_raster r = raster_of(triangles, stride, t, *grid, size);
-    const float full = r.area * LPV_WHOLE, most = (float)(size + 1);
-    const float linear = (LPV_SIDE(r.nx, r.ny, r.nz) < 0.0f ? -LPV_LOBE1 : LPV_LOBE1) * full;
-    long run[LW_LPV_BANDS] = {0, 0, 0, 0};
-    int corner = -1;
-    for (int v = r.firstV; v <= r.lastV; ++v)
-        for (int u = r.firstU; u <= r.lastU; ++u) {
+// Triangles of a work-item: neighbours, as they are ordered.
+#define BLOCKING_RUN 16
+
+LW_FN int block_triangle(const lpv_raster* r, int size, int corner, long* run, __global uint* sums) {
+    const float full = r->area * LPV_WHOLE, most = (float)(size + 1);
+    const float linear = (LPV_SIDE(r->nx, r->ny, r->nz) < 0.0f ? -LPV_LOBE1 : LPV_LOBE1) * full;
+    const long units[LW_LPV_BANDS] = {(long)(LPV_LOBE0 * full), (long)(linear * r->nx), (long)(linear * r->ny), (long)(linear * r->nz)};
+    for (int v = r->firstV; v <= r->lastV; ++v)
+        for (int u = r->firstU; u <= r->lastU; ++u) {
             float p[3];
-            if (!raster_sample(&r, u, v, p)) continue;
+            if (!raster_sample(r, u, v, p)) continue;
             const float x = p[0] + 0.5f, y = p[1] + 0.5f, z = p[2] + 0.5f;
             const int isNear = x >= 0.0f && x < most && y >= 0.0f && y < most && z >= 0.0f && z < most;
             const int to = isNear ? ((int)z * (size + 1) + (int)y) * (size + 1) + (int)x : -1;
@@ -124,11 +121,23 @@ __kernel void lpv_blocking_triangles(__global const float* triangles, int stride
                 corner = to;
             }
             if (to < 0) continue;
-            run[0] += (long)(LPV_LOBE0 * full);
-            run[1] += (long)(linear * r.nx);
-            run[2] += (long)(linear * r.ny);
-            run[3] += (long)(linear * r.nz);
+            for (int b = 0; b < LW_LPV_BANDS; ++b) run[b] += units[b];
         }
+    return corner;
+}
+
+// One work-item = BLOCKING_RUN triangles: their samples on the grid's own lattice, those that a corner is nearest to.
+__kernel void lpv_blocking_triangles(__global const float* triangles, int stride, int count, __global const LwLpvPlace* grid,
+                                     int size, __global uint* sums, __global const LwLpvBlockers* state) {
+    const int first = lw_list_index() * BLOCKING_RUN, last = min(first + BLOCKING_RUN, count);
+    if (!state->stale) return;
+    const LwLpvPlace place = *grid;
+    long run[LW_LPV_BANDS] = {0, 0, 0, 0};
+    int corner = -1;
+    for (int t = first; t < last; ++t) {
+        const lpv_raster r = raster_of(triangles, stride, t, place, size);
+        if (r.firstU <= r.lastU && r.firstV <= r.lastV) corner = block_triangle(&r, size, corner, run, sums);
+    }
     end_run(run, corner, sums);
 }
 

@@ -51,28 +51,46 @@ __kernel void lpv_cascades_add_steps(__global const LwLpvPlace* fineGrid, __glob
     cells[line * size + x] += ratio * ratio * light;
 }
 
+// Sides of a fine cell with the light that `xy` and `z` bring, by how open it is. To most: the largest sum that arrives at a side.
+LW_FN void bring(__global float16* cell, float16 xy, float8 z, float* most) {
+    const float16 beforeXy = cell[0];
+    const float8 beforeZ = *(__global const float8*)(cell + 1);
+    const float open = beforeXy.s3;  // of all sides; never 0
+    const float16 newXy = beforeXy + open * xy;
+    const float8 newZ = beforeZ + open * z;
+    cell[0] = newXy;
+    *(__global float8*)(cell + 1) = newZ;
+    const float8 pairs = fmax(fmax(newXy.lo, newXy.hi), newZ);
+    const float4 largest = fmax(pairs.lo, pairs.hi);
+    *most = fmax(fmax(largest.x, largest.y), largest.z) / open;
+}
+
 // Of sweeps, as pixels read it (lpv_sweep_pack): a coarse cell counts as much as it is open, or light from behind a wall would come
 // in with the cells that the wall fills. What arrives at a side is irradiance, the same in cells of any size. hasTotal: the light is
 // added to `total` as well. largest: bits of the largest sum, which order as the numbers do.
 __kernel void lpv_cascades_add_sweeps(__global const LwLpvPlace* fineGrid, __global const LwLpvPlace* coarseGrid, int size,
-                                      __global const float4* far, int hasTotal, __global float4* cells, __global float4* total,
+                                      __global const float16* far, int hasTotal, __global float16* cells, __global float16* total,
                                       __global uint* largest) {
     const int x = (int)get_global_id(0), line = (int)get_global_id(1);
     if (x >= size || line >= size * size) return;
     const LwLpvPlace fine = *fineGrid, coarse = *coarseGrid;
     if (!(fine.origin.w > 0.0f)) return;
     const lpv_around a = around(fine, coarse, size, x, line % size, line / size);
-    float most = 0.0f;
-    for (int side = 0; side < LW_SWEEP_SIDES; ++side) {
-        float4 light = (float4)(0.0f);
-        for (int k = 0; k < 8; ++k) light += share_of(a, k) * far[LW_SWEEP_CELL / 4 * cell_at(a, size, k) + side];
-        const int at = LW_SWEEP_CELL / 4 * (line * size + x) + side;
-        const float4 before = cells[at];
-        const float open = before.w;  // never 0, as no coarse cell's is
-        const float4 brought = (float4)(light.xyz * (open / light.w), 0.0f);
-        cells[at] = before + brought;
-        if (hasTotal) total[at] += brought;
-        most = fmax(most, fmax(fmax(before.x + brought.x, before.y + brought.y), before.z + brought.z) / open);
+    float16 xy = (float16)(0.0f);
+    float8 z = (float8)(0.0f);
+    for (int k = 0; k < 8; ++k) {
+        __global const float16* cell = far + LW_SWEEP_CELL / 16 * cell_at(a, size, k);
+        xy += share_of(a, k) * cell[0];
+        z += share_of(a, k) * *(__global const float8*)(cell + 1);
     }
+    // Light over openness; in the fourth numbers nothing, so that the fine cell's openness stays.
+    const float each = 1.0f / xy.s3;
+    const float4 none = (float4)(each, each, each, 0.0f);
+    xy *= (float16)(none, none, none, none);
+    z *= (float8)(none, none);
+    const int at = LW_SWEEP_CELL / 16 * (line * size + x);
+    float most = 0.0f, unused;
+    bring(cells + at, xy, z, &most);
+    if (hasTotal) bring(total + at, xy, z, &unused);
     if (most > 0.0f) atomic_max(largest, as_uint(most));
 }

@@ -38,27 +38,37 @@ LW_FN sweep_areas no_areas(void) {
 
 LW_FN float largest_coordinate(float nx, float ny, float nz) { return fmax(fmax(fabs(nx), fabs(ny)), fabs(nz)); }
 
-// full: the area in sides of a cell, in the sums' units.
-LW_FN void add_full(sweep_areas* run, int cell, float full, float nx, float ny, float nz, __global uint* sums, __global uint* marks) {
-    const sweep_normal n = normal_of(nx, ny, nz);
-    int sheets[3];
+LW_FN void sheets_of(const sweep_normal n, int* sheets) {
     for (int k = 0; k < 3; ++k) sheets[k] = min(n.bins[k], LW_SWEEP_NORMALS - 1 - n.bins[k]);
+}
+
+// Of an area in sides of a cell: what it adds to its three sheets, and to what they cover. The shares as they are: a plane across a
+// cell shall close it, and what is too much lies along the plane.
+LW_FN void units_of(const sweep_normal n, float sides, float nx, float ny, float nz, long* units) {
+    const float full = sides * (float)(1 << LW_SWEEP_AREA_BITS);
+    for (int k = 0; k < 3; ++k) units[k] = (long)(full * n.shares[k]);
+    units[3] = (long)(full * largest_coordinate(nx, ny, nz));
+}
+
+LW_FN void add_units(sweep_areas* run, int cell, const int* sheets, long count, const long* units, __global uint* sums,
+                     __global uint* marks) {
     if (cell != run->cell || sheets[0] != run->sheets[0] || sheets[1] != run->sheets[1] || sheets[2] != run->sheets[2]) {
         end_areas(run, sums, marks);
         run->cell = cell;
         for (int k = 0; k < 3; ++k) run->sheets[k] = sheets[k];
     }
     if (cell < 0) return;
-    // The shares as they are: a plane across a cell shall close it, and what is too much lies along the plane.
-    for (int k = 0; k < 3; ++k) run->sums[k] += (long)(full * n.shares[k]);
-    run->sums[3] += (long)(full * largest_coordinate(nx, ny, nz));
+    for (int k = 0; k < 4; ++k) run->sums[k] += count * units[k];
 }
 
 LW_FN void add_area(sweep_areas* run, const LwLpvPlace place, int size, float area, float px, float py, float pz, float nx,
                     float ny, float nz, __global uint* sums, __global uint* marks) {
-    const int cell = cell_of(place, size, px, py, pz, nx, ny, nz, -0.5f);
-    const float full = fmin(area * place.origin.w * place.origin.w, LW_SWEEP_MOST_AREA) * (float)(1 << LW_SWEEP_AREA_BITS);
-    add_full(run, cell, full, nx, ny, nz, sums, marks);
+    const sweep_normal n = normal_of(nx, ny, nz);
+    int sheets[3];
+    long units[4];
+    sheets_of(n, sheets);
+    units_of(n, fmin(area * place.origin.w * place.origin.w, LW_SWEEP_MOST_AREA), nx, ny, nz, units);
+    add_units(run, cell_of(place, size, px, py, pz, nx, ny, nz, -0.5f), sheets, 1, units, sums, marks);
 }
 
 // One work-item in all: is what covers the cells still right? anew: 1 where the host knows that it is not.
@@ -121,22 +131,44 @@ __kernel void lpv_sweep_cover_surfels(__global const float* surfels, int stride,
     end_areas(&run, sums, marks);
 }
 
-// One work-item = one triangle: its samples on the grid's own lattice.
+// Triangles of a work-item: neighbours, as they are ordered.
+#define COVER_RUN 16
+
+LW_FN void cover_triangle(const lpv_raster* r, int size, sweep_areas* run, __global uint* sums, __global uint* marks) {
+    const sweep_normal n = normal_of(r->nx, r->ny, r->nz);
+    const float most = (float)size;
+    int sheets[3], cell = -1;
+    long units[4], found = 0;  // of one sample; samples of the cell
+    sheets_of(n, sheets);
+    units_of(n, r->area, r->nx, r->ny, r->nz, units);
+    for (int v = r->firstV; v <= r->lastV; ++v)
+        for (int u = r->firstU; u <= r->lastU; ++u) {
+            float p[3];
+            if (!raster_sample(r, u, v, p)) continue;
+            const float x = p[0] - 0.5f * r->nx, y = p[1] - 0.5f * r->ny, z = p[2] - 0.5f * r->nz;
+            const int isInside = x >= 0.0f && x < most && y >= 0.0f && y < most && z >= 0.0f && z < most;
+            const int to = isInside ? ((int)z * size + (int)y) * size + (int)x : -1;
+            if (to != cell) {
+                if (cell >= 0) add_units(run, cell, sheets, found, units, sums, marks);
+                cell = to;
+                found = 0;
+            }
+            ++found;
+        }
+    if (cell >= 0) add_units(run, cell, sheets, found, units, sums, marks);
+}
+
+// One work-item = COVER_RUN triangles: their samples on the grid's own lattice.
 __kernel void lpv_sweep_cover_triangles(__global const float* triangles, int stride, int count, __global const LwLpvPlace* grid,
                                         int size, __global const LwSweepCover* state, __global uint* sums) {
-    const int t = lw_list_index();
-    if (t >= count || !state->stale) return;
+    const int first = lw_list_index() * COVER_RUN, last = min(first + COVER_RUN, count);
+    if (!state->stale) return;
+    const LwLpvPlace place = *grid;
     __global uint* marks = sums + sweep_area_marks(size);
-    const lpv_raster r = raster_of(triangles, stride, t, *grid, size);
-    const float full = r.area * (float)(1 << LW_SWEEP_AREA_BITS), most = (float)size;
     sweep_areas run = no_areas();
-    for (int v = r.firstV; v <= r.lastV; ++v)
-        for (int u = r.firstU; u <= r.lastU; ++u) {
-            float p[3];
-            if (!raster_sample(&r, u, v, p)) continue;
-            const float x = p[0] - 0.5f * r.nx, y = p[1] - 0.5f * r.ny, z = p[2] - 0.5f * r.nz;
-            const int isInside = x >= 0.0f && x < most && y >= 0.0f && y < most && z >= 0.0f && z < most;
-            add_full(&run, isInside ? ((int)z * size + (int)y) * size + (int)x : -1, full, r.nx, r.ny, r.nz, sums, marks);
-        }
+    for (int t = first; t < last; ++t) {
+        const lpv_raster r = raster_of(triangles, stride, t, place, size);
+        if (r.firstU <= r.lastU && r.firstV <= r.lastV) cover_triangle(&r, size, &run, sums, marks);
+    }
     end_areas(&run, sums, marks);
 }

@@ -31,7 +31,7 @@ LW_FN lpv_raster raster_of(__global const float* triangles, int stride, int t, c
     const float most = (float)(LPV_RASTER * size);
     r.firstU = r.firstV = 0;
     r.lastU = r.lastV = -1;
-    int isNear = 1;
+    int isNear = 1, spans = 0;
     for (int a = 0; a < 3; ++a) {
         const float p = raster_corner(triangles, stride, LW_TRIANGLE_A + a, t, origin[a], scale),
                     q = raster_corner(triangles, stride, LW_TRIANGLE_B + a, t, origin[a], scale),
@@ -39,10 +39,15 @@ LW_FN lpv_raster raster_of(__global const float* triangles, int stride, int t, c
         r.at[0][a] = p;
         r.at[1][a] = q;
         r.at[2][a] = s;
+        const float low = fmin(fmin(p, q), s), high = fmax(fmax(p, q), s);
         // What lies half a cell off is of use.
-        isNear = isNear && fmax(fmax(p, q), s) > -(float)LPV_RASTER && fmin(fmin(p, q), s) < most + (float)LPV_RASTER;
+        isNear = isNear && high > -(float)LPV_RASTER && low < most + (float)LPV_RASTER;
+        // The last sample below the upper end, if it lies above the lower one. (Rounding up or down takes PoCL long.)
+        const float upper = high - 0.5f;
+        spans += upper >= 0.0f && (float)(int)fmin(upper, most - 1.0f) + 0.5f >= low;
     }
-    if (!isNear || !(place.origin.w > 0.0f)) return r;
+    // Without samples along two axes there are none seen along any: most triangles are that small.
+    if (!isNear || spans < 2 || !(place.origin.w > 0.0f)) return r;
     const float ux = r.at[1][0] - r.at[0][0], uy = r.at[1][1] - r.at[0][1], uz = r.at[1][2] - r.at[0][2];
     const float vx = r.at[2][0] - r.at[0][0], vy = r.at[2][1] - r.at[0][1], vz = r.at[2][2] - r.at[0][2];
     float n[3] = {uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx};
@@ -63,10 +68,11 @@ LW_FN lpv_raster raster_of(__global const float* triangles, int stride, int t, c
     r.area = length / (float)(LPV_RASTER * LPV_RASTER);
     const float lowU = fmin(fmin(r.at[0][r.u], r.at[1][r.u]), r.at[2][r.u]), highU = fmax(fmax(r.at[0][r.u], r.at[1][r.u]), r.at[2][r.u]);
     const float lowV = fmin(fmin(r.at[0][r.v], r.at[1][r.v]), r.at[2][r.v]), highV = fmax(fmax(r.at[0][r.v], r.at[1][r.v]), r.at[2][r.v]);
-    r.firstU = (int)ceil(clamp(lowU - 0.5f, 0.0f, most));
-    r.lastU = (int)floor(clamp(highU - 0.5f, -1.0f, most - 1.0f));
-    r.firstV = (int)ceil(clamp(lowV - 0.5f, 0.0f, most));
-    r.lastV = (int)floor(clamp(highV - 0.5f, -1.0f, most - 1.0f));
+    // One too many does no harm.
+    r.firstU = (int)clamp(lowU - 0.5f, 0.0f, most);
+    r.lastU = (int)clamp(highU - 0.5f, 0.0f, most - 1.0f);
+    r.firstV = (int)clamp(lowV - 0.5f, 0.0f, most);
+    r.lastV = (int)clamp(highV - 0.5f, 0.0f, most - 1.0f);
     return r;
 }
 

@@ -13,6 +13,7 @@ namespace lightwell {
 namespace {
 
 constexpr std::size_t kRun = 64;  // LW_SWEEP_RUN of the kernels
+constexpr std::size_t kTriangles = 16;  // COVER_RUN
 constexpr Range kListGroup{16, 1};
 constexpr Range kCellGroup{16, 4};
 constexpr const char* kInject = "lpv_sweep/lpv_sweep_inject";
@@ -119,7 +120,7 @@ void LpvSweep::recordCover(Executor& executor, const LpvSweepInput& input) {
     executor.run("lpv_sweep.clear", clear_, gridOver(vectors), kListGroup, areas_, cl_int(vectors), cover_);
     if (hasTriangles) {
         const Planes& planes = input.triangles->triangles;
-        executor.run("lpv_sweep.cover", coverTriangles_, gridOver(input.triangles->triangleCount), kListGroup, planes.memory,
+        executor.run("lpv_sweep.cover", coverTriangles_, gridOver((input.triangles->triangleCount + kTriangles - 1) / kTriangles), kListGroup, planes.memory,
                      cl_int(planes.planeStride), cl_int(input.triangles->triangleCount), place_, cl_int(options_.size), cover_, areas_);
     } else if (hasSurfels) {
         const Planes& planes = input.surfels.planes;
