@@ -14,7 +14,7 @@ from program import ROOT, caller, read_options, write_between
 BEGIN, END = "<!-- begin: figures -->", "<!-- end: figures -->"
 CELL = 0.125           # m; a grid of 32 cells is 4 m wide
 THICKNESSES = [0.25, 0.5, 1.0, 2.0, 3.0]  # cells
-PHASES = [0.0, 0.25, 0.5, 0.75]  # cells that the wall's lit face lies behind a border of cells
+PHASES = [0.0, 0.25, 0.5, 0.75]  # cells by which a border of cells lies behind the wall's lit face
 LAMPS = {"floor": [-1.2, 0.0, 0.0], "wall": [0.0, 0.5, 0.0]}  # what it shines on
 VARIANTS = {
     "no geometry volume": ["geometry_volume=off"], "the same, damping": ["geometry_volume=off", "damping=on"],

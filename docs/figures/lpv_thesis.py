@@ -107,7 +107,7 @@ def main():
     for scene in SCENES:
         lines += score_table(settings, scene, rows_of(scene), ours) + own_table(settings, scene)
     lines += correlations(ours) + pairs_against(ours) + lpv_thesis_factor.lines_of(settings, rows_of)
-    lines += lpv_thesis_pictures.write(settings, ROOT / "docs/images")
+    lines += lpv_thesis_pictures.write(settings, rows_of, ROOT / "docs/images")
     if not has_cascades:
         lines += ["This program's `lpv` has no `cascades`: those rows are not measured.", ""]
     write_between(ROOT / "docs/techniques/lpv_thesis.md", BEGIN, END, lines)
