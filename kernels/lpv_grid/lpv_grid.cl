@@ -15,6 +15,8 @@
 
 #define LPV_LOBE0_PI 0.2820947918f  // LOBE0 / pi
 #define LPV_LOBE1_PI 0.3257350079f  // LOBE1 / pi
+#define LPV_LOBE0 0.8862269255f
+#define LPV_LOBE1 1.0233267079f
 // Texels or VPLs of a work-item, which adds up those of one cell before it touches memory that others write as well.
 #define LPV_RUN 64
 
@@ -235,13 +237,24 @@ __kernel void lpv_grid_inject_vpls(__global const lw_vpl* vpls, int count, __glo
 }
 
 // One work-item = one cell (x; y and z): its sums as floats, in W/sr.
-__kernel void lpv_grid_resolve(__global const uint* sums, __global const LwLpvPlace* grid, int size, __global float* to) {
+//
+// environment: radiance that comes from outside, of each colour. Through each outer face of the border's cells its flux, pi L s^2,
+// enters as a lobe about the inward normal, as propagation would hand it on from a cell beyond: L s^2 lobe(n).
+__kernel void lpv_grid_resolve(__global const uint* sums, __global const LwLpvPlace* grid, int size, float4 environment,
+                               __global float* to) {
     const int x = (int)get_global_id(0), line = (int)get_global_id(1);
     if (x >= size || line >= size * size) return;
     const float first = 1.0f / grid->cell.y, second = 1.0f / grid->cell.z;
     __global const uint* from = sums + 2 * LW_LPV_PLANES * (line * size + x);
     const int at = lpv_cell(size, x, line % size, line / size), plane = lpv_plane(size);
-    for (int c = 0; c < LW_LPV_PLANES; ++c) {
-        to[c * plane + at] = convert_float(long_at(from + 2 * c)) * first * second;
+    const int y = line % size, z = line / size, last = size - 1;
+    const float inX = (float)((x == 0) - (x == last)), inY = (float)((y == 0) - (y == last)), inZ = (float)((z == 0) - (z == last));
+    // Of each band: how often the lobes have it.
+    const float bands[LW_LPV_BANDS] = {LPV_LOBE0 * (fabs(inX) + fabs(inY) + fabs(inZ)), LPV_LOBE1 * inX, LPV_LOBE1 * inY, LPV_LOBE1 * inZ};
+    const float4 light = environment * (grid->cell.x * grid->cell.x);
+    for (int p = 0; p < LW_LPV_PLANES; ++p) {
+        const int c = p / LW_LPV_BANDS;
+        const float entering = bands[p % LW_LPV_BANDS] * (c == 0 ? light.x : c == 1 ? light.y : light.z);
+        to[p * plane + at] = convert_float(long_at(from + 2 * p)) * first * second + entering;
     }
 }

@@ -80,9 +80,11 @@ LW_FN real passing(__global const float* sheets, int at, int stride, uint stoppi
 
 // One work-item = a group of directions, of which there are `count`; groups from firstGroup on. carried: the planes' light, of
 // three colours for each direction. parts: what arrives in the cells, LW_SWEEP_PARTS planes of cells for each group.
+// environment: radiance that comes from outside of the grid, of each colour. Before the first plane and beside every one it is
+// all there is; nothing else writes there.
 __kernel void lpv_sweep_march(__global const float* sources, __global const float* sheets, __global const uint* used,
                               __global const float* directions, int count, int size, int firstGroup, int groupCount,
-                              __global float* carried, __global float* parts) {
+                              __global float* carried, __global float* parts, float4 environment) {
     const int item = (int)get_global_id(0);
     if (item >= groupCount) return;
     const int group = firstGroup + item, axis = group >> 3, octant = group & 7;
@@ -94,7 +96,11 @@ __kernel void lpv_sweep_march(__global const float* sources, __global const floa
     const int across = sweep_row(size), plane = sweep_plane(size);
     const int laneBack = laneSign ? -1 : 1, rowBack = rowSign ? -across : across;
     __global float* own = carried + item * count * LW_SWEEP_COLOURS * plane;
-    for (int i = 0; i < count * LW_SWEEP_COLOURS * plane; i += LW_WIDTH) store((real)0.0f, own, i);
+    for (int k = 0; k < count * LW_SWEEP_COLOURS; ++k) {
+        const int c = k % LW_SWEEP_COLOURS;
+        const real outside = (real)(c == 0 ? environment.x : c == 1 ? environment.y : environment.z);
+        for (int i = 0; i < plane; i += LW_WIDTH) store(outside, own, k * plane + i);
+    }
     __global const float* set = directions + group * count * LW_SWEEP_DIRECTION;
     __global float* out = parts + group * LW_SWEEP_PARTS * cells;
     for (int p = 0; p < size; ++p)

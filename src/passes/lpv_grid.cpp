@@ -73,7 +73,7 @@ void LpvGrid::recordPlace(Executor& executor, const RsmInput& rsms, const LWVpl*
     executor.run("lpv_grid.fit", fit_, {1, 1}, {1, 1}, state_, fitOf(placement, size_, texels + authoredCount), place_);
 }
 
-void LpvGrid::recordInject(Executor& executor, const RsmInput& rsms, std::uint32_t authoredCount) {
+void LpvGrid::recordInject(Executor& executor, const RsmInput& rsms, std::uint32_t authoredCount, const float* environment) {
     sums_.reserve(device_, sumBytes(size_), "sums of injected light");
     if (!injected_) injected_ = LpvPropagation::makeGrid(executor, size_, "injected light");
     executor.fill("lpv_grid.clear", sums_, 0, 0, sums_.bytes());
@@ -84,8 +84,9 @@ void LpvGrid::recordInject(Executor& executor, const RsmInput& rsms, std::uint32
     if (authoredCount)
         executor.run("lpv_grid.inject", injectVpls_, runsOf(authoredCount), kListGroup, authored_, cl_int(authoredCount), place_,
                      cl_int(size_), sums_, state_);
+    const cl_float4 outside = environment ? cl_float4{{environment[0], environment[1], environment[2], 0.0f}} : cl_float4{};
     executor.run("lpv_grid.resolve", resolve_, {size_, std::size_t(size_) * size_}, kCellGroup, sums_, place_, cl_int(size_),
-                 injected_);
+                 outside, injected_);
 }
 
 std::uint64_t LpvGrid::bytes() const {

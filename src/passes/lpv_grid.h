@@ -26,14 +26,15 @@ public:
     // Passes "lpv_grid.*". `authored` is read before the call returns. A fitted grid stays as long as the box still fits and
     // is no smaller than three quarters of the grid's inside; then it moves by whole cells, or gets another size.
     void record(Executor& executor, const RsmInput& rsms, const LWVpl* authored, std::uint32_t authoredCount,
-                const LpvPlacement& placement) {
+                const LpvPlacement& placement, const float* environment = nullptr) {
         recordPlace(executor, rsms, authored, authoredCount, placement);
-        recordInject(executor, rsms, authoredCount);
+        recordInject(executor, rsms, authoredCount, environment);
     }
-    // Its two halves; the second one where cells shall hold spherical harmonics.
+    // Its two halves; the second one where cells shall hold spherical harmonics. environment: radiance of three colours that comes
+    // in through the border's cells; none: 0.
     void recordPlace(Executor& executor, const RsmInput& rsms, const LWVpl* authored, std::uint32_t authoredCount,
                      const LpvPlacement& placement);
-    void recordInject(Executor& executor, const RsmInput& rsms, std::uint32_t authoredCount);
+    void recordInject(Executor& executor, const RsmInput& rsms, std::uint32_t authoredCount, const float* environment = nullptr);
 
     const Buffer& injected() const { return injected_; }  // a grid of LpvPropagation's
     const Buffer& place() const { return place_; }        // LwLpvPlace

@@ -139,7 +139,7 @@ void LpvSweep::recordResolve(Executor& executor, const Buffer& place) {
 void LpvSweep::recordGroups(Executor& executor, std::uint32_t count) {
     executor.run("lpv_sweep.march", march_, {count, 1}, {1, 1}, sources_, sheets_, used_, directions_,
                  cl_int(options_.directions / LW_SWEEP_GROUPS), cl_int(options_.size), cl_int(nextGroup_), cl_int(count), carried_,
-                 parts_);
+                 parts_, bounce_ == 0 ? environment_ : cl_float4{});
     nextGroup_ += count;
 }
 
@@ -164,6 +164,7 @@ void LpvSweep::record(Executor& executor, const LpvSweepInput& input) {
     do {
         if (nextGroup_ == 0 && bounce_ == 0) {
             executor.copy("lpv_sweep.place", input.place.get(), place_.get(), 0, 0, sizeof(LwLpvPlace));
+            for (std::size_t c = 0; c < LW_SWEEP_COLOURS; ++c) environment_.s[c] = input.environment ? input.environment[c] : 0.0f;
             recordCover(executor, input);
             recordLights(executor, input);
             recordResolve(executor, place_);

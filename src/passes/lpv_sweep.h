@@ -28,6 +28,7 @@ struct LpvSweepInput {
     SurfelSet surfels;    // where it has none: the RSMs' texels
     float areaScale;      // of the surfels
     bool restart;         // nothing of the frames before is right any more
+    const float* environment = nullptr;  // radiance from outside of the grid, of three colours; none: 0
 };
 
 class LpvSweep {
@@ -67,6 +68,7 @@ private:
     Buffer place_, unitPlace_, shownPlace_;  // of the light that is under way, in the last bounce's unit, of what is shown
     Buffer bounceCells_, totalCells_, shownCells_;
     std::uint32_t nextGroup_ = 0, bounce_ = 0;
+    cl_float4 environment_{};  // of the light that is under way
     bool isShown_ = false;
 };
 
