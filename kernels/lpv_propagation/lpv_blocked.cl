@@ -6,14 +6,18 @@
 #include "lpv_step.h"
 
 __kernel void lpv_propagation_blocked_step(__global const float* source, __global const float* from, __global float* to, int size,
-                                           __global const float* faces, __global const int* runs) {
+                                           __global const float* faces, __global const int* runs,
+                                           __global const LwLpvProgress* progress, int watches) {
+    if (is_done(progress, watches)) return;
     const lpv_steps s = {source, size, 1, faces, runs};
     one_step(s, from, to);
 }
 
 __kernel void lpv_propagation_blocked_wave(__global const float* source, __global const float* from, __global float* first,
                                            __global float* second, int size, int steps, int parts, int atCuts,
-                                           __global const float* faces, __global const int* runs) {
+                                           __global const float* faces, __global const int* runs,
+                                           __global const LwLpvProgress* progress, int watches) {
+    if (is_done(progress, watches)) return;
     const lpv_steps s = {source, size, 1, faces, runs};
     wave_of_steps(s, from, first, second, steps, parts, atCuts);
 }

@@ -72,6 +72,9 @@ typedef struct {
     __global const int* runs;
 } lpv_steps;
 
+// Work-items leave where enough steps have been taken. watches: 0: `progress` is not looked at.
+LW_FN int is_done(__global const LwLpvProgress* progress, int watches) { return watches && progress->done; }
+
 #include "lpv_faces.h"
 
 // LW_WIDTH cells of a row. A run of cells where nothing blocks takes the free step, at every width alike.

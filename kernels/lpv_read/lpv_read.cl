@@ -16,15 +16,18 @@
 // Floats of a cell in the order that pixels read: c0, c1.x, c1.y, c1.z of the three colours, and one unused, each.
 #define LPV_CELL_FLOATS 16
 
-// One work-item = one cell (x; y and z): planes to cells, so that a pixel finds all of a cell in one place.
-__kernel void lpv_read_pack(__global const float* from, int size, __global float* cells) {
+// One work-item = one cell (x; y and z): planes to cells, so that a pixel finds all of a cell in one place. hasProgress: the light
+// is that of as many steps as `progress` says.
+__kernel void lpv_read_pack(__global const float* from, int size, __global const LwLpvProgress* progress, int hasProgress,
+                            __global float* cells) {
     const int x = (int)get_global_id(0), line = (int)get_global_id(1);
     if (x >= size || line >= size * size) return;
     const int plane = lpv_plane(size);
     __global const float* p = from + lpv_cell(size, x, line % size, line / size);
     __global float* to = cells + LPV_CELL_FLOATS * (line * size + x);
+    const float scale = hasProgress ? progress->scale : 1.0f;
     for (int band = 0; band < LW_LPV_BANDS; ++band) {
-        for (int c = 0; c < LW_LPV_COLOURS; ++c) to[4 * band + c] = p[(LW_LPV_BANDS * c + band) * plane];
+        for (int c = 0; c < LW_LPV_COLOURS; ++c) to[4 * band + c] = scale * p[(LW_LPV_BANDS * c + band) * plane];
         to[4 * band + 3] = 0.0f;
     }
 }

@@ -63,6 +63,15 @@ typedef struct {
 } LwLpvBlockers;
 LW_SIZE_CHECK(LwLpvBlockers, 32);
 
+// How far steps have come that stop by what is left to do: looked at every LW_LPV_LOOK of them.
+#define LW_LPV_LOOK 8
+typedef struct {
+    lw_int done, steps;  // 1: no more steps; that were taken
+    float moving;        // of the light put in, what the last of them moved: the largest share of a colour
+    float scale;         // of what is read: calibration of these steps by that of all
+} LwLpvProgress;
+LW_SIZE_CHECK(LwLpvProgress, 16);
+
 // How a frame wants its grid placed.
 typedef struct {
     lw_float4 centre;        // xyz; w: length of the grid's sides; 0: fitted to what the RSMs see, the VPLs and the box below

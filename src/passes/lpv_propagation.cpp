@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "compute/device.h"
+#include "passes/lpv_progress.h"
 #include "shared/lpv_types.h"
 
 namespace lightwell {
@@ -42,61 +42,79 @@ Buffer LpvPropagation::makeGrid(Executor& executor, std::uint32_t size, const ch
     return grid;
 }
 
-const Buffer& LpvPropagation::record(Executor& executor, const Buffer& injected, std::uint32_t steps, const LpvBlockers* blockers) {
+const Buffer& LpvPropagation::record(Executor& executor, const Buffer& injected, std::uint32_t steps, const LpvBlockers* blockers,
+                                     LpvProgress* progress) {
     if (steps == 0) return injected;
     for (std::uint32_t i = 0; i < std::min(steps, 2u); ++i)
         if (!grids_[i]) grids_[i] = makeGrid(executor, size_, "propagated light");
-    return step_.width() == 1 || steps == 1 ? recordSteps(executor, injected, steps, blockers)
-                                            : recordWaves(executor, injected, steps, blockers);
+    const bool inSteps = step_.width() == 1 || steps == 1;
+    Run run{injected, blockers, nullptr, &injected, inSteps ? 1u : 0u};
+    const auto take = [&](std::uint32_t count) {
+        if (inSteps)
+            recordSteps(executor, run, count);
+        else
+            recordWaves(executor, run, count);
+    };
+    if (!progress) {
+        take(steps);
+        return *run.from;
+    }
+    // All chunks end in the first grid: the host does not know which is the last that is not left out.
+    progress->begin(executor);
+    run.progress = &progress->state();
+    run.at = progress->chunks().front() % 2;
+    for (std::size_t chunk = 0; chunk < progress->chunks().size(); ++chunk) {
+        take(progress->chunks()[chunk]);
+        progress->look(executor, chunk, injected, steps == 1 ? injected : grids_[1], grids_[0]);
+    }
+    return grids_[0];
 }
 
-const Buffer& LpvPropagation::recordSteps(Executor& executor, const Buffer& injected, std::uint32_t steps,
-                                          const LpvBlockers* blockers) {
+void LpvPropagation::recordSteps(Executor& executor, Run& run, std::uint32_t steps) {
     const std::size_t vectors = size_ / step_.width();
     const Range all{vectors, std::size_t(LW_LPV_COLOURS) * size_ * size_};
     const Range group{vectors, std::min<std::size_t>(size_, std::max<std::size_t>(256 / vectors, 1))};
-    const Buffer* from = &injected;
+    const Buffer& progress = run.progress ? *run.progress : run.injected;
+    const cl_int watches = run.progress ? 1 : 0;
     for (std::uint32_t i = 0; i < steps; ++i) {
-        const Buffer& to = grids_[i % 2];
-        if (blockers)
-            executor.run("lpv_propagation.step", blocked("lpv_propagation_blocked_step"), all, group, injected, *from,
-                         to, cl_int(size_), blockers->faces, blockers->runs);
+        run.at = 1 - run.at;
+        const Buffer& to = grids_[run.at];
+        if (run.blockers)
+            executor.run("lpv_propagation.step", blocked("lpv_propagation_blocked_step"), all, group, run.injected, *run.from, to,
+                         cl_int(size_), run.blockers->faces, run.blockers->runs, progress, watches);
         else
-            executor.run("lpv_propagation.step", step_, all, group, injected, *from, to, cl_int(size_));
-        from = &to;
+            executor.run("lpv_propagation.step", step_, all, group, run.injected, *run.from, to, cl_int(size_), progress, watches);
+        run.from = &to;
     }
-    return *from;
 }
 
-const Buffer& LpvPropagation::recordWaves(Executor& executor, const Buffer& injected, std::uint32_t steps,
-                                          const LpvBlockers* blockers) {
+void LpvPropagation::recordWaves(Executor& executor, Run& run, std::uint32_t steps) {
     // Two work-items for each compute unit, and no more parts than keep two slices a step.
     std::uint32_t parts = 1;
     while (parts * LW_LPV_COLOURS < 2 * units_ && parts * 8 <= size_) parts *= 2;
     const std::size_t sliceBytes = std::size_t(LW_LPV_BANDS) * std::size_t(lpv_slice(lw_int(size_))) * sizeof(float);
     const auto fits = std::uint32_t(kWaveBytes / (3 * sliceBytes));
     const std::uint32_t most = std::min(std::clamp(fits, kLeastWaveSteps, kMostWaveSteps), size_ / (2 * parts));
-    const Buffer* from = &injected;
-    std::uint32_t left = steps, at = 0;
-    while (left > 0) {
+    const Buffer& progress = run.progress ? *run.progress : run.injected;
+    const cl_int watches = run.progress ? 1 : 0;
+    for (std::uint32_t left = steps; left > 0;) {
         const std::uint32_t taken = std::min(left, most);
-        const Buffer &first = grids_[at], &second = grids_[1 - at];
+        const Buffer &first = grids_[run.at], &second = grids_[1 - run.at];
         const auto wave = [&](std::uint32_t items, int atCuts) {
-            if (blockers)
-                executor.run("lpv_propagation.wave", blocked("lpv_propagation_blocked_wave"), {items, 1}, {1, 1}, injected,
-                             *from, first, second, cl_int(size_), cl_int(taken), cl_int(parts), cl_int(atCuts),
-                             blockers->faces, blockers->runs);
+            if (run.blockers)
+                executor.run("lpv_propagation.wave", blocked("lpv_propagation_blocked_wave"), {items, 1}, {1, 1}, run.injected,
+                             *run.from, first, second, cl_int(size_), cl_int(taken), cl_int(parts), cl_int(atCuts),
+                             run.blockers->faces, run.blockers->runs, progress, watches);
             else
-                executor.run("lpv_propagation.wave", wave_, {items, 1}, {1, 1}, injected, *from, first, second, cl_int(size_),
-                             cl_int(taken), cl_int(parts), cl_int(atCuts));
+                executor.run("lpv_propagation.wave", wave_, {items, 1}, {1, 1}, run.injected, *run.from, first, second,
+                             cl_int(size_), cl_int(taken), cl_int(parts), cl_int(atCuts), progress, watches);
         };
         wave(LW_LPV_COLOURS * parts, 0);
         if (parts > 1 && taken > 1) wave(LW_LPV_COLOURS * (parts - 1), 1);
-        if (taken % 2) at = 1 - at;
-        from = &grids_[at];
+        if (taken % 2) run.at = 1 - run.at;
+        run.from = &grids_[run.at];
         left -= taken;
     }
-    return *from;
 }
 
 Planes LpvPropagation::debugPlanes(const Buffer& grid, std::uint32_t size) {
@@ -150,18 +168,23 @@ struct PlaneLayers {
 
 }  // namespace
 
-double LpvPropagation::calibration(std::uint32_t size, std::uint32_t steps, bool isBlocked) {
+std::vector<double> LpvPropagation::calibrations(std::uint32_t size, const std::vector<std::uint32_t>& steps, bool isBlocked) {
     PlaneLayers injected(size);
     injected.c0[1] = LW_LPV_LOBE0 / kPi;  // of the flux of a cell's side, 1
     injected.c1[1] = LW_LPV_LOBE1 / kPi;
     PlaneLayers light = injected;
-    for (std::uint32_t i = 0; i < steps; ++i) {
-        light = light.stepped(isBlocked);
-        light.add(injected);
+    std::vector<double> result;
+    std::uint32_t taken = 0;
+    for (const std::uint32_t count : steps) {
+        for (; taken < count; ++taken) {
+            light = light.stepped(isBlocked);
+            light.add(injected);
+        }
+        double sum = 0.0;
+        for (std::size_t j = 2; j < 2 + kCalibrationLayers; ++j) sum += LW_LPV_LOBE0 * light.c0[j] + LW_LPV_LOBE1 * light.c1[j];
+        result.push_back(sum > 0.0 ? kCalibrationLayers / sum : 0.0);
     }
-    double sum = 0.0;
-    for (std::size_t j = 2; j < 2 + kCalibrationLayers; ++j) sum += LW_LPV_LOBE0 * light.c0[j] + LW_LPV_LOBE1 * light.c1[j];
-    return sum > 0.0 ? kCalibrationLayers / sum : 0.0;
+    return result;
 }
 
 }  // namespace lightwell

@@ -17,9 +17,10 @@ LpvRead::LpvRead(Device& device, std::uint32_t size)
       pack_(device.programs().kernel(kProgram, "lpv_read_pack")),
       gather_(device.programs().kernel(kProgram, "lpv_read_gather")) {}
 
-void LpvRead::recordPack(Executor& executor, const Buffer& grid) {
+void LpvRead::recordPack(Executor& executor, const Buffer& grid, const Buffer* progress) {
     cells_.reserve(device_, estimateBytes(size_), "cells of the grid");
-    executor.run("lpv_read.pack", pack_, {size_, std::size_t(size_) * size_}, kCellGroup, grid, cl_int(size_), cells_);
+    executor.run("lpv_read.pack", pack_, {size_, std::size_t(size_) * size_}, kCellGroup, grid, cl_int(size_),
+                 progress ? *progress : grid, cl_int(progress ? 1 : 0), cells_);
 }
 
 void LpvRead::recordGather(Executor& executor, const Planes& position, const Planes& normal, const Buffer& place,

@@ -12,8 +12,9 @@ class LpvRead {
 public:
     LpvRead(Device& device, std::uint32_t size);
 
-    // Pass "lpv_read.pack", once a frame. `grid`: of LpvPropagation's.
-    void recordPack(Executor& executor, const Buffer& grid);
+    // Pass "lpv_read.pack", once a frame. `grid`: of LpvPropagation's. progress: none, or the LwLpvProgress of its steps, whose own
+    // calibration then counts beside recordGather's, which is that of all steps.
+    void recordPack(Executor& executor, const Buffer& grid, const Buffer* progress = nullptr);
     // Pass "lpv_read.gather". place: LpvGrid's. isDamped: no more light than a cell further off. irradiance, validity: none where
     // not wanted. counts: kCounts ints, raised by the number of pixels that are neither surface nor background, of those whose
     // light was brought down, and of surfaces that the grid does not have.
