@@ -63,6 +63,10 @@ typedef struct {
 } LwLpvBlockers;
 LW_SIZE_CHECK(LwLpvBlockers, 32);
 
+// Radiance from infinity above which it is refused. What it sends through a cell's side stays finite in all of a grid (cells of 1e8
+// units, which positions allow for: 1e36), and no sky comes near it: the sun's disc has 2e7 W/m^2/sr.
+#define LW_LPV_LARGEST_ENVIRONMENT 1e20f
+
 // How far steps have come that stop by what is left to do: looked at every LW_LPV_LOOK of them.
 #define LW_LPV_LOOK 8
 typedef struct {

@@ -6,8 +6,10 @@
 #include <vector>
 
 #include "compute/device.h"
+#include "compute/error.h"
 #include "inputs/geometry_box.h"
 #include "inputs/rsm_input.h"
+#include "shared/lpv_types.h"
 #include "techniques/lpv_parameters.h"
 #include "techniques/lpv_view.h"
 #include "techniques/lpv_volume.h"
@@ -21,17 +23,21 @@ bool isHalf(const LWLpvDesc& desc) { return desc.resolution == LW_RESOLUTION_HAL
 
 // Geometry and source views apart, which the volume speaks of.
 std::vector<LWChoice> unusedInputs(const LWFrame& frame) {
-    constexpr const char* kReason = "not used: technique lpv takes light from RSMs and authored VPLs only";
     std::vector<LWChoice> unused;
-    if (frame.blockerCount) unused.push_back({"frame.blockers", kReason});
-    if (frame.environment[0] > 0.0f || frame.environment[1] > 0.0f || frame.environment[2] > 0.0f)
-        unused.push_back({"frame.environment", kReason});
+    if (frame.blockerCount) unused.push_back({"frame.blockers", "not used: in technique lpv triangles, surfels or texels block light"});
     for (std::uint32_t l = 0; l < frame.lightCount; ++l)
         if (frame.lights[l].rsmCount == 0) {
             unused.push_back({"frame.lights", "some have no RSM: technique lpv makes no indirect light of those"});
             break;
         }
     return unused;
+}
+
+void checkEnvironment(const LWFrame& frame) {
+    for (int c = 0; c < 3; ++c)
+        if (frame.environment[c] > LW_LPV_LARGEST_ENVIRONMENT)
+            fail(LW_ERROR_INVALID_ARGUMENT, "frame.environment[", c, "]: expected a radiance of at most ", LW_LPV_LARGEST_ENVIRONMENT, ", got ",
+                 frame.environment[c]);
 }
 
 class LpvTechnique final : public Technique {
@@ -46,6 +52,7 @@ public:
     void update(Executor& executor, const LWFrame& frame) override {
         const bool failed = device_.failures() != failures_ || isCut_;
         if (failed) remake();
+        checkEnvironment(frame);
         volume_->check(frame);
         box_.look(frame.geometry);
         rsms_.import(executor, frame);

@@ -125,8 +125,8 @@ std::optional<LpvBlockers> LpvGeometry::record(Executor& executor, const Buffer&
 std::vector<LWChoice> LpvGeometry::choices(const LWFrame& frame) const {
     std::vector<LWChoice> choices = {{"geometry_volume", describe(source_)}};
     if (frame.sourceViewCount && source_ != Source::screen)
-        choices.push_back({"frame.sourceViews", "not used: they block nothing, and technique lpv takes light from RSMs and "
-                                                "authored VPLs only"});
+        choices.push_back({"frame.sourceViews", "not used: they block nothing, and technique lpv takes light from RSMs, "
+                                                "authored VPLs and the environment only"});
     if (surfelsOf(frame) && source_ != Source::surfels)
         choices.push_back({"frame.geometry.surfels", "not used: they block nothing"});
     if (trianglesOf(frame) && source_ != Source::triangles)

@@ -21,7 +21,7 @@ LpvStepVolume::LpvStepVolume(Device& device, const LWLpvDesc& desc)
 
 void LpvStepVolume::record(Executor& executor, const LWFrame& frame, const RsmInput& rsms, const LpvPlacement& placement) {
     geometry_.import(executor, frame, rsms);
-    grid_.record(executor, rsms, frame.vpls, frame.vplCount, placement);
+    grid_.record(executor, rsms, frame.vpls, frame.vplCount, placement, frame.environment);
     const std::optional<LpvBlockers> blockers = geometry_.record(executor, grid_.place());
     propagated_ = &propagation_.record(executor, grid_.injected(), stepsOf(desc_), blockers ? &*blockers : nullptr);
     read_.recordPack(executor, *propagated_);

@@ -61,7 +61,7 @@ void LpvSweepVolume::record(Executor& executor, const LWFrame& frame, const RsmI
     }
     const bool restart = placement.refit || source != source_;  // revisions count within a source
     sweep_.record(executor, {rsms, grid_.authored(), frame.vplCount, grid_.place(), set,
-                             source == Source::triangles ? kSampledArea : 1.0f, restart});
+                             source == Source::triangles ? kSampledArea : 1.0f, restart, frame.environment});
     source_ = source;
 }
 
@@ -71,8 +71,8 @@ std::vector<LWChoice> LpvSweepVolume::choices(const LWFrame& frame, double side)
                      : source_ == Source::surfels ? "the host's surfels"
                                                   : "the texels of all RSMs: what no light sees blocks nothing"}};
     if (frame.sourceViewCount)
-        choices.push_back({"frame.sourceViews", "not used: they block nothing, and technique lpv takes light from RSMs and "
-                                                "authored VPLs only"});
+        choices.push_back({"frame.sourceViews", "not used: they block nothing, and technique lpv takes light from RSMs, "
+                                                "authored VPLs and the environment only"});
     if (source_ == Source::none && desc_.bounces > 1)
         choices.push_back({"bounces", "one: without triangles and surfels there is nothing to send light on"});
     if (source_ == Source::none && frame.geometry && sourceOf(frame) == Source::triangles)
