@@ -38,6 +38,10 @@ const std::vector<LWParameter>& lpvParameters() {
                         "square root",
                         LW_PARAMETER_UINT, offsetof(LWLpvDesc, steps), 0, 1024, 0),
               kStepSweep),
+        parameter("auto_error",
+                  "of propagation: steps end, `steps` at most, once no more than this share of the light put in is still on its way; "
+                  "0: never sooner",
+                  LW_PARAMETER_FLOAT, offsetof(LWLpvDesc, autoError), 0, 1, 0),
         parameter("extent", "length of the grid's sides, in units of length; 0: fitted to what the lights and the triangles reach",
                   LW_PARAMETER_FLOAT, offsetof(LWLpvDesc, extent), 0, 1e9, 0),
         centre("center_x", 0),

@@ -1,5 +1,7 @@
 #include "techniques/lpv_step_volume.h"
 
+#include <cstddef>
+
 #include "compute/device.h"
 
 namespace lightwell {
@@ -17,14 +19,18 @@ LpvStepVolume::LpvStepVolume(Device& device, const LWLpvDesc& desc)
       geometry_(device, desc),
       grid_(device, desc.size),
       propagation_(device, desc.size),
-      read_(device, desc.size) {}
+      read_(device, desc.size) {
+    if (desc.autoError > 0.0f)
+        progress_.emplace(device, desc.size, stepsOf(desc), desc.autoError, desc.geometryVolume != LW_GEOMETRY_VOLUME_OFF);
+}
 
 void LpvStepVolume::record(Executor& executor, const LWFrame& frame, const RsmInput& rsms, const LpvPlacement& placement) {
     geometry_.import(executor, frame, rsms);
     grid_.record(executor, rsms, frame.vpls, frame.vplCount, placement, frame.environment);
     const std::optional<LpvBlockers> blockers = geometry_.record(executor, grid_.place());
-    propagated_ = &propagation_.record(executor, grid_.injected(), stepsOf(desc_), blockers ? &*blockers : nullptr);
-    read_.recordPack(executor, *propagated_);
+    propagated_ = &propagation_.record(executor, grid_.injected(), stepsOf(desc_), blockers ? &*blockers : nullptr,
+                                       progress_ ? &*progress_ : nullptr);
+    read_.recordPack(executor, *propagated_, progress_ ? &progress_->state() : nullptr);
 }
 
 void LpvStepVolume::recordGather(Executor& executor, const Planes& position, const Planes& normal, const Planes& irradiance,
@@ -36,9 +42,19 @@ std::vector<LWChoice> LpvStepVolume::choices(const LWFrame& frame, double) const
 
 void LpvStepVolume::report(Report& report) const {
     geometry_.report(report);
-    report.counts.push_back({"steps", stepsOf(desc_)});
+    reportSteps(report);
     report.counts.push_back({"lights_outside", 0});
     if (propagated_) report.read(device_, "lights_outside", grid_.state(), LW_LPV_OUTSIDE * sizeof(cl_uint));
+}
+
+// How many were taken is the device's to decide, and to say.
+void LpvStepVolume::reportSteps(Report& report) const {
+    report.counts.push_back({"steps", progress_ ? 0 : stepsOf(desc_)});
+    if (!progress_ || !propagated_) return;
+    static constexpr const char* kReasons[] = {"all: more light than auto_error was on its way to the end",
+                                               "ended where no more light than auto_error was on its way"};
+    report.read(device_, "steps", progress_->state(), offsetof(LwLpvProgress, steps));
+    report.readChoice(device_, "steps", progress_->state(), offsetof(LwLpvProgress, done), kReasons, 2);
 }
 
 void LpvStepVolume::addDebugViews(std::vector<DebugView>& views) const {
@@ -49,11 +65,12 @@ void LpvStepVolume::addDebugViews(std::vector<DebugView>& views) const {
                      LpvPropagation::debugPlanes(*propagated_, desc_.size), {}});
 }
 
-std::uint64_t LpvStepVolume::bytes() const { return geometry_.bytes() + grid_.bytes() + propagation_.bytes() + read_.bytes(); }
+std::uint64_t LpvStepVolume::bytes() const { return geometry_.bytes() + grid_.bytes() + propagation_.bytes() + read_.bytes() + (progress_ ? progress_->bytes() : 0); }
 
 std::uint64_t LpvStepVolume::estimateBytes(const LWLpvDesc& desc, const FrameShape& shape) {
     return LpvGrid::estimateBytes(desc.size, shape.vplCount) + LpvPropagation::estimateBytes(desc.size, stepsOf(desc)) +
-           LpvRead::estimateBytes(desc.size) + LpvGeometry::estimateBytes(desc, shape);
+           LpvRead::estimateBytes(desc.size) + LpvGeometry::estimateBytes(desc, shape) +
+           (desc.autoError > 0.0f ? LpvProgress::estimateBytes(desc.size) : 0);
 }
 
 }  // namespace lightwell

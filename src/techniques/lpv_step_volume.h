@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "passes/lpv_progress.h"
 #include "passes/lpv_propagation.h"
 #include "passes/lpv_read.h"
 #include "techniques/lpv_geometry.h"
@@ -25,6 +26,8 @@ public:
     static std::uint64_t estimateBytes(const LWLpvDesc& desc, const FrameShape& shape);
 
 private:
+    void reportSteps(Report& report) const;
+
     Device& device_;
     LWLpvDesc desc_;
     double calibration_;
@@ -32,6 +35,7 @@ private:
     LpvGrid grid_;
     LpvPropagation propagation_;
     LpvRead read_;
+    std::optional<LpvProgress> progress_;  // with an error target
     const Buffer* propagated_ = nullptr;  // of the last record
 };
 
