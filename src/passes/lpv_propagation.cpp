@@ -1,9 +1,9 @@
 #include "passes/lpv_propagation.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "compute/device.h"
+#include "passes/lpv_plane_layers.h"
 #include "passes/lpv_progress.h"
 #include "shared/lpv_types.h"
 
@@ -11,8 +11,6 @@ namespace lightwell {
 namespace {
 
 constexpr const char* kProgram = "lpv_propagation/lpv_propagation";
-constexpr double kPi = 3.14159265358979323846;
-constexpr std::uint32_t kCalibrationLayers = 4;
 
 // Of a core's own cache, what the slices between the first and the last step of a wave may take: three grids' of a colour.
 // More: they are gone before the next step comes. Less: fewer steps for each way through memory.
@@ -55,8 +53,10 @@ const Buffer& LpvPropagation::record(Executor& executor, const Buffer& injected,
         else
             recordWaves(executor, run, count);
     };
+    before_ = &injected;
     if (!progress) {
         take(steps);
+        if (steps > 1) before_ = &grids_[1 - run.at];
         return *run.from;
     }
     // All chunks end in the first grid: the host does not know which is the last that is not left out.
@@ -65,7 +65,8 @@ const Buffer& LpvPropagation::record(Executor& executor, const Buffer& injected,
     run.at = progress->chunks().front() % 2;
     for (std::size_t chunk = 0; chunk < progress->chunks().size(); ++chunk) {
         take(progress->chunks()[chunk]);
-        progress->look(executor, chunk, injected, steps == 1 ? injected : grids_[1], grids_[0]);
+        if (steps > 1) before_ = &grids_[1];
+        progress->look(executor, chunk, injected, *before_, grids_[0]);
     }
     return grids_[0];
 }
@@ -130,49 +131,9 @@ Planes LpvPropagation::debugPlanes(const Buffer& grid, std::uint32_t size) {
     return planes;
 }
 
-namespace {
-
-// An infinite plane is the same in all of a layer's cells: the step becomes one of layers, c0 and c1 along the plane's normal,
-// with four of six neighbours in the layer itself. Layers 0 and last are the empty borders.
-struct PlaneLayers {
-    explicit PlaneLayers(std::size_t count) : c0(count + 2), c1(count + 2) {}
-    std::vector<double> c0, c1;
-
-    // isBlocked: the lowest layer lies on a surface that fills its cells. Between its cells are two corners of that surface and two
-    // of none: max(B(d), B(-d)) is 1/8 + 1/4 |d.n|, of the 1/4 + 1/sqrt(5) that let nothing through.
-    PlaneLayers stepped(bool isBlocked) const {
-        const double front = LW_LPV_FRONT_ANGLE / kPi, side = LW_LPV_SIDE_ANGLE / kPi, root5 = std::sqrt(5.0);
-        const double full = 0.25 + 1.0 / root5;
-        const double a = 1.0 / 6.0, b = LW_LPV_LOBE0 * LW_LPV_Y1 * (front + 8.0 / root5 * side);
-        const double p = LW_LPV_LOBE1 * LW_LPV_Y0 * front, q = 0.5 * front;
-        PlaneLayers next(c0.size() - 2);
-        for (std::size_t j = 1; j + 1 < c0.size(); ++j) {
-            const bool passes = !isBlocked || j > 1;
-            const double along = passes ? 1.0 : 1.0 - 0.125 / full;
-            const double oblique = passes ? 1.0 : 1.0 - (0.125 + 0.25 / root5) / full;
-            // Of each neighbour beside: straight on and to two sides along the layer, to two sides out of it.
-            const double kept0 = LW_LPV_LOBE0 * LW_LPV_Y0 * (along * (front + 2.0 * side) + oblique * 2.0 * side);
-            const double kept1 = LW_LPV_LOBE1 * LW_LPV_Y1 * oblique * side * 2.0 / root5;
-            next.c0[j] = 4.0 * kept0 * c0[j] + a * (c0[j - 1] + c0[j + 1]) + b * (c1[j - 1] - c1[j + 1]);
-            next.c1[j] = 4.0 * kept1 * c1[j] + p * (c0[j - 1] - c0[j + 1]) + q * (c1[j - 1] + c1[j + 1]);
-        }
-        return next;
-    }
-    void add(const PlaneLayers& other) {
-        for (std::size_t j = 0; j < c0.size(); ++j) {
-            c0[j] += other.c0[j];
-            c1[j] += other.c1[j];
-        }
-    }
-};
-
-}  // namespace
-
 std::vector<double> LpvPropagation::calibrations(std::uint32_t size, const std::vector<std::uint32_t>& steps, bool isBlocked) {
-    PlaneLayers injected(size);
-    injected.c0[1] = LW_LPV_LOBE0 / kPi;  // of the flux of a cell's side, 1
-    injected.c1[1] = LW_LPV_LOBE1 / kPi;
-    PlaneLayers light = injected;
+    const LpvPlaneLayers injected = LpvPlaneLayers::plane(size);
+    LpvPlaneLayers light = injected;
     std::vector<double> result;
     std::uint32_t taken = 0;
     for (const std::uint32_t count : steps) {
@@ -180,9 +141,7 @@ std::vector<double> LpvPropagation::calibrations(std::uint32_t size, const std::
             light = light.stepped(isBlocked);
             light.add(injected);
         }
-        double sum = 0.0;
-        for (std::size_t j = 2; j < 2 + kCalibrationLayers; ++j) sum += LW_LPV_LOBE0 * light.c0[j] + LW_LPV_LOBE1 * light.c1[j];
-        result.push_back(sum > 0.0 ? kCalibrationLayers / sum : 0.0);
+        result.push_back(light.calibration());
     }
     return result;
 }

@@ -32,6 +32,9 @@ public:
     const Buffer& record(Executor& executor, const Buffer& injected, std::uint32_t steps, const LpvBlockers* blockers = nullptr,
                          LpvProgress* progress = nullptr);
 
+    // After record() without `progress`: the sum less what the last step made.
+    const Buffer& before() const { return *before_; }
+
     std::uint64_t bytes() const { return grids_[0].bytes() + grids_[1].bytes(); }
     static std::uint64_t gridBytes(std::uint32_t size);
     static std::uint64_t estimateBytes(std::uint32_t size, std::uint32_t steps) {
@@ -69,6 +72,7 @@ private:
     std::uint32_t size_, units_;
     Kernel &step_, &wave_;
     Buffer grids_[2];
+    const Buffer* before_ = nullptr;
 };
 
 }  // namespace lightwell

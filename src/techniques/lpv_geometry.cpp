@@ -50,10 +50,10 @@ const char* describe(Source source) {
 
 }  // namespace
 
-LpvGeometry::LpvGeometry(Device& device, const LWLpvDesc& desc) : device_(device), desc_(desc) {
+LpvGeometry::LpvGeometry(Device& device, const LWLpvDesc& desc, std::uint32_t levels) : device_(device), desc_(desc) {
     if (desc.geometryVolume == LW_GEOMETRY_VOLUME_OFF) return;
     sampling_.emplace(device);
-    blocking_.emplace(device, desc.size);
+    for (std::uint32_t level = 0; level < levels; ++level) blocking_.emplace_back(device, desc.size >> level);
 }
 
 Source LpvGeometry::sourceOf(const LWFrame& frame) const {
@@ -78,12 +78,13 @@ void LpvGeometry::check(const LWFrame& frame) const {
 void LpvGeometry::forget() {
     triangles_.forget();
     hostSurfels_.forget();
-    if (blocking_) blocking_->forget();
+    for (LpvBlocking& blocking : blocking_) blocking.forget();
 }
 
 void LpvGeometry::import(Executor& executor, const LWFrame& frame, const RsmInput& rsms) {
     const Source source = sourceOf(frame);
-    if (source != source_ && blocking_) blocking_->forget();  // revisions count within a source
+    if (source != source_)  // revisions count within a source
+        for (LpvBlocking& blocking : blocking_) blocking.forget();
     source_ = source;
     if (source == Source::triangles) {
         triangles_.import(executor, frame.geometry);
@@ -112,14 +113,14 @@ void LpvGeometry::importScreen(Executor& executor, const LWFrame& frame, const R
     }
 }
 
-std::optional<LpvBlockers> LpvGeometry::record(Executor& executor, const Buffer& place) {
-    if (!blocking_) return std::nullopt;
+std::optional<LpvBlockers> LpvGeometry::record(Executor& executor, const Buffer& place, std::uint32_t level) {
+    if (blocking_.empty()) return std::nullopt;
     const SurfelSet set = source_ == Source::screen    ? screen_.surfels()
                           : source_ == Source::surfels ? hostSurfels_.surfels()
                                                        : sampling_->surfels();
     const std::vector<SurfelRange> all = {{0, set.count}};
-    blocking_->record(executor, set, source_ == Source::screen ? views_ : all, place);
-    return blocking_->blockers();
+    blocking_[level].record(executor, set, source_ == Source::screen ? views_ : all, place);
+    return blocking_[level].blockers();
 }
 
 std::vector<LWChoice> LpvGeometry::choices(const LWFrame& frame) const {
@@ -144,18 +145,21 @@ void LpvGeometry::report(Report& report) const {
         report.counts.push_back({"surfels", sampling_->surfels().count});
     }
     report.counts.push_back({"surfels_outside", 0});
-    if (blocking_->state())
-        report.read(device_, "surfels_outside", blocking_->state(), offsetof(LwLpvBlockers, surfelsOutside));
+    if (blocking_.front().state())
+        report.read(device_, "surfels_outside", blocking_.front().state(), offsetof(LwLpvBlockers, surfelsOutside));
 }
 
 std::uint64_t LpvGeometry::bytes() const {
-    return triangles_.bytes() + hostSurfels_.bytes() + screen_.bytes() + (sampling_ ? sampling_->bytes() : 0) +
-           (blocking_ ? blocking_->bytes() : 0);
+    std::uint64_t total = triangles_.bytes() + hostSurfels_.bytes() + screen_.bytes() + (sampling_ ? sampling_->bytes() : 0);
+    for (const LpvBlocking& blocking : blocking_) total += blocking.bytes();
+    return total;
 }
 
-std::uint64_t LpvGeometry::estimateBytes(const LWLpvDesc& desc, const FrameShape& shape) {
+std::uint64_t LpvGeometry::estimateBytes(const LWLpvDesc& desc, const FrameShape& shape, std::uint32_t levels) {
     const Source source = chosenSource(desc.geometryVolume, shape.triangles, shape.surfels);
-    std::uint64_t total = source == Source::none ? 0 : LpvBlocking::estimateBytes(desc.size);
+    std::uint64_t total = 0;
+    for (std::uint32_t level = 0; source != Source::none && level < levels; ++level)
+        total += LpvBlocking::estimateBytes(desc.size >> level);
     if (source == Source::triangles)
         total += GeometryInput::estimateBytes(shape.triangles) +
                  SurfelSampling::estimateBytes(shape.triangles, sampledCount(desc.size));

@@ -20,21 +20,22 @@ public:
     // Where a frame's blockers come from.
     enum class Source { none, triangles, surfels, screen };
 
-    LpvGeometry(Device& device, const LWLpvDesc& desc);
+    // levels: of grids, each with half as many cells a side as the one before, that light is blocked in.
+    LpvGeometry(Device& device, const LWLpvDesc& desc, std::uint32_t levels = 1);
 
     // Throws what import() would say of this frame, whose RSMs are RsmInput's to check.
     void check(const LWFrame& frame) const;
     void import(Executor& executor, const LWFrame& frame, const RsmInput& rsms);
     // After commands failed on the device: the next import() and record() do all anew.
     void forget();
-    // What blocks in the grid that lies at `place`; none where the parameter is off.
-    std::optional<LpvBlockers> record(Executor& executor, const Buffer& place);
+    // What blocks in a level's grid, which lies at `place`; none where the parameter is off.
+    std::optional<LpvBlockers> record(Executor& executor, const Buffer& place, std::uint32_t level = 0);
 
     // What of the frame's geometry and views is used, and what is not.
     std::vector<LWChoice> choices(const LWFrame& frame) const;
     void report(Report& report) const;
     std::uint64_t bytes() const;
-    static std::uint64_t estimateBytes(const LWLpvDesc& desc, const FrameShape& shape);
+    static std::uint64_t estimateBytes(const LWLpvDesc& desc, const FrameShape& shape, std::uint32_t levels = 1);
 
 private:
     Source sourceOf(const LWFrame& frame) const;
@@ -47,7 +48,7 @@ private:
     SurfelInput hostSurfels_;
     ScreenSurfels screen_;
     std::optional<SurfelSampling> sampling_;
-    std::optional<LpvBlocking> blocking_;
+    std::vector<LpvBlocking> blocking_;  // of each level; none where nothing blocks
     std::vector<SurfelRange> views_;  // of what the screen shows
 };
 

@@ -12,7 +12,7 @@ constexpr double kSizeValues[] = {16, 32, 64, 128};
 constexpr double kSizeSweep[] = {16, 32, 64};
 constexpr double kStepSweep[] = {0, 8, 16, 32};
 constexpr const char* kVolumeNames[] = {"off", "auto", "triangles", "surfels", "screen", nullptr};
-constexpr const char* kTransports[] = {"propagate", "sweep", nullptr};
+constexpr const char* kTransports[] = {"propagate", "sweep", "coarse_to_fine", nullptr};
 constexpr double kDirectionValues[] = {24, 48, 96, 216, 384, 864, 1536};
 constexpr double kFrameValues[] = {1, 2, 4, 6, 8, 12, 24};
 constexpr const char* kResolutionNames[] = {"full", "half", nullptr};
@@ -35,7 +35,7 @@ const std::vector<LWParameter>& lpvParameters() {
               kSizeSweep),
         swept(parameter("steps",
                         "of propagation, each as far as the next cell; 0: twice the size. Time grows with it, range with its "
-                        "square root",
+                        "square root. coarse_to_fine: on each grid; 0: 4, and 32 on the coarsest",
                         LW_PARAMETER_UINT, offsetof(LWLpvDesc, steps), 0, 1024, 0),
               kStepSweep),
         parameter("auto_error",
@@ -58,8 +58,8 @@ const std::vector<LWParameter>& lpvParameters() {
                   LW_PARAMETER_BOOL, offsetof(LWLpvDesc, damping), 0, 1, 0),
         choosing(parameter("transport",
                            "propagate: from cell to cell; sweep: straight, in a fixed set of directions, stopped by surfaces, to 64 cells "
-                           "a side",
-                           LW_PARAMETER_ENUM, offsetof(LWLpvDesc, transport), 0, 1, 0),
+                           "a side; coarse_to_fine: from cell to cell on a pyramid of grids, a few steps on each",
+                           LW_PARAMETER_ENUM, offsetof(LWLpvDesc, transport), 0, 2, 0),
                  kTransports),
         allowing(parameter("directions",
                            "of sweeps: few make beams of small lights, 6 (size / 4)^2 and more do not; time grows with their number",
