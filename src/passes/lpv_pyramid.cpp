@@ -24,7 +24,7 @@ std::uint32_t LpvPyramid::levelsOf(std::uint32_t size) {
 
 std::uint32_t LpvPyramid::stepsOn(std::uint32_t level, std::uint32_t size, std::uint32_t steps) {
     if (steps > 0) return steps;
-    return level + 1 == levelsOf(size) ? 2 * (size >> level) : kFewSteps;
+    return level + 1 == levelsOf(size) ? kCoarsestSteps : kFewSteps;
 }
 
 LpvPyramid::LpvPyramid(Device& device, std::uint32_t size, std::uint32_t steps)

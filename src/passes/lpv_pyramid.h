@@ -17,8 +17,9 @@ public:
     static constexpr std::uint32_t kCoarsest = 16;
     static std::uint32_t levelsOf(std::uint32_t size);
 
-    // size: of the finest grid. steps: on each grid; 0: kFewSteps, and on the coarsest twice its size.
-    static constexpr std::uint32_t kFewSteps = 4;
+    // size: of the finest grid. steps: on each grid; 0: kFewSteps, and on the coarsest, where all that is left must cross the grid and
+    // a step costs least, kCoarsestSteps: light spreads by the square root of them, 11 of its 16 cells. Fewer: the far side is dark.
+    static constexpr std::uint32_t kFewSteps = 4, kCoarsestSteps = 128;
     LpvPyramid(Device& device, std::uint32_t size, std::uint32_t steps);
 
     // What blocks in a level's grid, which lies at `place`; 0: the finest.

@@ -35,7 +35,7 @@ const std::vector<LWParameter>& lpvParameters() {
               kSizeSweep),
         swept(parameter("steps",
                         "of propagation, each as far as the next cell; 0: twice the size. Time grows with it, range with its "
-                        "square root. coarse_to_fine: on each grid; 0: 4, and 32 on the coarsest",
+                        "square root. coarse_to_fine: on each grid; 0: 4, and 128 on the coarsest",
                         LW_PARAMETER_UINT, offsetof(LWLpvDesc, steps), 0, 1024, 0),
               kStepSweep),
         parameter("auto_error",

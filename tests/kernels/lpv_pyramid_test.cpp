@@ -99,7 +99,7 @@ TEST_CASE("a pyramid's grids carry light as faces one by one do, at both widths"
     KernelRig rig(16);
     LpvPropagation plain(rig.device(), 16);
     const Guarded injected = rig.upload(small.laidOut());
-    const Buffer& light = plain.record(rig.executor(), injected, 32);
+    const Buffer& light = plain.record(rig.executor(), injected, LpvPyramid::kCoarsestSteps);
     rig.device().finish();
     CHECK(bitDifference(carried(16, small, 0).values, LpvCells::of(light, 16).values) == "");
 }

@@ -81,7 +81,7 @@ TEST_CASE("coarse to fine compiles nothing after lwPrewarm, and takes the memory
     const LWFrame frame = frameOf(lights, &room.geometry);
     technique.update(frame);
     technique.render(view, scene.gbuffer);
-    CHECK(technique.count("steps") == 4 + 32);
+    CHECK(technique.count("steps") == 4 + 128);
     CHECK(reasonOf(technique, "auto_error") != "");
     LWViewDesc size{};
     size.structSize = sizeof size;
