@@ -48,7 +48,7 @@ def printed(options):
 
 
 def plane(rows):
-    lines = ["| | " + " | ".join(f"facing, cell {cell}" for cell in CELLS) + " | away, cell 8 |", "| --- | " + "---: | " * 4]
+    lines = ["| | " + " | ".join(f"facing, cell {cell}" for cell in CELLS) + " | away, cell 8 |", "| --- |" + " ---: |" * 4]
     titles = {"endless": "endless, in double, {} steps", "propagate": "`propagate`, {} steps",
               "coarse_to_fine": "`coarse_to_fine`", "sweep": "`sweep`, {} directions", "truth": "truth of the square"}
     order = list(titles)
@@ -64,7 +64,7 @@ def short(value):
 
 
 def boxes(rows):
-    lines = ["| | cells | ms | " + " | ".join(BOXES) + " | in the wall's shadow |", "| --- | ---: | ---: | " + "---: | " * 4]
+    lines = ["| | cells | ms | " + " | ".join(BOXES) + " | in the wall's shadow |", "| --- |" + " ---: |" * 6]
     methods = list(dict.fromkeys(r["method"] for r in rows))
     for method in methods:
         for size in sorted({r["size"] for r in rows}):
@@ -73,7 +73,7 @@ def boxes(rows):
             title = f"`{name}`" + (f", {count} " + ("directions" if name == "sweep" else "steps") if count else "")
             times = sorted(of[box]["ms"] for box in BOXES)
             wall = of["wall"]
-            shadow = f"{wall['shadow'] * wall['ft'] / wall['ff'] / wall['mean']:.4f}" if wall["ff"] > 1e-24 else "dark"
+            shadow = f"{wall['shadow'] * wall['ft'] / wall['ff'] / wall['mean']:.2g}" if wall["ff"] > 1e-24 else "dark"
             lines.append(f"| {title} | {size} | {times[1]:.1f} | " + " | ".join(error(of[box]) for box in BOXES) + f" | {shadow} |")
     return lines
 
