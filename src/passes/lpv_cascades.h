@@ -13,6 +13,14 @@ struct LpvLayer {
     std::uint32_t index = 0, count = 1;
 };
 
+// From the coarsest of `count` grids on, each going over what the coarser ones have written. Validity, without light, is the
+// coarsest one's alone.
+template <class Record>
+void eachLayer(std::uint32_t count, bool hasLight, Record record) {
+    for (std::uint32_t index = count; index-- > 0;)
+        if (hasLight || index + 1 == count) record(LpvLayer{index, count});
+}
+
 // Two grids of `size` cells a side: cells half as large in the fine one.
 struct LpvNested {
     const Buffer &fine, &coarse;  // LwLpvPlace

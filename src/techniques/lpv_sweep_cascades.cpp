@@ -50,20 +50,16 @@ void LpvSweepCascades::recordPart(Executor& executor, std::size_t c, const LpvSw
 
 void LpvSweepCascades::recordGather(Executor& executor, const Planes& position, const Planes& normal, const Planes& irradiance,
                                     const Planes& validity, const Buffer& counts) {
-    const auto count = std::uint32_t(sweeps_.size());
-    for (std::uint32_t c = count; c-- > 0;) {
-        if (c + 1 < count && !irradiance) break;  // validity is the coarsest grid's
-        sweeps_[c]->recordGather(executor, position, normal, irradiance, validity, counts, &places_.table(), {c, count});
-    }
+    eachLayer(desc_.cascades, bool(irradiance), [&](LpvLayer layer) {
+        sweeps_[layer.index]->recordGather(executor, position, normal, irradiance, validity, counts, &places_.table(), layer);
+    });
 }
 
 void LpvSweepCascades::recordHarmonics(Executor& executor, const Planes& position, const Planes& normal, const Harmonics& harmonics,
                                        const Planes& validity, const Buffer& counts) {
-    const auto count = std::uint32_t(sweeps_.size());
-    for (std::uint32_t c = count; c-- > 0;) {
-        if (c + 1 < count && !harmonics) break;  // validity is the coarsest grid's
-        sweeps_[c]->recordHarmonics(executor, position, normal, harmonics, validity, counts, &places_.table(), {c, count});
-    }
+    eachLayer(desc_.cascades, bool(harmonics), [&](LpvLayer layer) {
+        sweeps_[layer.index]->recordHarmonics(executor, position, normal, harmonics, validity, counts, &places_.table(), layer);
+    });
 }
 
 std::vector<LWChoice> LpvSweepCascades::choices(const LWFrame& frame, double side) const {
