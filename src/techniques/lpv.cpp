@@ -1,6 +1,7 @@
 // Frame part, report and registration; the table of parameters is lpv_parameters.cpp's.
 #include "techniques/lpv.h"
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -19,6 +20,9 @@
 
 namespace lightwell {
 namespace {
+
+// One grid within another has all kernels of many, which take up to six times a grid's memory.
+constexpr std::uint32_t kPrewarmedCascades = 2;
 
 bool isHalf(const LWLpvDesc& desc) { return desc.resolution == LW_RESOLUTION_HALF; }
 
@@ -114,6 +118,7 @@ private:
     // Frames may bring all of the sources or none, and `auto` takes the first there is.
     void prewarmSteps(Executor& executor) {
         LWLpvDesc desc = desc_;
+        desc.cascades = std::min(desc.cascades, kPrewarmedCascades);
         desc.steps = desc.steps == 1 ? 1 : 2;
         for (int source = LW_GEOMETRY_VOLUME_TRIANGLES; source <= LW_GEOMETRY_VOLUME_SCREEN; ++source) {
             if (desc_.geometryVolume == LW_GEOMETRY_VOLUME_AUTO) desc.geometryVolume = LWGeometryVolume(source);
@@ -128,6 +133,7 @@ private:
     void prewarmSweep(Executor& executor) {
         LWLpvDesc desc = desc_;
         desc.size = 16;  // the same kernels, in less memory
+        desc.cascades = std::min(desc.cascades, kPrewarmedCascades);
         desc.directions = 24;
         for (int hidden = 0; hidden < kLpvBlockerKinds; ++hidden) {
             LpvTechnique twin(device_, desc, hidden);
