@@ -38,7 +38,8 @@ __kernel void lpv_progress_decide(__global const float2* sums, int size, int ste
     for (int colour = 0; colour < LW_LPV_COLOURS; ++colour) {
         float2 sum = (float2)(0.0f);
         for (int z = 0; z < size; ++z) sum += sums[colour * size + z];
-        if (sum.y > 0.0f) moving = fmax(moving, fabs(sum.x) / sum.y);
+        // Of sums beyond float's range nothing is known: no step is left out.
+        if (sum.y > 0.0f) moving = fmax(moving, sum.y < INFINITY ? fabs(sum.x) / sum.y : 1.0f);
     }
     progress->steps = steps;
     progress->moving = moving;

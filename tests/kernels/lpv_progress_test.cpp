@@ -131,3 +131,11 @@ TEST_CASE("a target is a share: light's unit does not count, and no light is don
     CHECK(dark.state.moving == 0.0f);
     CHECK(dark.cells.sum(0) == 0.0);
 }
+
+TEST_CASE("sums beyond float's range leave out no step", "[lpv_propagation]") {
+    LpvCells cells(kSize);
+    for (int i = 0; i < kSize; ++i) cells.at(0, i, 8, 8) = 1e38f;
+    const Ended ended = until(16, cells, 24, 0.4f);
+    CHECK(ended.state.steps == 24);
+    CHECK(ended.state.done == 0);
+}
