@@ -53,21 +53,18 @@ void LpvStepCascades::recordField(Executor& executor, const LWFrame& frame, cons
 
 void LpvStepCascades::recordGather(Executor& executor, const Planes& position, const Planes& normal, const Planes& irradiance,
                                    const Planes& validity, const Buffer& counts) {
-    const auto count = std::uint32_t(levels_.size());
-    for (std::uint32_t c = count; c-- > 0;) {
-        if (c + 1 < count && !irradiance) break;  // validity is the coarsest grid's
-        levels_[c]->all.recordGather(executor, position, normal, places_.table(), calibration_, desc_.damping != 0, irradiance,
-                                     validity, counts, {c, count});
-    }
+    eachLayer(desc_.cascades, bool(irradiance), [&](LpvLayer layer) {
+        levels_[layer.index]->all.recordGather(executor, position, normal, places_.table(), calibration_, desc_.damping != 0, irradiance,
+                                               validity, counts, layer);
+    });
 }
 
 void LpvStepCascades::recordHarmonics(Executor& executor, const Planes& position, const Planes& normal, const Harmonics& harmonics,
-                                       const Planes& validity, const Buffer& counts) {
-    const auto count = std::uint32_t(levels_.size());
-    for (std::uint32_t c = count; c-- > 0;) {
-        if (c + 1 < count && !harmonics) break;  // validity is the coarsest grid's
-        levels_[c]->all.recordHarmonics(executor, position, normal, places_.table(), calibration_, harmonics, validity, counts, {c, count});
-    }
+                                      const Planes& validity, const Buffer& counts) {
+    eachLayer(desc_.cascades, bool(harmonics), [&](LpvLayer layer) {
+        levels_[layer.index]->all.recordHarmonics(executor, position, normal, places_.table(), calibration_, harmonics, validity, counts,
+                                                  layer);
+    });
 }
 
 std::vector<LWChoice> LpvStepCascades::choices(const LWFrame& frame, double) const {
@@ -78,7 +75,8 @@ std::vector<LWChoice> LpvStepCascades::choices(const LWFrame& frame, double) con
 
 void LpvStepCascades::report(Report& report) const {
     geometry_.report(report);
-    report.counts.push_back({"steps", desc_.autoError > 0.0f ? 0 : LpvStepVolume::stepsOf(desc_)});
+    // Of all light that is carried: all lights' in each grid, and that of lights outside of the next finer one.
+    report.counts.push_back({"steps", desc_.autoError > 0.0f ? 0 : (2 * desc_.cascades - 1) * LpvStepVolume::stepsOf(desc_)});
     for (const std::unique_ptr<Level>& level : levels_)
         for (const std::optional<LpvProgress>* progress : {&level->allProgress, &level->outerProgress})
             if (*progress && level->propagated) LpvStepVolume::reportProgress(device_, **progress, report);
@@ -116,8 +114,8 @@ std::uint64_t LpvStepCascades::estimateBytes(const LWLpvDesc& desc, const FrameS
     const std::uint64_t level = LpvGrid::estimateInjectBytes(desc.size) +
                                 LpvPropagation::estimateBytes(desc.size, LpvStepVolume::stepsOf(desc)) + LpvRead::estimateBytes(desc.size);
     const std::uint64_t progress = desc.autoError > 0.0f ? LpvProgress::estimateBytes(desc.size) : 0;
-    return desc.cascades * level + (2 * desc.cascades - 1) * progress + (desc.cascades - 1) * LpvRead::estimateBytes(desc.size) + LpvPlaces::estimateBytes(desc, shape) +
-           LpvGeometry::estimateBytes(desc, shape);
+    return desc.cascades * level + (2 * desc.cascades - 1) * progress + (desc.cascades - 1) * LpvRead::estimateBytes(desc.size) +
+           LpvPlaces::estimateBytes(desc, shape) + LpvGeometry::estimateBytes(desc, shape);
 }
 
 }  // namespace lightwell
