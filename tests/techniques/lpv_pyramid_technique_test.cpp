@@ -8,6 +8,7 @@
 #include "support/scoped_api.h"
 
 using namespace lightwell::test;
+using Catch::Matchers::Contains;
 
 namespace {
 
@@ -95,4 +96,23 @@ TEST_CASE("coarse to fine compiles nothing after lwPrewarm, and takes the memory
     technique.render(view, scene.gbuffer);
     CHECK(device.info().programsBuilt == before.programsBuilt);
     CHECK(device.info().kernelsSpecialised == before.kernelsSpecialised);
+}
+
+TEST_CASE("coarse to fine has one grid to read: cascades are refused, also by estimates", "[lpv]") {
+    TestDevice device(16);
+    LWLpvDesc desc = descOf(32);
+    desc.cascades = 3;
+    LWTechnique none = nullptr;
+    CHECK(lwCreateLpv(device, &desc, &none) == LW_ERROR_INVALID_ARGUMENT);
+    CHECK_THAT(lastError(device), Contains("cascades") && Contains("coarse_to_fine") && Contains("3"));
+    LWViewDesc size{};
+    size.structSize = sizeof size;
+    size.maxWidth = kWidth;
+    size.maxHeight = kHeight;
+    const LWFrame frame = frameOf({}, nullptr);
+    std::uint64_t estimate = 0;
+    CHECK(lwEstimateMemory(device, "lpv", &desc, &size, 1024, &estimate) == LW_ERROR_INVALID_ARGUMENT);
+    CHECK_THAT(lastError(device), Contains("cascades") && Contains("coarse_to_fine"));
+    CHECK(lwEstimateFrameMemory(device, "lpv", &desc, &size, &frame, &estimate) == LW_ERROR_INVALID_ARGUMENT);
+    CHECK_THAT(lastError(device), Contains("cascades") && Contains("coarse_to_fine"));
 }
