@@ -606,7 +606,7 @@ typedef struct LWLpvDesc {
     float extent;     /**< length of the grid's sides, to 1e9; 0: fitted to the surfaces that RSMs see (lit or not), authored
                            VPLs and the vertices of the frame's triangles. A fitted grid stays from frame to frame as long as
                            they lie in it and fill three quarters of it; LWFrame::reset fits anew */
-    float center[3];  /**< of the grid where `extent` is above 0 */
+    float center[3];  /**< of the grid where `extent` is above 0 and the frame has no focus */
     LWGeometryVolume geometryVolume; /**< what blocks light between cells, of propagation; sweeps choose as LWLpvTransport says */
     uint32_t damping; /**< 1: light that grows weaker away from a surface is taken for light from behind it, and damped */
     LWLpvTransport transport;
@@ -614,7 +614,8 @@ typedef struct LWLpvDesc {
     uint32_t bounces;    /**< of sweeps: 1 .. 8, from the second on by what the triangles or surfels send on */
     uint32_t frames;     /**< that each bounce of a sweep is spread over: 1, 2, 4, 6, 8, 12, 24; the last result shows meanwhile */
     LWResolution resolution; /**< HALF: light is read on every second pixel and row, then up-sampled; validity of every pixel */
-    uint32_t cascades;   /**< 1 .. 6 grids of `size` cells, each half as large as the one around it, `extent` the largest one's */
+    uint32_t cascades;   /**< 1 .. 6 grids of `size` cells, each half as large as the one around it, `extent` the largest one's;
+                              the finer ones lie around LWFrame::focus, else in the middle, at whole cells of their own */
     float autoError;     /**< of propagation, above 0: `steps` is the most, and light that is still on its way is dropped once it
                               is less than this share of all; 0: always all steps; 0 .. 1 */
 } LWLpvDesc;

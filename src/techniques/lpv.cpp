@@ -54,6 +54,7 @@ public:
         place(frame, failed);
         volume_->record(executor, frame, rsms_, placement_);
         choices_ = unusedInputs(frame);
+        if (desc_.extent > 0.0f && frame.focus) choices_.push_back({"center", "not used: the grid lies around frame.focus"});
         const double side = desc_.extent > 0.0f ? double(desc_.extent) : double(box_.longest());
         for (const LWChoice& choice : volume_->choices(frame, side)) choices_.push_back(choice);
         isCut_ = false;

@@ -20,7 +20,7 @@ constexpr const char* kResolutionNames[] = {"full", "half", nullptr};
 constexpr double kResolutionSweep[] = {LW_RESOLUTION_FULL, LW_RESOLUTION_HALF};
 
 LWParameter centre(const char* name, std::size_t axis) {
-    return parameter(name, "of the grid; with an extent only", LW_PARAMETER_FLOAT,
+    return parameter(name, "of the grid; with an extent, in frames without a focus", LW_PARAMETER_FLOAT,
                      offsetof(LWLpvDesc, center) + axis * sizeof(float), -1e9, 1e9, 0);
 }
 
@@ -39,7 +39,7 @@ const std::vector<LWParameter>& lpvParameters() {
                         "square root",
                         LW_PARAMETER_UINT, offsetof(LWLpvDesc, steps), 0, 1024, 0),
               kStepSweep),
-        parameter("extent", "length of the grid's sides, in units of length; 0: fitted to what the lights and the triangles reach",
+        parameter("extent", "length of the (coarsest) grid's sides, in units of length; 0: fitted to what the lights and the triangles reach",
                   LW_PARAMETER_FLOAT, offsetof(LWLpvDesc, extent), 0, 1e9, 0),
         centre("center_x", 0),
         centre("center_y", 1),

@@ -1,0 +1,108 @@
+// Triangles as samples on a grid's lattice: each of a sheet's once.
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "shared/geometry_types.h"
+#include "shared/lpv_sweep_types.h"
+#include "support/lpv_rig.h"
+
+using namespace lightwell;
+using namespace lightwell::test;
+
+namespace {
+
+constexpr int kSize = 16;
+constexpr std::size_t kCells = std::size_t(kSize) * kSize * kSize;
+
+LwLpvPlace placeOf(double x, double y, double z, double cell) {
+    LwLpvPlace place{};
+    place.origin = {{float(x), float(y), float(z), float(1.0 / cell)}};
+    place.cell = {{float(cell), 1.0f, 1.0f, 0.0f}};
+    return place;
+}
+
+// Cells of 1/2.
+const LwLpvPlace kGrid = placeOf(-1.0, 2.0, 0.5, 0.5);
+
+// A height over (x, y) of the grid of cells of 1/2 from (-1, 2, 0.5) on, as triangles over a square mesh; no steeper than 1.
+// Vertices that are not moved lie on samples of the lattice.
+struct Sheet {
+    std::vector<float> planes;  // of GeometryInput
+    int count = 0, stride = 0;
+
+    Sheet(int mesh, bool moved) {
+        std::mt19937 random(31);
+        std::uniform_real_distribution<double> unit(-1.0, 1.0);
+        std::vector<std::array<double, 3>> vertices;
+        for (int j = 0; j <= mesh; ++j)
+            for (int i = 0; i <= mesh; ++i) {
+                const bool isEdge = i == 0 || j == 0 || i == mesh || j == mesh;
+                const double shift = moved && !isEdge ? 0.2 : 0.0;
+                // 66 samples to a side: one more than the grid's 64 all around.
+                const double u = -0.5 + 66.0 * (i + shift * unit(random)) / mesh, v = -0.5 + 66.0 * (j + shift * unit(random)) / mesh;
+                vertices.push_back({-1.0 + u / 8.0, 2.0 + v / 8.0, 0.5 + 4.0 + 0.8 * std::sin(0.5 * u / 8.0) + 0.4 * std::cos(v / 8.0)});
+            }
+        std::vector<std::array<std::size_t, 3>> triangles;
+        for (int j = 0; j < mesh; ++j)
+            for (int i = 0; i < mesh; ++i) {
+                const auto at = [&](int di, int dj) { return std::size_t((j + dj) * (mesh + 1) + i + di); };
+                triangles.push_back({at(0, 0), at(1, 0), at(1, 1)});
+                // Some turned round: of either winding an edge's samples are one triangle's.
+                if ((i + j) % 2) triangles.push_back({at(0, 0), at(0, 1), at(1, 1)});
+                else triangles.push_back({at(0, 0), at(1, 1), at(0, 1)});
+            }
+        count = int(triangles.size());
+        stride = (count + 15) / 16 * 16;
+        planes.resize(std::size_t(stride) * LW_TRIANGLE_PLANES);
+        for (std::size_t t = 0; t < triangles.size(); ++t)
+            for (std::size_t k = 0; k < 3; ++k)
+                for (std::size_t a = 0; a < 3; ++a) planes[(3 * k + a) * std::size_t(stride) + t] = float(vertices[triangles[t][k]][a]);
+    }
+};
+
+}  // namespace
+
+// In all of the grid's 64 x 64 columns of samples, whatever the triangles, 16 of which fill a cell's side.
+TEST_CASE("a sheet of triangles has each sample of a grid's lattice once, also those on edges", "[lpv_cascades]") {
+    KernelRig rig(GENERATE(1u, 16u));
+    const bool moved = GENERATE(false, true);
+    const int mesh = GENERATE(2, 11, 66, 150);
+    const Sheet sheet(mesh, moved);
+    const std::size_t words = (2 * LW_SWEEP_BLOCKS + 1) * kCells;
+    const Guarded triangles = rig.upload(sheet.planes), place = rig.upload(std::vector<LwLpvPlace>{kGrid}),
+                  sums = rig.upload(std::vector<cl_uint>(words));
+    LwSweepCover stale{};
+    stale.stale = 1;
+    const Guarded state = rig.upload(std::vector<LwSweepCover>{stale});
+    const std::size_t padded = std::size_t(sheet.stride);
+    rig.run("cover", rig.kernel("lpv_sweep/lpv_sweep_cover", "lpv_sweep_cover_triangles"), {padded, 1}, {16, 1}, triangles,
+            cl_int(sheet.stride), cl_int(sheet.count), place, cl_int(kSize), state, sums);
+    const std::vector<cl_uint> found = rig.download<cl_uint>(sums);
+    std::vector<double> columns(std::size_t(kSize) * kSize);
+    for (std::size_t i = 0; i < kCells; ++i) {
+        const cl_uint* at = &found[2 * (LW_SWEEP_BLOCKS * i + LW_SWEEP_COVER)];
+        columns[i % columns.size()] += (double(at[0]) + 4294967296.0 * double(at[1])) / double(1 << LW_SWEEP_AREA_BITS);
+    }
+    INFO("mesh " << mesh << ", moved " << moved);
+    // Area lies half a cell behind its surface, which leans: a column's may be in the next one, the whole in none but its own.
+    double sum = 0.0;
+    for (const double c : columns) sum += c;
+    CHECK(sum > 0.98 * kSize * kSize);
+    CHECK(sum < 1.00001 * kSize * kSize);
+
+    const Guarded corners = rig.upload(std::vector<cl_uint>(2 * LW_LPV_BANDS * std::size_t(lpv_corners(kSize))));
+    LwLpvBlockers anew{};
+    anew.stale = 1;
+    const Guarded blockers = rig.upload(std::vector<LwLpvBlockers>{anew});
+    rig.run("block", rig.kernel("lpv_blocking/lpv_blocking", "lpv_blocking_triangles"), {padded, 1}, {16, 1}, triangles,
+            cl_int(sheet.stride), cl_int(sheet.count), place, cl_int(kSize), corners, blockers);
+    const std::vector<cl_uint> blocked = rig.download<cl_uint>(corners);
+    double straight = 0.0;  // along z, of whole areas: the columns' own
+    for (std::size_t i = 0; i < std::size_t(lpv_corners(kSize)); ++i) {
+        const cl_uint* at = &blocked[2 * (LW_LPV_BANDS * i + 3)];
+        const auto whole = std::int64_t(std::uint64_t(at[1]) << 32 | at[0]);
+        straight += double(whole) / 536870912.0 / std::sqrt(3.14159265358979323846 / 3.0);
+    }
+    CHECK(straight == Approx(double(kSize) * kSize).epsilon(1e-5));
+}
