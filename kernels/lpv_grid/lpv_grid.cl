@@ -284,7 +284,8 @@ __kernel void lpv_grid_resolve(__global const uint* sums, __global const LwLpvPl
     const int y = line % size, z = line / size, last = size - 1;
     const float inX = (float)((x == 0) - (x == last)), inY = (float)((y == 0) - (y == last)), inZ = (float)((z == 0) - (z == last));
     // Of each band: how often the lobes have it.
-    const float bands[LW_LPV_BANDS] = {LPV_LOBE0 * (fabs(inX) + fabs(inY) + fabs(inZ)), LPV_LOBE1 * inX, LPV_LOBE1 * inY, LPV_LOBE1 * inZ};
+    const float bands[LW_LPV_BANDS] = {LPV_LOBE0 * (fabs(inX) + fabs(inY) + fabs(inZ)), LPV_LOBE1 * inX, LPV_LOBE1 * inY,
+                                       LPV_LOBE1 * inZ};
     const float4 light = environment * (grid->cell.x * grid->cell.x);
     for (int p = 0; p < LW_LPV_PLANES; ++p) {
         const int c = p / LW_LPV_BANDS;

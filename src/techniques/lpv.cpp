@@ -29,7 +29,8 @@ bool isHalf(const LWLpvDesc& desc) { return desc.resolution == LW_RESOLUTION_HAL
 // Geometry and source views apart, which the volume speaks of.
 std::vector<LWChoice> unusedInputs(const LWFrame& frame) {
     std::vector<LWChoice> unused;
-    if (frame.blockerCount) unused.push_back({"frame.blockers", "not used: in technique lpv triangles, surfels or texels block light"});
+    if (frame.blockerCount)
+        unused.push_back({"frame.blockers", "not used: in technique lpv triangles, surfels or texels block light"});
     for (std::uint32_t l = 0; l < frame.lightCount; ++l)
         if (frame.lights[l].rsmCount == 0) {
             unused.push_back({"frame.lights", "some have no RSM: technique lpv makes no indirect light of those"});
@@ -41,8 +42,8 @@ std::vector<LWChoice> unusedInputs(const LWFrame& frame) {
 void checkEnvironment(const LWFrame& frame) {
     for (int c = 0; c < 3; ++c)
         if (frame.environment[c] > LW_LPV_LARGEST_ENVIRONMENT)
-            fail(LW_ERROR_INVALID_ARGUMENT, "frame.environment[", c, "]: expected a radiance of at most ", LW_LPV_LARGEST_ENVIRONMENT, ", got ",
-                 frame.environment[c]);
+            fail(LW_ERROR_INVALID_ARGUMENT, "frame.environment[", c, "]: expected a radiance of at most ",
+                 LW_LPV_LARGEST_ENVIRONMENT, ", got ", frame.environment[c]);
 }
 
 class LpvTechnique final : public Technique {

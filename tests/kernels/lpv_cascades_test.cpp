@@ -1,7 +1,6 @@
 // What a coarser grid brings into a finer one, against sums in double; where nested grids lie; which lights are whose.
 #include "passes/lpv_cascades.h"
 
-#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -17,8 +16,15 @@ namespace {
 constexpr int kSize = 16;
 constexpr std::size_t kCells = std::size_t(kSize) * kSize * kSize;
 
+LwLpvPlace placeOf(double x, double y, double z, double cell) {
+    LwLpvPlace place{};
+    place.origin = {{float(x), float(y), float(z), float(1.0 / cell)}};
+    place.cell = {{float(cell), 1.0f, 1.0f, 0.0f}};
+    return place;
+}
+
 // Cells of 1/2 and, within them, of 1/4.
-const LwLpvPlace kCoarse = gridAt(-1.0, 2.0, 0.5, 0.5), kFine = gridAt(0.75, 3.25, 4.5, 0.25);
+const LwLpvPlace kCoarse = placeOf(-1.0, 2.0, 0.5, 0.5), kFine = placeOf(0.75, 3.25, 4.5, 0.25);
 
 std::vector<float> randomCells(std::size_t floats, unsigned seed) {
     std::mt19937 random(seed);

@@ -1,4 +1,4 @@
-// How pixels blend nested grids (kernels/shared/lpv_layers.h), against a recursion in double.
+// Pixels between nested grids: even light, and a recursion in double.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -15,8 +15,15 @@ namespace {
 constexpr int kSize = 16;
 constexpr std::size_t kCells = std::size_t(kSize) * kSize * kSize;
 
+LwLpvPlace placeOf(double x, double y, double z, double cell) {
+    LwLpvPlace place{};
+    place.origin = {{float(x), float(y), float(z), float(1.0 / cell)}};
+    place.cell = {{float(cell), 1.0f, 1.0f, 0.0f}};
+    return place;
+}
+
 // Three grids about the origin, of cells of 1/4, 1/2 and 1.
-const LwLpvPlace kLayers[3] = {gridAt(-2, -2, -2, 0.25), gridAt(-4.25, -4, -3.75, 0.5), gridAt(-8, -8, -8, 1)};
+const LwLpvPlace kLayers[3] = {placeOf(-2, -2, -2, 0.25), placeOf(-4.25, -4, -3.75, 0.5), placeOf(-8, -8, -8, 1)};
 
 double weightOfCoarser(const LwLpvPlace& place, const double* p) {
     const double half = kSize / 2.0, w = kSize / 10.0;

@@ -1,9 +1,7 @@
-// Triangles as samples on a grid's own lattice (kernels/shared/lpv_raster.h).
+// Triangles as samples on a grid's lattice: each of a sheet's once.
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstdint>
-#include <random>
 
 #include "shared/geometry_types.h"
 #include "shared/lpv_sweep_types.h"
@@ -16,9 +14,18 @@ namespace {
 
 constexpr int kSize = 16;
 constexpr std::size_t kCells = std::size_t(kSize) * kSize * kSize;
-const LwLpvPlace kGrid = gridAt(-1.0, 2.0, 0.5, 0.5);
 
-// A height over (x, y) of the grid, as triangles over a square mesh; no steeper than 1.
+LwLpvPlace placeOf(double x, double y, double z, double cell) {
+    LwLpvPlace place{};
+    place.origin = {{float(x), float(y), float(z), float(1.0 / cell)}};
+    place.cell = {{float(cell), 1.0f, 1.0f, 0.0f}};
+    return place;
+}
+
+// Cells of 1/2.
+const LwLpvPlace kGrid = placeOf(-1.0, 2.0, 0.5, 0.5);
+
+// A height over (x, y) of the grid of cells of 1/2 from (-1, 2, 0.5) on, as triangles over a square mesh; no steeper than 1.
 // Vertices that are not moved lie on samples of the lattice.
 struct Sheet {
     std::vector<float> planes;  // of GeometryInput

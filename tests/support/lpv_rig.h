@@ -49,13 +49,6 @@ struct LpvCells {
     }
 };
 
-inline LwLpvPlace gridAt(double x, double y, double z, double cell) {
-    LwLpvPlace place{};
-    place.origin = {{float(x), float(y), float(z), float(1.0 / cell)}};
-    place.cell = {{float(cell), 1.0f, 1.0f, 0.0f}};
-    return place;
-}
-
 // Random light in all cells that are at least `margin` from the border.
 inline LpvCells randomLight(int size, int margin) {
     std::mt19937 random(7);

@@ -42,7 +42,8 @@ LWFrame frameOf(const std::vector<LWLight>& lights, const LWGeometry* geometry, 
 
 TEST_CASE("neither the unit of length nor that of light changes more than rounding", "[lpv]") {
     TestDevice device(16);
-    const LWLpvDesc desc = descOf(GENERATE(LW_LPV_TRANSPORT_PROPAGATE, LW_LPV_TRANSPORT_SWEEP), 2);
+    LWLpvDesc desc = descOf(GENERATE(LW_LPV_TRANSPORT_PROPAGATE, LW_LPV_TRANSPORT_SWEEP, LW_LPV_TRANSPORT_COARSE_TO_FINE), 2);
+    if (desc.transport == LW_LPV_TRANSPORT_COARSE_TO_FINE) desc.size = 32;  // two grids
     const auto at = [&](double scale, double exitance) {
         LitFloor floor(48, [&](double, double) { return exitance; }, scale);
         WallAndCeiling scene(kWidth, kHeight, scale);
@@ -66,7 +67,8 @@ TEST_CASE("neither the unit of length nor that of light changes more than roundi
 
 TEST_CASE("light that is beyond float's range is brought down, and counted", "[lpv]") {
     TestDevice device(GENERATE(1u, 16u));
-    const LWLpvDesc desc = descOf(GENERATE(LW_LPV_TRANSPORT_PROPAGATE, LW_LPV_TRANSPORT_SWEEP), 2);
+    LWLpvDesc desc = descOf(GENERATE(LW_LPV_TRANSPORT_PROPAGATE, LW_LPV_TRANSPORT_SWEEP, LW_LPV_TRANSPORT_COARSE_TO_FINE), 2);
+    if (desc.transport == LW_LPV_TRANSPORT_COARSE_TO_FINE) desc.size = 32;  // two grids
     const double scale = 1e-3;
     WallAndCeiling scene(kWidth, kHeight, scale);
     const RoomTriangles room(1.0, scale);
