@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "compute/device.h"
+#include "passes/lpv_specular.h"
 #include "passes/sweep_directions.h"
 #include "passes/vpl_list.h"
 #include "shared/lpv_sweep_types.h"
@@ -171,6 +172,7 @@ void LpvSweep::record(Executor& executor, const LpvSweepInput& input) {
             recordRelight(executor, input.surfels);
             recordResolve(executor, unitPlace_);
         }
+        if (nextGroup_ == 0 && input.specular) input.specular->recordPackSweep(executor, {sources_, sheets_, used_}, bounce_ > 0);
         recordGroups(executor, step);
         if (nextGroup_ == LW_SWEEP_GROUPS) recordBounce(executor);
     } while (all && bounce_ < options_.bounces);
@@ -179,6 +181,7 @@ void LpvSweep::record(Executor& executor, const LpvSweepInput& input) {
     isShown_ = true;
     executor.copy("lpv_sweep.place", place_.get(), shownPlace_.get(), 0, 0, sizeof(LwLpvPlace));
     if (options_.frames > 1) std::swap(totalCells_, shownCells_);
+    if (input.specular) input.specular->show(executor);
 }
 
 void LpvSweep::recordGather(Executor& executor, const Planes& position, const Planes& normal, const Planes& irradiance,

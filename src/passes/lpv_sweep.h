@@ -12,6 +12,8 @@
 
 namespace lightwell {
 
+class LpvSpecular;
+
 struct LpvSweepOptions {
     std::uint32_t size = 16;         // cells a side, a multiple of 16
     std::uint32_t directions = 384;  // see sweep_directions.h
@@ -28,6 +30,12 @@ struct LpvSweepInput {
     SurfelSet surfels;    // where it has none: the RSMs' texels
     float areaScale;      // of the surfels
     bool restart;         // nothing of the frames before is right any more
+    LpvSpecular* specular = nullptr;  // gets each bounce's light as well, and is told when to show it
+};
+
+// What surfaces send and cover in a bounce's cells, as lpv_sweep_resolve leaves it.
+struct LpvSweepSources {
+    const Buffer &sources, &sheets, &used;
 };
 
 class LpvSweep {
@@ -45,6 +53,7 @@ public:
     void recordGather(Executor& executor, const Planes& position, const Planes& normal, const Planes& irradiance,
                       const Planes& validity, const Buffer& counts);
 
+    const Buffer& shownPlace() const { return shownPlace_; }  // LwLpvPlace of what is gathered
     const Buffer& parts() const { return parts_; }      // of the last sweep, see lpv_sweep_types.h
     const Buffer& outside() const { return outside_; }  // a cl_uint: lights that no cell took
     std::uint64_t bytes() const;

@@ -42,7 +42,7 @@ public:
         place.cell.s[2] = std::ldexp(1.0f, shift - shift / 2);
         const Guarded placed = upload(std::vector<LwLpvPlace>{place});
         const Guarded authored = upload(lights.empty() ? std::vector<lw_vpl>(1) : lights);
-        pass.record(executor(), {rsms_, authored, std::uint32_t(lights.size()), placed, surfelsOf(discs), 1.0f, restart});
+        pass.record(executor(), {rsms_, authored, std::uint32_t(lights.size()), placed, surfelsOf(discs), 1.0f, restart, specular});
         device().finish();
     }
 
@@ -119,6 +119,7 @@ private:
 
 public:
     LpvSweep pass;
+    LpvSpecular* specular = nullptr;  // gets the light too
 
 private:
     double cell_;

@@ -1,0 +1,225 @@
+// Light that arrives at surfaces along their glossy lobes, by marching the cells of a light propagation volume (after Kaplanyan and
+// Dachsbacher 2010, who march the grid along the mirrored ray). Here in absolute units, through what surfaces in the cells send:
+// a cell's flux Phi, spread over its depth s, adds to a ray of direction r
+//   dL = I(-r) / s^3 dt,
+// and a wall of exitance M, whose cells have M s^2 each and are s / |n.r| deep along the ray, M / pi at any angle and distance.
+// docs/techniques/lpv_specular.md has the derivation.
+//
+// One sample a plane of cells across the axis that the ray runs along most, interpolated between four cells: between planes there is
+// nothing to interpolate, and a wall across the ray is in one plane or the next, whole. Then what closes the way to that plane's
+// nearest cell. A wall's light goes before what blocks behind it.
+//
+// A lobe is that of the GGX distribution of normals (Walter et al. 2007) for alpha = roughness^2, drawn at a fixed set of points and
+// weighted by n.l (Karis, Real Shading in Unreal Engine 4, 2013). Each ray widens to its share of directions, 1 / (rays * density)
+// (Krivanek and Colbert, Real-time Shading with Filtered Importance Sampling, 2008), which chooses the level of cells.
+#include "shared/input_limits.h"
+#include "shared/lpv_specular_types.h"
+#include "shared/lpv_types.h"
+#include "shared/surface.h"
+#include "shared/wide.h"
+
+// Points of the lobe: u / (1 - u) of u = (i + 1/2) / 8, cos and sin of 2 pi times i with its bits reversed, over 8 (Hammersley's).
+__constant float kTangents[LW_SPECULAR_RAYS] = {0.0666666667f, 0.2307692308f, 0.4545454545f, 0.7777777778f,
+                                                1.2857142857f, 2.2f,          4.3333333333f, 15.0f};
+__constant float kCosines[LW_SPECULAR_RAYS] = {1.0f, -1.0f, 0.0f, 0.0f, 0.7071067812f, -0.7071067812f, -0.7071067812f, 0.7071067812f};
+__constant float kSines[LW_SPECULAR_RAYS] = {0.0f, 0.0f, 1.0f, -1.0f, 0.7071067812f, -0.7071067812f, 0.7071067812f, -0.7071067812f};
+
+typedef struct {
+    __global const float16* cells;
+    int size, levels, hasFaces;
+    float4 environment;
+} specular_grid;
+
+LW_FN float closed_along(float16 cell, int axis) { return axis == 0 ? cell.s3 : axis == 1 ? cell.s7 : cell.sb; }
+
+// What surfaces of a cell send against direction d: all of one normal n Phi / pi max(0, -n.d), exactly; of several the mean normal's
+// share as if it were one, the rest evenly. (Two bands of harmonics would send 0.75 of a wall's light straight on.)
+LW_FN float4 sent_against(float16 cell, float dx, float dy, float dz) {
+    const float4 x = cell.s4567, y = cell.s89ab, z = cell.scdef;
+    const float4 length_ = sqrt(x * x + y * y + z * z);
+    return fmax(-(x * dx + y * dy + z * dz), 0.0f) + 0.25f * fmax(cell.s0123 - length_, 0.0f);
+}
+
+// Radiance along one ray that starts at `at`, in cells from the grid's corner, and widens by `tangent`.
+LW_FN float4 march(const specular_grid grid, const float* at, const float* d, float tangent) {
+    const float ax = fabs(d[0]), ay = fabs(d[1]), az = fabs(d[2]);
+    const int a = ax >= ay && ax >= az ? 0 : ay >= az ? 1 : 2, u = a == 0 ? 1 : 0, v = a == 2 ? 1 : 2;
+    const float most = (float)grid.size, slope = 1.0f / fabs(d[a]);
+    const int up = d[a] > 0.0f;
+    const float start = up ? at[a] : most - at[a], su = d[u] * slope, sv = d[v] * slope;
+    __global const float16* cells = grid.cells;
+    int n = grid.size, level = 0, k = clamp((int)start, 0, n - 1), lu = clamp((int)at[u], 0, n - 1),
+        lv = clamp((int)at[v], 0, n - 1);
+    float scale = 1.0f, through = 1.0f;
+    float4 light = (float4)(0.0f);
+    const int steps[3] = {1, grid.size, grid.size * grid.size};
+    float16 last = cells[(up ? k : n - 1 - k) * steps[a] + lu * steps[u] + lv * steps[v]];
+    int isEntered = (float)k + 0.5f < start;
+    for (k += isEntered; k < n; ++k, isEntered = 1) {
+        while (level + 1 < grid.levels && (k & 1) == 0 && tangent * ((float)k * scale - start) * slope >= scale) {
+            cells += n * n * n;
+            n /= 2;
+            k /= 2;
+            lu /= 2;
+            lv /= 2;
+            scale *= 2.0f;
+            ++level;
+        }
+        const float along = ((float)k + 0.5f) * scale - start;
+        const float pu = at[u] + su * along, pv = at[v] + sv * along;
+        if (!(pu >= 0.0f && pu <= most && pv >= 0.0f && pv <= most)) break;
+        const float border = (float)(n - 1), xu = clamp(pu / scale - 0.5f, 0.0f, border), xv = clamp(pv / scale - 0.5f, 0.0f, border);
+        const int iu = min((int)xu, n - 2), iv = min((int)xv, n - 2);
+        const float fu = xu - (float)iu, fv = xv - (float)iv;
+        const int toU = u == 0 ? 1 : n, toV = v == 2 ? n * n : n, toA = a == 0 ? 1 : a == 1 ? n : n * n;
+        __global const float16* corner = cells + (up ? k : n - 1 - k) * toA + iu * toU + iv * toV;
+        const float16 c00 = corner[0], c10 = corner[toU], c01 = corner[toV], c11 = corner[toU + toV];
+        const float16 mean = (1.0f - fv) * ((1.0f - fu) * c00 + fu * c10) + fv * ((1.0f - fu) * c01 + fu * c11);
+        if (fmax(fmax(mean.s0, mean.s1), mean.s2) > 0.0f) light += through * scale * slope * sent_against(mean, d[0], d[1], d[2]);
+        const int farU = fu >= 0.5f, farV = fv >= 0.5f, nu = iu + farU, nv = iv + farV;
+        const float16 own = farV ? (farU ? c11 : c01) : (farU ? c10 : c00);
+        // A cell's face is its lower one: upwards the new cell's, downwards that of the cell before.
+        if (isEntered) through *= 1.0f - closed_along(grid.hasFaces && !up ? last : own, a);
+        if (nu != lu) through *= 1.0f - closed_along(grid.hasFaces && nu < lu ? last : own, u);
+        if (nv != lv) through *= 1.0f - closed_along(grid.hasFaces && nv < lv ? last : own, v);
+        if (through < LW_SPECULAR_LEAST) return light;
+        last = own;
+        lu = nu;
+        lv = nv;
+    }
+    return light + through * grid.environment;
+}
+
+// The mean over the lobe. n, v: unit; v . n > 0.
+LW_FN float4 lobe_mean(const specular_grid grid, const float* at, const float* n, const float* v, float roughness) {
+    const float alpha = roughness * roughness, square = alpha * alpha;
+    const float nv = n[0] * v[0] + n[1] * v[1] + n[2] * v[2];
+    if (roughness <= LW_SPECULAR_ONE_RAY) {
+        const float d[3] = {2.0f * nv * n[0] - v[0], 2.0f * nv * n[1] - v[1], 2.0f * nv * n[2] - v[2]};
+        return march(grid, at, d, 2.0f * alpha * sqrt(nv));
+    }
+    // Across the normal: towards the eye, and aside; the lobe is the same on both sides of the two.
+    float t[3] = {v[0] - nv * n[0], v[1] - nv * n[1], v[2] - nv * n[2]};
+    float length_ = t[0] * t[0] + t[1] * t[1] + t[2] * t[2];
+    if (length_ < 1e-6f) {  // straight on any will do
+        const int flat = fabs(n[0]) < 0.6f;
+        t[0] = flat ? 1.0f - n[0] * n[0] : -n[1] * n[0];
+        t[1] = flat ? -n[0] * n[1] : 1.0f - n[1] * n[1];
+        t[2] = flat ? -n[0] * n[2] : -n[1] * n[2];
+        length_ = t[0] * t[0] + t[1] * t[1] + t[2] * t[2];
+    }
+    const float unit = rsqrt(length_);
+    for (int i = 0; i < 3; ++i) t[i] *= unit;
+    const float b[3] = {n[1] * t[2] - n[2] * t[1], n[2] * t[0] - n[0] * t[2], n[0] * t[1] - n[1] * t[0]};
+    float4 sum = (float4)(0.0f);
+    float weights = 0.0f;
+    for (int i = 0; i < LW_SPECULAR_RAYS; ++i) {
+        const float tangent2 = square * kTangents[i], cosine = rsqrt(1.0f + tangent2), sine = sqrt(tangent2) * cosine;
+        const float x = sine * kCosines[i], y = sine * kSines[i];
+        const float h[3] = {x * t[0] + y * b[0] + cosine * n[0], x * t[1] + y * b[1] + cosine * n[1],
+                            x * t[2] + y * b[2] + cosine * n[2]};
+        const float hv = h[0] * v[0] + h[1] * v[1] + h[2] * v[2];
+        const float d[3] = {2.0f * hv * h[0] - v[0], 2.0f * hv * h[1] - v[1], 2.0f * hv * h[2] - v[2]};
+        const float weight = d[0] * n[0] + d[1] * n[1] + d[2] * n[2];
+        if (!(weight > 0.0f && hv > 0.0f)) continue;
+        // Density of l: alpha^2 cos / (pi (cos^2 (alpha^2 - 1) + 1)^2) / (4 v.h); a cone of tangent t has pi t^2 of directions.
+        const float spread = cosine * cosine * (square - 1.0f) + 1.0f;
+        const float share = 4.0f * hv * spread * spread / (LW_SPECULAR_RAYS * square * cosine);
+        sum += weight * march(grid, at, d, fmin(sqrt(share), LW_SPECULAR_WIDEST));
+        weights += weight;
+    }
+    return weights > 0.0f ? sum / weights : sum;
+}
+
+// One work-item = a pixel of half resolution: the roughness of the surface that was taken of its 2 x 2.
+__kernel void lpv_specular_pick(__global const float* position, int4 positionLayout, __global const float* roughness,
+                                int4 roughnessLayout, int width, int height, __global const float* halfPosition, int4 halfLayout,
+                                __global float* half_, int4 halfRoughnessLayout) {
+    const int hx = (int)get_global_id(0), hy = (int)get_global_id(1);
+    if (hx >= (width + 1) / 2 || hy >= (height + 1) / 2) return;
+    __global const float* taken = halfPosition + halfLayout.x + hy * halfLayout.y + hx;
+    float found = 0.0f;
+    for (int i = 0; i < 4; ++i) {
+        const int x = min(2 * hx + (i & 1), width - 1), y = min(2 * hy + (i >> 1), height - 1);
+        __global const float* p = position + positionLayout.x + y * positionLayout.y + x;
+        if (p[0] == taken[0] && p[positionLayout.z] == taken[halfLayout.z] && p[2 * positionLayout.z] == taken[2 * halfLayout.z])
+            found = roughness[roughnessLayout.x + y * roughnessLayout.y + x];
+    }
+    half_[halfRoughnessLayout.x + hy * halfRoughnessLayout.y + hx] = found;
+}
+
+// One work-item = LW_WIDTH pixels of a row. roughness: where hasRoughness. hasFaces: the cells' ways are closed by faces (see
+// lpv_specular_pack_steps). counts[0]: pixels that are neither surface nor background; counts[1]: whose light was brought down;
+// counts[2]: surfaces that the grid does not have; counts[3]: surfaces.
+__kernel void lpv_specular_march(__global const float* position, int4 positionLayout, __global const float* normal,
+                                 int4 normalLayout, __global const float* roughness, int4 roughnessLayout, int hasRoughness, int width,
+                                 int height, LwSpecularView view, __global const LwLpvPlace* place_, int size, int hasFaces,
+                                 __global const float16* cells, __global float* radiance, int4 radianceLayout,
+                                 __global int* counts) {
+    const int x = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);
+    if (x >= width || y >= height) return;
+    const LwLpvPlace place = *place_;
+    const lw_surface s = load_surface(position, positionLayout, normal, normalLayout, x, y);
+    const mask shown = lanei_iota() + x < width;
+    const float inverse = place.origin.w, most = (float)size;
+    const real gx = fma_(s.nx, (real)LW_SPECULAR_START, (s.px - place.origin.x) * inverse);
+    const real gy = fma_(s.ny, (real)LW_SPECULAR_START, (s.py - place.origin.y) * inverse);
+    const real gz = fma_(s.nz, (real)LW_SPECULAR_START, (s.pz - place.origin.z) * inverse);
+    const mask within = and_(and_(and_(gx >= 0.0f, gx <= most), and_(gy >= 0.0f, gy <= most)), and_(gz >= 0.0f, gz <= most));
+    const mask has = and_(and_(s.valid, shown), and_(within, splat_mask(inverse > 0.0f)));
+    const mask rejected = and_(s.rejected, shown), missing = and_(and_(s.valid, not_(has)), shown);
+    if (any_(rejected)) atomic_add(counts, count_(rejected));
+    if (any_(missing)) atomic_add(counts + 2, count_(missing));
+    if (any_(has)) atomic_add(counts + 3, count_(has));
+
+    // Towards the eye, on the visible side also where a normal leans away from it.
+    const real one = (real)1.0f, none = (real)0.0f;
+    real vx = view.eye.x - s.px * view.eye.w, vy = view.eye.y - s.py * view.eye.w, vz = view.eye.z - s.pz * view.eye.w;
+    const real squared = squared_length(vx, vy, vz), inv = rsqrt(fmax(squared, (real)1e-30f));
+    const mask some = squared > 1e-30f;  // an eye in the surface itself looks straight on
+    vx = select_(s.nx, vx * inv, some);
+    vy = select_(s.ny, vy * inv, some);
+    vz = select_(s.nz, vz * inv, some);
+    const real nv = fma_(vx, s.nx, fma_(vy, s.ny, vz * s.nz));
+    const real turn = view.eye.w > 0.0f ? one : select_(one, -one, nv < 0.0f);
+    const real behind = view.eye.w > 0.0f ? fmin(nv, none) * 2.0f : none;
+    vx = turn * vx - behind * s.nx;
+    vy = turn * vy - behind * s.ny;
+    vz = turn * vz - behind * s.nz;
+    real rough = (real)view.roughness.x;
+    if (hasRoughness) rough = load(roughness, roughnessLayout.x + y * roughnessLayout.y + x);
+    rough = select_(one, clamp(rough, none, one), rough == rough);
+
+    float p[3][LW_WIDTH], n[3][LW_WIDTH], v[3][LW_WIDTH], r[LW_WIDTH], light[3][LW_WIDTH], live[LW_WIDTH];
+    store(gx, p[0], 0);
+    store(gy, p[1], 0);
+    store(gz, p[2], 0);
+    store(s.nx, n[0], 0);
+    store(s.ny, n[1], 0);
+    store(s.nz, n[2], 0);
+    store(vx, v[0], 0);
+    store(vy, v[1], 0);
+    store(vz, v[2], 0);
+    store(rough, r, 0);
+    store(ones_(has), live, 0);
+    const specular_grid grid = {cells, size, specular_levels(size), hasFaces, view.environment};
+    for (int l = 0; l < LW_WIDTH; ++l) {
+        float4 found = (float4)(0.0f);
+        if (live[l] > 0.0f) {
+            const float at[3] = {p[0][l], p[1][l], p[2][l]}, nl[3] = {n[0][l], n[1][l], n[2][l]}, vl[3] = {v[0][l], v[1][l], v[2][l]};
+            found = lobe_mean(grid, at, nl, vl, r[l]);
+        }
+        light[0][l] = found.x;
+        light[1][l] = found.y;
+        light[2][l] = found.z;
+    }
+    const int out = radianceLayout.x + y * radianceLayout.y + x;
+    mask saturated = splat_mask(0);
+    for (int c = 0; c < 3; ++c) {
+        const real value = load(light[c], 0);
+        saturated = or_(saturated, not_(value <= LW_LARGEST_IRRADIANCE));
+        store(fmin(value, (real)LW_LARGEST_IRRADIANCE), radiance, out + c * radianceLayout.z);
+    }
+    saturated = and_(saturated, shown);
+    if (any_(saturated)) atomic_add(counts + 1, count_(saturated));
+}
