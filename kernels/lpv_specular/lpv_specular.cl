@@ -18,11 +18,16 @@
 #include "shared/surface.h"
 #include "shared/wide.h"
 
-// Points of the lobe: u / (1 - u) of u = (i + 1/2) / 8, cos and sin of 2 pi times i with its bits reversed, over 8 (Hammersley's).
-__constant float kTangents[LW_SPECULAR_RAYS] = {0.0666666667f, 0.2307692308f, 0.4545454545f, 0.7777777778f,
-                                                1.2857142857f, 2.2f,          4.3333333333f, 15.0f};
-__constant float kCosines[LW_SPECULAR_RAYS] = {1.0f, -1.0f, 0.0f, 0.0f, 0.7071067812f, -0.7071067812f, -0.7071067812f, 0.7071067812f};
-__constant float kSines[LW_SPECULAR_RAYS] = {0.0f, 0.0f, 1.0f, -1.0f, 0.7071067812f, -0.7071067812f, 0.7071067812f, -0.7071067812f};
+// Points of the lobe: u / (1 - u) of u = (i + 1/2) / 16, cos and sin of 2 pi times i with its bits reversed, over 16 (Hammersley's).
+__constant float kTangents[LW_SPECULAR_RAYS] = {
+    0.0322580645f, 0.1034482759f, 0.1851851852f, 0.28f, 0.3913043478f, 0.5238095238f, 0.6842105263f, 0.8823529412f,
+    1.1333333333f, 1.4615384615f, 1.9090909091f, 2.5555555556f, 3.5714285714f, 5.4f, 9.6666666667f, 31.0f};
+__constant float kCosines[LW_SPECULAR_RAYS] = {
+    1.0f, -1.0f, 0.0f, 0.0f, 0.7071067812f, -0.7071067812f, -0.7071067812f, 0.7071067812f, 0.9238795325f, -0.9238795325f,
+    -0.3826834324f, 0.3826834324f, 0.3826834324f, -0.3826834324f, -0.9238795325f, 0.9238795325f};
+__constant float kSines[LW_SPECULAR_RAYS] = {
+    0.0f, 0.0f, 1.0f, -1.0f, 0.7071067812f, -0.7071067812f, 0.7071067812f, -0.7071067812f, 0.3826834324f, -0.3826834324f,
+    0.9238795325f, -0.9238795325f, 0.9238795325f, -0.9238795325f, 0.3826834324f, -0.3826834324f};
 
 typedef struct {
     __global const float16* cells;
@@ -31,6 +36,13 @@ typedef struct {
 } specular_grid;
 
 LW_FN float closed_along(float16 cell, int axis) { return axis == 0 ? cell.s3 : axis == 1 ? cell.s7 : cell.sb; }
+
+// What gets from one cell into the next along an axis. Faces are of the finest cells alone: a cell's lower one, so that a way down is
+// closed by the cell it leaves. isCoarse, wasCoarse: of the cells on both sides.
+LW_FN float passes(float16 from, float16 to, int axis, int isUp, int hasFaces, int wasCoarse, int isCoarse) {
+    if (!hasFaces || isUp) return 1.0f - closed_along(to, axis);
+    return (wasCoarse ? 1.0f : 1.0f - closed_along(from, axis)) * (isCoarse ? 1.0f - closed_along(to, axis) : 1.0f);
+}
 
 // What surfaces of a cell send against direction d: all of one normal n Phi / pi max(0, -n.d), exactly; of several the mean normal's
 // share as if it were one, the rest evenly. (Two bands of harmonics would send 0.75 of a wall's light straight on.)
@@ -54,9 +66,17 @@ LW_FN float4 march(const specular_grid grid, const float* at, const float* d, fl
     float4 light = (float4)(0.0f);
     const int steps[3] = {1, grid.size, grid.size * grid.size};
     float16 last = cells[(up ? k : n - 1 - k) * steps[a] + lu * steps[u] + lv * steps[v]];
+    int lastLevel = 0;
     int isEntered = (float)k + 0.5f < start;
     for (k += isEntered; k < n; ++k, isEntered = 1) {
         while (level + 1 < grid.levels && (k & 1) == 0 && tangent * ((float)k * scale - start) * slope >= scale) {
+            // What closes the way to the other half of the coarser cell, aside, is left behind: it counts now.
+            const int toA = a == 0 ? 1 : a == 1 ? n : n * n, toU = u == 0 ? 1 : n, toV = v == 2 ? n * n : n;
+            __global const float16* here = cells + (up ? k - 1 : n - k) * toA + lu * toU + lv * toV;
+            if (k > 0 && (lu & 1) == (d[u] < 0.0f))
+                through *= passes(here[0], here[d[u] < 0.0f ? -toU : toU], u, d[u] > 0.0f, grid.hasFaces, level > 0, level > 0);
+            if (k > 0 && (lv & 1) == (d[v] < 0.0f))
+                through *= passes(here[0], here[d[v] < 0.0f ? -toV : toV], v, d[v] > 0.0f, grid.hasFaces, level > 0, level > 0);
             cells += n * n * n;
             n /= 2;
             k /= 2;
@@ -78,12 +98,22 @@ LW_FN float4 march(const specular_grid grid, const float* at, const float* d, fl
         if (fmax(fmax(mean.s0, mean.s1), mean.s2) > 0.0f) light += through * scale * slope * sent_against(mean, d[0], d[1], d[2]);
         const int farU = fu >= 0.5f, farV = fv >= 0.5f, nu = iu + farU, nv = iv + farV;
         const float16 own = farV ? (farU ? c11 : c01) : (farU ? c10 : c00);
-        // A cell's face is its lower one: upwards the new cell's, downwards that of the cell before.
-        if (isEntered) through *= 1.0f - closed_along(grid.hasFaces && !up ? last : own, a);
-        if (nu != lu) through *= 1.0f - closed_along(grid.hasFaces && nu < lu ? last : own, u);
-        if (nv != lv) through *= 1.0f - closed_along(grid.hasFaces && nv < lv ? last : own, v);
+        // To that cell along one axis after the other: where two walls meet there is no way between them.
+        __global const float16* plane = cells + (up ? k : n - 1 - k) * toA;
+        if (isEntered) {
+            const float16 ahead = plane[lu * toU + lv * toV];
+            through *= passes(last, ahead, a, up, grid.hasFaces, lastLevel > 0, level > 0);
+            last = ahead;
+        }
+        if (nu != lu) {
+            const float16 aside = plane[nu * toU + lv * toV];
+            through *= passes(last, aside, u, nu > lu, grid.hasFaces, level > 0, level > 0);
+            last = aside;
+        }
+        if (nv != lv) through *= passes(last, own, v, nv > lv, grid.hasFaces, level > 0, level > 0);
         if (through < LW_SPECULAR_LEAST) return light;
         last = own;
+        lastLevel = level;
         lu = nu;
         lv = nv;
     }
@@ -96,7 +126,7 @@ LW_FN float4 lobe_mean(const specular_grid grid, const float* at, const float* n
     const float nv = n[0] * v[0] + n[1] * v[1] + n[2] * v[2];
     if (roughness <= LW_SPECULAR_ONE_RAY) {
         const float d[3] = {2.0f * nv * n[0] - v[0], 2.0f * nv * n[1] - v[1], 2.0f * nv * n[2] - v[2]};
-        return march(grid, at, d, 2.0f * alpha * sqrt(nv));
+        return march(grid, at, d, LW_SPECULAR_WIDTH * 2.0f * alpha * sqrt(nv));
     }
     // Across the normal: towards the eye, and aside; the lobe is the same on both sides of the two.
     float t[3] = {v[0] - nv * n[0], v[1] - nv * n[1], v[2] - nv * n[2]};
@@ -125,7 +155,7 @@ LW_FN float4 lobe_mean(const specular_grid grid, const float* at, const float* n
         // Density of l: alpha^2 cos / (pi (cos^2 (alpha^2 - 1) + 1)^2) / (4 v.h); a cone of tangent t has pi t^2 of directions.
         const float spread = cosine * cosine * (square - 1.0f) + 1.0f;
         const float share = 4.0f * hv * spread * spread / (LW_SPECULAR_RAYS * square * cosine);
-        sum += weight * march(grid, at, d, fmin(sqrt(share), LW_SPECULAR_WIDEST));
+        sum += weight * march(grid, at, d, LW_SPECULAR_WIDTH * sqrt(share));
         weights += weight;
     }
     return weights > 0.0f ? sum / weights : sum;
@@ -153,7 +183,7 @@ __kernel void lpv_specular_pick(__global const float* position, int4 positionLay
 // counts[2]: surfaces that the grid does not have; counts[3]: surfaces.
 __kernel void lpv_specular_march(__global const float* position, int4 positionLayout, __global const float* normal,
                                  int4 normalLayout, __global const float* roughness, int4 roughnessLayout, int hasRoughness, int width,
-                                 int height, LwSpecularView view, __global const LwLpvPlace* place_, int size, int hasFaces,
+                                 int height, LwSpecularRays view, __global const LwLpvPlace* place_, int size, int hasFaces,
                                  __global const float16* cells, __global float* radiance, int4 radianceLayout,
                                  __global int* counts) {
     const int x = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);

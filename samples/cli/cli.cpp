@@ -58,6 +58,13 @@ float parsePositive(std::string_view option, std::string_view text) {
     return narrow;
 }
 
+float parseRoughness(std::string_view text) {
+    const double value = parseNumber("--roughness", text);
+    if (!(value >= 0.0 && value <= 1.0))
+        throw UsageError(fmt::format("--roughness '{}': expected 0 to 1", text));
+    return float(value);
+}
+
 std::uint64_t parseUnsigned(std::string_view option, std::string_view text) {
     std::uint64_t value = 0;
     if (!parseWhole(text, value))

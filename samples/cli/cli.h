@@ -53,6 +53,7 @@ constexpr int kMaxSize = 16384;  // pixels along a side, as lightwell.h's views
 Size parseSize(std::string_view text);
 double parseNumber(std::string_view option, std::string_view text);
 float parsePositive(std::string_view option, std::string_view text);  // that a float can hold
+float parseRoughness(std::string_view text);                          // 0 .. 1
 std::uint64_t parseUnsigned(std::string_view option, std::string_view text);
 
 // "key=value" in two; a value may hold further "=".

@@ -41,14 +41,14 @@ std::unique_ptr<IndirectRenderer> makeRenderer(const Parameters& parameters, con
     if (!parameters.needsDevice()) {
         if (options.quantity != Quantity::Irradiance)
             throw UsageError("technique " + parameters.technique() +
-                             ": makes no ambient occlusion; expected one of the library");
+                             ": makes irradiance only; expected one of the library");
         if (!inputs.lwSources().empty())
             throw UsageError("--source-view: technique " + parameters.technique() +
                              " looks at none; expected one of the library");
         return makeRenderer(parameters, inputs, nullptr);
     }
     const lightwell::Device device = openDevice(options.device, options.width);
-    return std::make_unique<LibraryRenderer>(device, parameters, inputs, options.quantity);
+    return std::make_unique<LibraryRenderer>(device, parameters, inputs, options.quantity, options.roughness);
 }
 
 std::unique_ptr<IndirectRenderer> makeRenderer(const Parameters& parameters, const RenderInputs& inputs,

@@ -42,7 +42,7 @@ FrameSample describeFrame(const LWStats& stats, double wallMilliseconds) {
 }  // namespace
 
 LibraryRenderer::LibraryRenderer(const lightwell::Device& device, const Parameters& parameters,
-                                 const RenderInputs& inputs, Quantity quantity)
+                                 const RenderInputs& inputs, Quantity quantity, float roughness)
     : device_(device),
       view_(device, std::uint32_t(inputs.gbuffer().width), std::uint32_t(inputs.gbuffer().height)),
       descriptor_(device, parameters),
@@ -51,9 +51,11 @@ LibraryRenderer::LibraryRenderer(const lightwell::Device& device, const Paramete
       irradiance_(inputs.gbuffer().width, inputs.gbuffer().height, 3),
       validity_(inputs.gbuffer().width, inputs.gbuffer().height, 1),
       ambient_(inputs.gbuffer().width, inputs.gbuffer().height, 1),
+      roughnessOfAll_(roughness),
       estimatedBytes_(device.estimateMemory(
           parameters.technique().c_str(), descriptor_.get(), std::uint32_t(inputs.gbuffer().width),
           std::uint32_t(inputs.gbuffer().height), inputs.rsmTexelCount())) {
+    fillRoughness(inputs.gbuffer().width, inputs.gbuffer().height);
     for (std::size_t i = 0; i < inputs.lwSources().size(); ++i)
         sources_.emplace_back(device_, std::uint32_t(inputs.gbuffer().width),
                               std::uint32_t(inputs.gbuffer().height));
@@ -73,12 +75,20 @@ void LibraryRenderer::fitSize(int width, int height) {
     irradiance_ = studio::PlanarBuffer(width, height, 3);
     validity_ = studio::PlanarBuffer(width, height, 1);
     ambient_ = studio::PlanarBuffer(width, height, 1);
+    fillRoughness(width, height);
+}
+
+void LibraryRenderer::fillRoughness(int width, int height) {
+    roughness_ = studio::PlanarBuffer(width, height, 1);
+    for (int y = 0; y < height; ++y) std::fill_n(roughness_.row(0, y), width, roughnessOfAll_);
 }
 
 LWOutput LibraryRenderer::describeOutput() {
     LWOutput output = lightwell::make<LWOutput>();
     if (quantity_ == Quantity::AmbientOcclusion) {
         output.ambientOcclusion = describePlanes(ambient_);
+    } else if (quantity_ == Quantity::SpecularRadiance) {
+        output.specularRadiance = describePlanes(irradiance_);
     } else {
         output.irradiance = describePlanes(irradiance_);
         output.validity = describePlanes(validity_);
@@ -86,13 +96,14 @@ LWOutput LibraryRenderer::describeOutput() {
     return output;
 }
 
-void LibraryRenderer::render(const LWGBuffer& gbuffer) {
+void LibraryRenderer::render(LWGBuffer gbuffer) {
+    if (quantity_ == Quantity::SpecularRadiance) gbuffer.roughness = describePlanes(roughness_);
     const LWOutput output = describeOutput();
     try {
         technique_.render(view_, gbuffer, output);
     } catch (const lightwell::Error& error) {
-        if (quantity_ == Quantity::AmbientOcclusion && error.status() == LW_ERROR_UNSUPPORTED)
-            throw UsageError(fmt::format("--quantity ambient-occlusion: {}", error.what()));
+        if (quantity_ != Quantity::Irradiance && error.status() == LW_ERROR_UNSUPPORTED)
+            throw UsageError(fmt::format("--quantity: {}", error.what()));
         throw;
     }
 }

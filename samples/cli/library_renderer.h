@@ -8,7 +8,8 @@ namespace cli {
 class LibraryRenderer final : public IndirectRenderer {
 public:
     LibraryRenderer(const lightwell::Device& device, const Parameters& parameters,
-                    const RenderInputs& inputs, Quantity quantity = Quantity::Irradiance);
+                    const RenderInputs& inputs, Quantity quantity = Quantity::Irradiance,
+                    float roughness = 0.5f);
 
     // A frame that was refused half-way leaves commands that read its inputs, which go next.
     ~LibraryRenderer() override;
@@ -26,7 +27,8 @@ public:
 private:
     void fitSize(int width, int height);
     LWOutput describeOutput();
-    void render(const LWGBuffer& gbuffer);
+    void fillRoughness(int width, int height);
+    void render(LWGBuffer gbuffer);
     void spreadAmbient();
 
     lightwell::Device device_;
@@ -36,7 +38,8 @@ private:
     Descriptor descriptor_;
     lightwell::Technique technique_;
     Quantity quantity_;
-    studio::PlanarBuffer irradiance_, validity_, ambient_;
+    studio::PlanarBuffer irradiance_, validity_, ambient_, roughness_;
+    float roughnessOfAll_;
     std::uint64_t estimatedBytes_ = 0, frameIndex_ = 0;
 };
 

@@ -25,15 +25,23 @@ struct ReferenceOptions {
     ViewOptions view;
     std::string bounces, vpls, until, out, checkpoint;
     std::string samples = "256", seed = "1";
-    std::string quantity = "irradiance", radius = "0.2", weighting = "cosine";
+    std::string quantity = "irradiance", radius = "0.2", weighting = "cosine",
+                roughness = "0.5";
     std::vector<std::string> sourceViews;
     bool unshadowed = false, half = false, compact = false, onScreen = false;
-    CLI::Option *radiusGiven = nullptr, *weightingGiven = nullptr;
+    CLI::Option *radiusGiven = nullptr, *weightingGiven = nullptr, *roughnessGiven = nullptr;
     bool isAmbient() const { return quantity == "ambient-occlusion"; }
+    bool isSpecular() const { return quantity == "specular-radiance"; }
 };
 
 void checkQuantity(const ReferenceOptions& options) {
-    requireOneOf("--quantity", options.quantity, {"irradiance", "ambient-occlusion"});
+    requireOneOf("--quantity", options.quantity, {"irradiance", "ambient-occlusion", "specular-radiance"});
+    if (!options.isSpecular() && options.roughnessGiven->count() > 0)
+        throw UsageError("--roughness: expected --quantity specular-radiance with it");
+    if (options.isSpecular() && options.bounces != "1")
+        throw UsageError("--quantity specular-radiance: knows one bounce only; expected --bounces 1");
+    if (options.isSpecular() && (options.unshadowed || options.onScreen || !options.vpls.empty()))
+        throw UsageError("--quantity specular-radiance: leave out --unshadowed, --on-screen and --vpls");
     requireOneOf("--weighting", options.weighting, {"cosine", "uniform"});
     if (!options.sourceViews.empty() && !options.onScreen)
         throw UsageError("--source-view: expected --on-screen with it, whose light it adds to");
@@ -54,6 +62,7 @@ void checkQuantity(const ReferenceOptions& options) {
 // The traced layers whose sum stands in R, G, B.
 std::vector<std::string> chosenLayers(const ReferenceOptions& options) {
     if (options.isAmbient()) return {"ambient"};
+    if (options.isSpecular()) return {"specular"};
     if (options.bounces.empty()) throw UsageError("--bounces is required; valid: 1, 2, all");
     requireOneOf("--bounces", options.bounces, {"1", "2", "all"});
     if (options.bounces != "1" && (options.unshadowed || options.onScreen || !options.vpls.empty()))
@@ -121,7 +130,7 @@ studio::Image assemble(const studio::Image& traced, const std::vector<std::strin
     for (const std::string& layer : chosen)
         for (const std::string half : {"a.", "b."})
             if (traced.has(half + layer + ".R")) addTo(image, half + layer + ".", traced, half + layer);
-    for (const std::string layer : {"direct", "bounce1", "bounce2", "all", "ambient"})
+    for (const std::string layer : {"direct", "bounce1", "bounce2", "all", "ambient", "specular"})
         if (traced.has(layer + ".R"))
             addTo(image, layer == "direct" ? "direct_irradiance." : layer + ".", traced, layer);
     if (traced.has("validity")) image.plane("validity") = traced.plane("validity");
@@ -145,6 +154,7 @@ void describe(studio::Image& image, const ReferenceOptions& options, const studi
         image.metadata["radius"] = options.radius;
         image.metadata["weighting"] = options.weighting;
     }
+    if (options.isSpecular()) image.metadata["roughness"] = options.roughness;
     if (!options.vpls.empty())
         image.metadata["vpls_file"] = std::filesystem::path(options.vpls).filename().string();
     if (noise >= 0.0) image.metadata["noise." + layer] = fmt::format("{:.9g}", noise);
@@ -193,6 +203,8 @@ void traceReference(const ReferenceOptions& options) {
     const studio::AmbientOptions ambient{parsePositive("--radius", options.radius),
                                          options.weighting == "uniform"};
     if (options.isAmbient()) tracer.ambient = &ambient;
+    const studio::SpecularOptions specular{double(parseRoughness(options.roughness))};
+    if (options.isSpecular()) tracer.specular = &specular;
     tracer.checkpoint = checkpointPath(options);
     const Size size = parseSize(options.view.size);
     requireOutputPath("--out", options.out, {".exr"});
@@ -244,8 +256,12 @@ void declareTruth(CLI::App& command, ReferenceOptions& options) {
         "together; all");
     command
         .add_option("--quantity", options.quantity,
-                    "irradiance, or ambient-occlusion: the open share of the hemisphere, 1 = open")
+                    "irradiance; ambient-occlusion: the open share of the hemisphere, 1 = open; or "
+                    "specular-radiance: what arrives along glossy lobes, W/(sr m^2)")
         ->capture_default_str();
+    options.roughnessGiven =
+        command.add_option("--roughness", options.roughness, "Of specular-radiance: of all pixels, 0..1")
+            ->capture_default_str();
     options.radiusGiven =
         command
             .add_option(

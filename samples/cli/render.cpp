@@ -7,6 +7,7 @@
 
 #include "cli.h"
 #include "indirect_renderer.h"
+#include "layers.h"
 #include "path_tracer.h"
 #include "render_inputs.h"
 #include "render_picture.h"
@@ -23,11 +24,16 @@ constexpr const char* kNoTechnique = "none";
 struct RenderOptions {
     ViewOptions view;
     std::string quantity = "irradiance", technique, seed, vplsOut, device, debugView, exposure,
-                scale = "1", step = "0";
+                scale = "1", step = "0", roughness = "0.5";
     std::vector<std::string> assignments, outs, sourceViews;
     int frames = 9, warmup = 3, width = 0, rsmSize = 512, cascades = 1;
     bool asJson = false, printsHash = false;
+    CLI::Option* roughnessGiven = nullptr;
     bool isAmbient() const { return quantity == "ambient-occlusion"; }
+    bool isSpecular() const { return quantity == "specular-radiance"; }
+    Quantity asked() const {
+        return isAmbient() ? Quantity::AmbientOcclusion : isSpecular() ? Quantity::SpecularRadiance : Quantity::Irradiance;
+    }
 };
 
 void checkDistinctOutputs(const RenderOptions& options) {
@@ -60,7 +66,10 @@ void checkOptions(const RenderOptions& options) {
     if (options.technique.empty())
         throw UsageError("--technique is required; valid: " + joinNames(techniques));
     requireOneOf("technique", options.technique, techniques);
-    requireOneOf("--quantity", options.quantity, {"irradiance", "ambient-occlusion"});
+    requireOneOf("--quantity", options.quantity, {"irradiance", "ambient-occlusion", "specular-radiance"});
+    if (!options.isSpecular() && options.roughnessGiven->count() > 0)
+        throw UsageError("--roughness: expected --quantity specular-radiance with it");
+    parseRoughness(options.roughness);
     if (options.width != 0)
         requireOneOf("--width", std::to_string(options.width), {"1", "4", "8", "16"});
     for (const std::string& assignment : options.assignments) splitAssignment("--set", assignment);
@@ -85,10 +94,10 @@ void checkOptions(const RenderOptions& options) {
     if (!hasResult) throw UsageError("--out is required: a file name ending in .exr or .png");
     if (options.technique == kNoTechnique) {
         if (!options.vplsOut.empty() || !options.debugView.empty() || !options.assignments.empty() ||
-            !options.sourceViews.empty() || options.isAmbient())
+            !options.sourceViews.empty() || options.asked() != Quantity::Irradiance)
             throw UsageError(
-                "--technique none has no VPLs, debug views, parameters, source views or ambient "
-                "occlusion");
+                "--technique none has no VPLs, debug views, parameters, source views, ambient "
+                "occlusion or specular radiance");
     }
 }
 
@@ -111,7 +120,7 @@ void writeOutputs(const RenderOptions& options, const studio::Image& image, Rend
         } else if (options.isAmbient()) {
             studio::writePng(out, image);  // already in [0,1]
         } else {
-            const studio::Image lit = studio::composite(image);
+            const studio::Image lit = shownRadiance(image);
             const float exposure = options.exposure.empty()
                                        ? studio::autoExposure(lit)
                                        : parsePositive("--exposure", options.exposure);
@@ -128,8 +137,8 @@ studio::Image renderWithTechnique(const RenderOptions& options, Sequence& sequen
     const Parameters parameters = parseParameters(options);
     const auto renderer = makeRenderer(
         parameters, sequence.at(0),
-        DeviceOptions{options.device, std::uint32_t(options.width),
-                      options.isAmbient() ? Quantity::AmbientOcclusion : Quantity::Irradiance});
+        DeviceOptions{options.device, std::uint32_t(options.width), options.asked(),
+                      parseRoughness(options.roughness)});
     report.parameters = parameters.resolved();
     report.figures = measure(
         *renderer, [&](int frame) -> const RenderInputs& { return sequence.at(frame); }, options.warmup,
@@ -145,15 +154,15 @@ studio::Image renderWithTechnique(const RenderOptions& options, Sequence& sequen
         report.outputs.push_back(options.vplsOut);
     }
     if (!options.debugView.empty()) writeDebugView(*renderer, options.debugView);
-    return assemblePicture(sequence.last(), renderer->irradiance(), renderer->validity(),
-                           options.isAmbient(), report);
+    return assemblePicture(sequence.last(), renderer->irradiance(), renderer->validity(), options.asked(),
+                           report);
 }
 
 studio::Image renderDirectOnly(const RenderInputs& inputs, RenderReport& report) {
     const studio::PlanarBuffer nothing(report.size.width, report.size.height, 3);
     const studio::PlanarBuffer invalid(report.size.width, report.size.height, 1);
     report.hash = hashBits(nothing);
-    return assemblePicture(inputs, nothing, invalid, false, report);
+    return assemblePicture(inputs, nothing, invalid, Quantity::Irradiance, report);
 }
 
 // `--set a=1 b=2 SCENE`: the last word is no assignment, so it is the scene.
@@ -258,8 +267,12 @@ void addRender(CLI::App& app) {
                         "Required: a technique (below), or none: direct light only");
     command
         ->add_option("--quantity", options->quantity,
-                     "irradiance, or ambient-occlusion (1 = open) of techniques that make it")
+                     "irradiance, or of techniques that make it ambient-occlusion (1 = open) or "
+                     "specular-radiance (along glossy lobes, W/(sr m^2))")
         ->capture_default_str();
+    options->roughnessGiven = command->add_option("--roughness", options->roughness,
+                                                  "Of all pixels, 0..1, with --quantity specular-radiance");
+    options->roughnessGiven->capture_default_str();
     command->add_option("--set", options->assignments,
                         "key=value, one or several: parameters of the technique (below)");
     command->add_option("--frames", options->frames, "Frames measured; times are medians")

@@ -33,13 +33,15 @@ void writeDebugView(const IndirectRenderer& renderer, const std::string& argumen
 }
 
 studio::Image assemblePicture(const RenderInputs& inputs, const studio::PlanarBuffer& irradiance,
-                              const studio::PlanarBuffer& validity, bool isAmbient,
+                              const studio::PlanarBuffer& validity, Quantity quantity,
                               const RenderReport& report) {
     studio::Image image(report.size.width, report.size.height);
     addLayer(image, "", irradiance);
-    if (!isAmbient) addLayer(image, "validity", validity);
+    if (quantity == Quantity::Irradiance) addLayer(image, "validity", validity);
     addViewLayers(image, inputs.gbuffer());
-    image.metadata = {{"layer", isAmbient ? "ambient" : "irradiance"},
+    image.metadata = {{"layer", quantity == Quantity::AmbientOcclusion   ? "ambient"
+                                : quantity == Quantity::SpecularRadiance ? "specular"
+                                                                         : "irradiance"},
                       {"scene", report.scene},
                       {"camera", report.camera},
                       {"technique", report.technique}};

@@ -16,10 +16,9 @@ std::uint64_t hashBits(const studio::PlanarBuffer& buffer);
 // `argument` is NAME=FILE.exr; the channels c00, c01, ... of an intermediate buffer.
 void writeDebugView(const IndirectRenderer& renderer, const std::string& argument);
 
-// The technique's planes beside the view's own layers; `isAmbient`: they are ambient occlusion, which
-// has no validity.
+// The technique's planes beside the view's own layers; of irradiance alone with validity.
 studio::Image assemblePicture(const RenderInputs& inputs, const studio::PlanarBuffer& irradiance,
-                              const studio::PlanarBuffer& validity, bool isAmbient,
+                              const studio::PlanarBuffer& validity, Quantity quantity,
                               const RenderReport& report);
 
 }  // namespace cli

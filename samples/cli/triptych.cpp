@@ -8,6 +8,7 @@
 
 #include "cli.h"
 #include "image.h"
+#include "layers.h"
 
 namespace cli {
 namespace {
@@ -50,8 +51,8 @@ void writeTriptych(const TriptychOptions& options) {
         throw UsageError(fmt::format("{} is {}x{} pixels, {} is {}x{}; expected one size",
                                      options.render, render.width, render.height, options.reference,
                                      reference.width, reference.height));
-    const studio::Image truth = asUsage([&] { return studio::composite(reference); });
-    const studio::Image lit = asUsage([&] { return studio::composite(render); });
+    const studio::Image truth = asUsage([&] { return shownRadiance(reference); });
+    const studio::Image lit = asUsage([&] { return shownRadiance(render); });
     const float exposure = options.exposure.empty() ? studio::autoExposure(truth) : given;
     const std::array<studio::Image, 3> panels{
         studio::toneMap(studio::composite(withoutIndirect(render)), exposure),

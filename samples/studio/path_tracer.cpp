@@ -12,6 +12,7 @@
 #include "integrator.h"
 #include "noise.h"
 #include "reference_run.h"
+#include "specular_reference.h"
 #include "vpl_visibility.h"
 
 namespace studio {
@@ -39,6 +40,12 @@ void checkOptions(const GBuffer& view, const PathTracerOptions& o) {
                   "0 with VPLs, which have no noise", text(o.untilRelMse));
     requireOption(o.sendersSeenBy.empty() || o.vpls == nullptr, "sendersSeenBy",
                   "no pictures with VPLs, which are the senders", text(o.sendersSeenBy.size()));
+    if (o.specular != nullptr) {
+        requireOption(o.specular->roughness >= 0.0 && o.specular->roughness <= 1.0, "specular.roughness",
+                      "0 to 1", text(o.specular->roughness));
+        requireOption(o.vpls == nullptr && o.sendersSeenBy.empty() && !o.unshadowed && o.ambient == nullptr,
+                      "specular", "no VPLs, sendersSeenBy, unshadowed or ambient beside it", "one of them");
+    }
     if (o.ambient == nullptr) return;
     requireOption(o.ambient->radius > 0.0 && std::isfinite(o.ambient->radius), "ambient.radius",
                   "a positive number", text(o.ambient->radius));
@@ -135,6 +142,7 @@ Image tracePaths(const RayScene& scene, const GBuffer& view, const PathTracerOpt
     checkOptions(view, options);
     const PixelSurfaces pixels(scene, view);
     const Film film = options.ambient != nullptr ? traceAmbient(scene, view, pixels, options)
+                      : options.specular != nullptr ? traceSpecular(scene, view, pixels, options)
                       : options.vpls != nullptr  ? gatherVpls(scene, view, pixels, options)
                                                  : integratePaths(scene, view, pixels, options);
 

@@ -37,6 +37,10 @@ struct AmbientOptions {
     bool isUniform = false;  // all directions alike; else by their cosine
 };
 
+struct SpecularOptions {
+    double roughness = 0.5;  // of all pixels, 0 .. 1
+};
+
 struct PathTracerOptions {
     int samplesPerPixel = 64;  // of both halves together; even
     double untilRelMse = 0.0;  // > 0: go on past samplesPerPixel until the halves agree
@@ -61,6 +65,8 @@ struct PathTracerOptions {
     std::vector<PictureView> sendersSeenBy;
     // Not irradiance: "ambient" is the share of the hemisphere that is open, in each channel.
     const AmbientOptions* ambient = nullptr;
+    // Not irradiance: "specular" is the radiance that arrives along the pixel's GGX lobe (traceSpecular).
+    const SpecularOptions* specular = nullptr;
     // Irradiance from these VPLs (bounded term) with exact visibility of each (pixel, VPL); with
     // `unshadowed`, the same without shadow rays. Only "bounce1" is made, without halves: no noise.
     const std::vector<VplRecord>* vpls = nullptr;

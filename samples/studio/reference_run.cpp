@@ -54,6 +54,11 @@ std::uint64_t hashOptions(const PathTracerOptions& options, const GBuffer& view,
         const std::uint64_t senders = hashPictureViews(options.sendersSeenBy);
         hash = hashBytes(&senders, sizeof senders, hash);
     }
+    if (options.specular != nullptr) {
+        hash = hashBytes("specular", 8, hash);
+        hash = hashBytes(&options.specular->roughness, sizeof options.specular->roughness, hash);
+        hash = hashBytes(&view.camera.position, sizeof view.camera.position, hash);
+    }
     if (options.ambient != nullptr) {
         hash = hashBytes(options.ambient->isUniform ? "uniform" : "cosine", 6, hash);
         hash = hashBytes(&options.ambient->radius, sizeof options.ambient->radius, hash);

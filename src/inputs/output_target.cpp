@@ -1,6 +1,7 @@
 #include "inputs/output_target.h"
 
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "compute/device.h"
@@ -161,17 +162,20 @@ std::uint64_t OutputTarget::estimateBytes(const LWViewDesc& view, std::uint32_t 
            (uploads ? packed * view.maxWidth * view.maxHeight : 0);
 }
 
-void checkLightOutputs(Device& device, const View& view, const LWOutput& output, const char* technique) {
-    const std::pair<const LWImage*, const char*> unsupported[] = {{&output.ambientOcclusion, "ambientOcclusion"},
-                                                                  {&output.specularRadiance, "specularRadiance"},
-                                                                  {&output.shadow, "shadow"}};
-    for (const auto& [image, name] : unsupported)
-        if (rawEnum(image->format) != LW_FORMAT_NONE)
-            fail(LW_ERROR_UNSUPPORTED, "output.", name, ": technique ", technique, " makes irradiance and validity only");
-    if (rawEnum(output.irradiance.format) == LW_FORMAT_NONE && rawEnum(output.validity.format) == LW_FORMAT_NONE)
-        fail(LW_ERROR_INVALID_ARGUMENT, "output: expected irradiance or validity, got neither");
+void checkLightOutputs(Device& device, const View& view, const LWOutput& output, const char* technique, bool makesSpecular) {
+    const auto isGiven = [](const LWImage& image) { return rawEnum(image.format) != LW_FORMAT_NONE; };
+    const std::tuple<const LWImage*, const char*, bool> unsupported[] = {{&output.ambientOcclusion, "ambientOcclusion", true},
+                                                                         {&output.specularRadiance, "specularRadiance", !makesSpecular},
+                                                                         {&output.shadow, "shadow", true}};
+    for (const auto& [image, name, isRefused] : unsupported)
+        if (isRefused && isGiven(*image))
+            fail(LW_ERROR_UNSUPPORTED, "output.", name, ": technique ", technique, " makes irradiance",
+                 makesSpecular ? ", validity and specularRadiance only" : " and validity only");
+    if (!isGiven(output.irradiance) && !isGiven(output.validity) && !isGiven(output.specularRadiance))
+        fail(LW_ERROR_INVALID_ARGUMENT, "output: expected irradiance", makesSpecular ? ", validity or specularRadiance, got none" : " or validity, got neither");
     OutputTarget::check(device, view, output.irradiance, 3, "output.irradiance");
     OutputTarget::check(device, view, output.validity, 1, "output.validity");
+    if (makesSpecular) OutputTarget::check(device, view, output.specularRadiance, 3, "output.specularRadiance");
 }
 
 }  // namespace lightwell

@@ -40,7 +40,8 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-// Of a technique that makes irradiance and validity: throws what lwRender says of other outputs, of none, and of bad ones.
-void checkLightOutputs(Device& device, const View& view, const LWOutput& output, const char* technique);
+// Of a technique that makes irradiance and validity, and radiance along glossy lobes where makesSpecular: throws what lwRender says
+// of other outputs, of none, and of bad ones.
+void checkLightOutputs(Device& device, const View& view, const LWOutput& output, const char* technique, bool makesSpecular = false);
 
 }  // namespace lightwell

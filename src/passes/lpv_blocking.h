@@ -26,6 +26,7 @@ public:
     void forget() { isKept_ = false; }  // the next record() makes all anew, whatever the revision
 
     LpvBlockers blockers() const { return {faces_, runs_}; }
+    const Buffer& corners() const { return merged_; }  // a float4 each: what blocks there, of the last record()
     const Buffer& state() const { return state_; }  // LwLpvBlockers
     std::uint64_t bytes() const;
     static std::uint64_t estimateBytes(std::uint32_t size);

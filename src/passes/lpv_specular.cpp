@@ -15,9 +15,9 @@ Range cellsOf(std::uint32_t size) { return {size, std::size_t(size) * size}; }
 
 }  // namespace
 
-LwSpecularView specularView(const Camera& camera, const float* environment, float roughness) {
+LwSpecularRays specularRays(const Camera& camera, const float* environment, float roughness) {
     const glm::dvec3 from = camera.perspective() ? camera.eye() : camera.axis();
-    LwSpecularView view{};
+    LwSpecularRays view{};
     view.eye = float4(from.x, from.y, from.z, camera.perspective() ? 1.0 : 0.0);
     view.environment = float4(double(environment[0]), double(environment[1]), double(environment[2]), 0.0);
     view.roughness = float4(double(roughness), 0.0, 0.0, 0.0);
@@ -35,9 +35,9 @@ LpvSpecular::LpvSpecular(Device& device, std::uint32_t size, bool keepsShown)
       march_(device.programs().kernel(kMarch, "lpv_specular_march")) {}
 
 Buffer& LpvSpecular::packed() {
-    Buffer& cells = keepsShown_ ? packed_ : shown_;
-    cells.reserve(device_, cellBytes(size_), "cells of specular rays");
-    return cells;
+    shown_.reserve(device_, cellBytes(size_), "cells of specular rays");
+    if (keepsShown_) packed_.reserve(device_, cellBytes(size_), "cells of specular rays to come");
+    return keepsShown_ ? packed_ : shown_;
 }
 
 void LpvSpecular::recordPackSteps(Executor& executor, const Buffer& injected, const Buffer& place, const Buffer* corners) {
@@ -61,7 +61,7 @@ void LpvSpecular::show(Executor& executor) {
 }
 
 void LpvSpecular::recordMarch(Executor& executor, const Planes& position, const Planes& normal, const Planes& roughness,
-                              const LwSpecularView& view, const Buffer& place, const Planes& radiance, const Buffer& counts) {
+                              const LwSpecularRays& view, const Buffer& place, const Planes& radiance, const Buffer& counts) {
     const Range items{(position.width + march_.width() - 1) / march_.width(), position.height};
     // A kernel's argument must be some memory, also where it is not touched.
     executor.run("lpv_specular.march", march_, items, march_.width() == 1 ? Range{64, 1} : Range{8, 1}, position, normal,

@@ -13,7 +13,7 @@
 namespace lightwell {
 
 // Of a view, without a roughness image: rays' roughness is `roughness` in all pixels.
-LwSpecularView specularView(const Camera& camera, const float* environment, float roughness);
+LwSpecularRays specularRays(const Camera& camera, const float* environment, float roughness);
 
 // One grid's cells.
 class LpvSpecular {
@@ -33,7 +33,7 @@ public:
     // the grid does not have, and of surfaces that it has.
     static constexpr std::size_t kCounts = 4;
     void recordMarch(Executor& executor, const Planes& position, const Planes& normal, const Planes& roughness,
-                     const LwSpecularView& view, const Buffer& place, const Planes& radiance, const Buffer& counts);
+                     const LwSpecularRays& view, const Buffer& place, const Planes& radiance, const Buffer& counts);
     // Pass "lpv_specular.pick": roughness of the surfaces that JointBilateral::recordDownsample took.
     void recordPick(Executor& executor, const Planes& position, const Planes& roughness, const Planes& halfPosition,
                     const Planes& halfRoughness);

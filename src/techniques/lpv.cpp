@@ -53,6 +53,7 @@ public:
         failures_ = device_.failures();
         place(frame, failed);
         volume_->record(executor, frame, rsms_, placement_);
+        for (std::size_t c = 0; c < 3; ++c) environment_[c] = frame.environment[c];
         choices_ = unusedInputs(frame);
         const double side = desc_.extent > 0.0f ? double(desc_.extent) : double(box_.longest());
         for (const LWChoice& choice : volume_->choices(frame, side)) choices_.push_back(choice);
@@ -62,9 +63,10 @@ public:
     }
 
     void render(Executor& executor, const std::shared_ptr<View>& view, const LWGBuffer& gbuffer, const LWOutput& output) override {
-        checkLightOutputs(device_, *view, output, "lpv");
+        checkLightOutputs(device_, *view, output, "lpv", volume_->hasSpecular());
+        const std::optional<LwSpecularRays> rays = LpvSpecularView::rays(*view, gbuffer, output, environment_);
         LpvView& state = states_.get(view, [&] { return std::make_unique<LpvView>(device_, *view, isHalf(desc_)); });
-        state.render(executor, *view, gbuffer, output, bilateral_ ? &*bilateral_ : nullptr, *volume_);
+        state.render(executor, *view, gbuffer, output, bilateral_ ? &*bilateral_ : nullptr, *volume_, rays);
     }
 
     void prewarm(Executor& executor, const std::shared_ptr<View>&) override {
@@ -102,7 +104,7 @@ private:
             if (desc_.geometryVolume == LW_GEOMETRY_VOLUME_AUTO) desc.geometryVolume = LWGeometryVolume(source);
             else if (source != LW_GEOMETRY_VOLUME_TRIANGLES) break;
             LpvTechnique twin(device_, desc);
-            exerciseTechnique(executor, twin);
+            exerciseTechnique(executor, twin, false, twin.volume_->hasSpecular());
         }
         desc.geometryVolume = LW_GEOMETRY_VOLUME_OFF;
         LpvTechnique(device_, desc).prewarmVpls(executor);
@@ -114,7 +116,7 @@ private:
         for (int hidden = 0; hidden < kLpvBlockerKinds; ++hidden) {
             LpvTechnique twin(device_, desc, hidden);
             twin.prewarmVpls(executor);
-            exerciseTechnique(executor, twin);
+            exerciseTechnique(executor, twin, false, twin.volume_->hasSpecular());
         }
     }
     // A frame of VPLs, which exerciseTechnique's have none of.
@@ -140,6 +142,7 @@ private:
     std::optional<JointBilateral> bilateral_;  // with resolution=half
     PerView<LpvView> states_;
     std::vector<LWChoice> choices_;  // of the last update
+    float environment_[3] = {0.0f, 0.0f, 0.0f};
 };
 
 Report LpvTechnique::report() {

@@ -30,6 +30,9 @@ public:
     // What blocks in the grid that lies at `place`; none where the parameter is off.
     std::optional<LpvBlockers> record(Executor& executor, const Buffer& place);
 
+    // LpvBlocking's, of the last record(); null where the parameter is off.
+    const Buffer* corners() const { return blocking_ ? &blocking_->corners() : nullptr; }
+
     // What of the frame's geometry and views is used, and what is not.
     std::vector<LWChoice> choices(const LWFrame& frame) const;
     void report(Report& report) const;

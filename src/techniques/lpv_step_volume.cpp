@@ -17,7 +17,8 @@ LpvStepVolume::LpvStepVolume(Device& device, const LWLpvDesc& desc)
       geometry_(device, desc),
       grid_(device, desc.size),
       propagation_(device, desc.size),
-      read_(device, desc.size) {}
+      read_(device, desc.size),
+      specular_(device, desc.size) {}
 
 void LpvStepVolume::record(Executor& executor, const LWFrame& frame, const RsmInput& rsms, const LpvPlacement& placement) {
     geometry_.import(executor, frame, rsms);
@@ -25,11 +26,22 @@ void LpvStepVolume::record(Executor& executor, const LWFrame& frame, const RsmIn
     const std::optional<LpvBlockers> blockers = geometry_.record(executor, grid_.place());
     propagated_ = &propagation_.record(executor, grid_.injected(), stepsOf(desc_), blockers ? &*blockers : nullptr);
     read_.recordPack(executor, *propagated_);
+    isSpecularPacked_ = false;
 }
 
 void LpvStepVolume::recordGather(Executor& executor, const Planes& position, const Planes& normal, const Planes& irradiance,
                                  const Planes& validity, const Buffer& counts) {
     read_.recordGather(executor, position, normal, grid_.place(), calibration_, desc_.damping != 0, irradiance, validity, counts);
+}
+
+// What surfaces send is what was injected: light on its way through the cells belongs to no surface any more.
+LpvSpecularGrid LpvStepVolume::specular(Executor& executor) {
+    if (!isSpecularPacked_) {
+        specular_.recordPackSteps(executor, grid_.injected(), grid_.place(), geometry_.corners());
+        specular_.show(executor);
+        isSpecularPacked_ = true;
+    }
+    return {specular_, grid_.place()};
 }
 
 std::vector<LWChoice> LpvStepVolume::choices(const LWFrame& frame, double) const { return geometry_.choices(frame); }
@@ -49,11 +61,14 @@ void LpvStepVolume::addDebugViews(std::vector<DebugView>& views) const {
                      LpvPropagation::debugPlanes(*propagated_, desc_.size), {}});
 }
 
-std::uint64_t LpvStepVolume::bytes() const { return geometry_.bytes() + grid_.bytes() + propagation_.bytes() + read_.bytes(); }
+std::uint64_t LpvStepVolume::bytes() const {
+    return geometry_.bytes() + grid_.bytes() + propagation_.bytes() + read_.bytes() +
+           specular_.bytes();
+}
 
 std::uint64_t LpvStepVolume::estimateBytes(const LWLpvDesc& desc, const FrameShape& shape) {
     return LpvGrid::estimateBytes(desc.size, shape.vplCount) + LpvPropagation::estimateBytes(desc.size, stepsOf(desc)) +
-           LpvRead::estimateBytes(desc.size) + LpvGeometry::estimateBytes(desc, shape);
+           LpvRead::estimateBytes(desc.size) + LpvSpecular::estimateBytes(desc.size, false) + LpvGeometry::estimateBytes(desc, shape);
 }
 
 }  // namespace lightwell

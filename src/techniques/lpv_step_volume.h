@@ -18,6 +18,8 @@ public:
     void record(Executor& executor, const LWFrame& frame, const RsmInput& rsms, const LpvPlacement& placement) override;
     void recordGather(Executor& executor, const Planes& position, const Planes& normal, const Planes& irradiance,
                       const Planes& validity, const Buffer& counts) override;
+    bool hasSpecular() const override { return true; }
+    LpvSpecularGrid specular(Executor& executor) override;
     std::vector<LWChoice> choices(const LWFrame& frame, double side) const override;
     void report(Report& report) const override;
     void addDebugViews(std::vector<DebugView>& views) const override;
@@ -32,6 +34,8 @@ private:
     LpvGrid grid_;
     LpvPropagation propagation_;
     LpvRead read_;
+    LpvSpecular specular_;
+    bool isSpecularPacked_ = false;  // of the last record
     const Buffer* propagated_ = nullptr;  // of the last record
 };
 

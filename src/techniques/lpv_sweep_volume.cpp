@@ -37,7 +37,13 @@ const LWLpvDesc& checked(const LWLpvDesc& desc) {
 }  // namespace
 
 LpvSweepVolume::LpvSweepVolume(Device& device, const LWLpvDesc& desc, int hidden)
-    : device_(device), desc_(checked(desc)), hidden_(hidden), sampling_(device), grid_(device, desc.size), sweep_(device, optionsOf(desc)) {}
+    : device_(device),
+      desc_(checked(desc)),
+      hidden_(hidden),
+      sampling_(device),
+      grid_(device, desc.size),
+      sweep_(device, optionsOf(desc)),
+      specular_(device, desc.size, desc.frames > 1) {}
 
 void LpvSweepVolume::check(const LWFrame& frame) const {
     const Source source = sourceOf(frame);
@@ -61,7 +67,7 @@ void LpvSweepVolume::record(Executor& executor, const LWFrame& frame, const RsmI
     }
     const bool restart = placement.refit || source != source_;  // revisions count within a source
     sweep_.record(executor, {rsms, grid_.authored(), frame.vplCount, grid_.place(), set,
-                             source == Source::triangles ? kSampledArea : 1.0f, restart});
+                             source == Source::triangles ? kSampledArea : 1.0f, restart, &specular_});
     source_ = source;
 }
 
@@ -96,7 +102,8 @@ void LpvSweepVolume::report(Report& report) const {
 }
 
 std::uint64_t LpvSweepVolume::estimateBytes(const LWLpvDesc& desc, const FrameShape& shape) {
-    std::uint64_t total = LpvGrid::estimatePlaceBytes(shape.vplCount) + LpvSweep::estimateBytes(optionsOf(checked(desc)));
+    std::uint64_t total = LpvGrid::estimatePlaceBytes(shape.vplCount) + LpvSweep::estimateBytes(optionsOf(checked(desc))) +
+                          LpvSpecular::estimateBytes(desc.size, desc.frames > 1);
     const Source source = sourceOf(shape.surfels, shape.triangles);
     if (source == Source::triangles)
         total += GeometryInput::estimateBytes(shape.triangles) + SurfelSampling::estimateBytes(shape.triangles, sampledCount(desc));

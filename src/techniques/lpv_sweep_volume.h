@@ -20,10 +20,12 @@ public:
                       const Planes& validity, const Buffer& counts) override {
         sweep_.recordGather(executor, position, normal, irradiance, validity, counts);
     }
+    bool hasSpecular() const override { return true; }
+    LpvSpecularGrid specular(Executor&) override { return {specular_, sweep_.shownPlace()}; }
     std::vector<LWChoice> choices(const LWFrame& frame, double side) const override;
     void report(Report& report) const override;
     std::uint64_t bytes() const override {
-        return grid_.bytes() + sweep_.bytes() + triangles_.bytes() + surfels_.bytes() + sampling_.bytes();
+        return grid_.bytes() + sweep_.bytes() + specular_.bytes() + triangles_.bytes() + surfels_.bytes() + sampling_.bytes();
     }
     static std::uint64_t estimateBytes(const LWLpvDesc& desc, const FrameShape& shape);
 
@@ -46,6 +48,7 @@ private:
     SurfelSampling sampling_;
     LpvGrid grid_;  // its place alone
     LpvSweep sweep_;
+    LpvSpecular specular_;
 };
 
 }  // namespace lightwell

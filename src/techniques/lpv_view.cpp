@@ -11,7 +11,8 @@ constexpr std::size_t kUpsampleCountBytes = 2 * sizeof(cl_int);
 
 }  // namespace
 
-LpvView::LpvView(Device& device, const View& view, bool half) : half_(half), counts_(device, kCountBytes, "counts of a view") {
+LpvView::LpvView(Device& device, const View& view, bool half)
+    : half_(half), counts_(device, kCountBytes, "counts of a view") {
     if (!half) return;
     const std::uint32_t w = JointBilateral::halved(view.maxWidth), h = JointBilateral::halved(view.maxHeight);
     halfPosition_ = PlanarImage(device, w, h, 3, "half-resolution positions");
@@ -22,31 +23,39 @@ LpvView::LpvView(Device& device, const View& view, bool half) : half_(half), cou
 }
 
 void LpvView::render(Executor& executor, const View& view, const LWGBuffer& gbuffer, const LWOutput& output,
-                     JointBilateral* bilateral, LpvVolume& volume) {
-    gbuffer_.import(executor, view, gbuffer, 0, "gbuffer");
+                     JointBilateral* bilateral, LpvVolume& volume, const std::optional<LwSpecularRays>& rays) {
+    gbuffer_.import(executor, view, gbuffer, rays ? LpvSpecularView::needs(gbuffer) : 0, "gbuffer");
     lastHalf_ = Planes{};
     executor.fill("lpv_read.counts", counts_, 0, 0, kCountBytes);
     const Planes irradiance = irradiance_.begin(executor, view, output.irradiance, 3, "output.irradiance");
     const Planes validity = validity_.begin(executor, view, output.validity, 1, "output.validity");
+    const std::uint32_t w = JointBilateral::halved(view.width), h = JointBilateral::halved(view.height);
+    const Planes halfPosition = half_ ? halfPosition_.planes(w, h) : Planes{}, halfNormal = half_ ? halfNormal_.planes(w, h) : Planes{};
+    if (half_ && (irradiance || rays))
+        bilateral->recordDownsample(executor, gbuffer_.position, gbuffer_.normal, halfPosition, halfNormal);
+    const LpvHalfSurfaces halves{halfPosition, halfNormal, bilateral};
+    isGathered_ = irradiance || validity;
     if (half_ && irradiance)
-        lightHalf(executor, irradiance, validity, *bilateral, volume);
-    else
+        lightHalf(executor, irradiance, validity, halves, volume);
+    else if (isGathered_)
         volume.recordGather(executor, gbuffer_.position, gbuffer_.normal, irradiance, validity, counts_);
     irradiance_.end(executor);
     validity_.end(executor);
+    if (rays)
+        specular_.render(executor, view, output, gbuffer_, *rays, volume, half_ ? &halves : nullptr);
+    else
+        specular_.skip();
     isRendered_ = true;
 }
 
 // Validity is a bound on positions, cheap and sharp: it is made of every pixel, other than light.
-void LpvView::lightHalf(Executor& executor, const Planes& irradiance, const Planes& validity, JointBilateral& bilateral,
+void LpvView::lightHalf(Executor& executor, const Planes& irradiance, const Planes& validity, const LpvHalfSurfaces& half,
                         LpvVolume& volume) {
     const Planes &position = gbuffer_.position, &normal = gbuffer_.normal;
-    const std::uint32_t w = JointBilateral::halved(position.width), h = JointBilateral::halved(position.height);
-    const Planes halfPosition = halfPosition_.planes(w, h), halfNormal = halfNormal_.planes(w, h), light = halfLight_.planes(w, h);
+    const Planes light = halfLight_.planes(half.position.width, half.position.height);
     executor.fill("lpv_read.counts", upsampleCounts_, 0, 0, kUpsampleCountBytes);
-    bilateral.recordDownsample(executor, position, normal, halfPosition, halfNormal);
-    volume.recordGather(executor, halfPosition, halfNormal, light, {}, counts_);
-    bilateral.recordUpsample(executor, position, normal, halfPosition, halfNormal, light, irradiance, upsampleCounts_);
+    volume.recordGather(executor, half.position, half.normal, light, {}, counts_);
+    half.bilateral->recordUpsample(executor, position, normal, half.position, half.normal, light, irradiance, upsampleCounts_);
     lastHalf_ = light;
     if (!validity) return;
     executor.fill("lpv_read.counts", validityCounts_, 0, 0, kCountBytes);
@@ -56,6 +65,7 @@ void LpvView::lightHalf(Executor& executor, const Planes& irradiance, const Plan
 void LpvView::startReport(Report& report) {
     for (const char* name : {"rejected_pixels", "saturated_pixels", "pixels_outside", "upsample_fallbacks"})
         report.counts.push_back({name, 0});
+    LpvSpecularView::startReport(report);
 }
 
 void LpvView::report(Device& device, Report& report) const {
@@ -63,6 +73,8 @@ void LpvView::report(Device& device, Report& report) const {
     gbuffer_.report(report);
     irradiance_.report(report);
     validity_.report(report);
+    specular_.report(device, report, !isGathered_);
+    if (!isGathered_) return;
     // Down-sampling turns what is neither surface nor background into background; up-sampling counts it.
     report.read(device, "rejected_pixels", lastHalf_ ? upsampleCounts_ : counts_, 0);
     report.read(device, "saturated_pixels", counts_, sizeof(cl_int));
@@ -75,10 +87,11 @@ void LpvView::addDebugViews(std::vector<DebugView>& views) const {
     views.push_back({"position", "world position (m)", gbuffer_.position, {}});
     views.push_back({"normal", "world normal as the host gave it", gbuffer_.normal, {}});
     if (lastHalf_) views.push_back({"gathered", "irradiance at half resolution, before it is up-sampled (W/m^2)", lastHalf_, {}});
+    specular_.addDebugViews(views);
 }
 
 std::uint64_t LpvView::bytes() const {
-    return gbuffer_.bytes() + irradiance_.bytes() + validity_.bytes() + halfPosition_.bytes() + halfNormal_.bytes() +
+    return gbuffer_.bytes() + specular_.bytes() + irradiance_.bytes() + validity_.bytes() + halfPosition_.bytes() + halfNormal_.bytes() +
            halfLight_.bytes() + counts_.bytes() + upsampleCounts_.bytes() + validityCounts_.bytes();
 }
 
@@ -89,7 +102,7 @@ std::uint64_t LpvView::estimateBytes(const LWViewDesc& view, bool half, bool upl
                         JointBilateral::halved(view.maxHeight) +
                     kUpsampleCountBytes + kCountBytes;
     return GBufferInput::estimateBytes(view, 0, uploads) + OutputTarget::estimateBytes(view, 3, uploads) +
-           OutputTarget::estimateBytes(view, 1, uploads) + kCountBytes + halves;
+           OutputTarget::estimateBytes(view, 1, uploads) + kCountBytes + halves + LpvSpecularView::estimateBytes(view, half, uploads);
 }
 
 }  // namespace lightwell

@@ -10,9 +10,16 @@
 #include "inputs/frame_shape.h"
 #include "inputs/rsm_input.h"
 #include "passes/lpv_grid.h"
+#include "passes/lpv_specular.h"
 #include "techniques/technique.h"
 
 namespace lightwell {
+
+// Cells that specular rays march through, and where they lie.
+struct LpvSpecularGrid {
+    LpvSpecular& pass;
+    const Buffer& place;  // LwLpvPlace
+};
 
 class LpvVolume {
 public:
@@ -25,6 +32,10 @@ public:
     // After record(), as LpvRead::recordGather describes it.
     virtual void recordGather(Executor& executor, const Planes& position, const Planes& normal, const Planes& irradiance,
                               const Planes& validity, const Buffer& counts) = 0;
+
+    // Of the last record(), packed when first asked for; only of volumes that have them.
+    virtual bool hasSpecular() const { return false; }
+    virtual LpvSpecularGrid specular(Executor&) { fail(LW_ERROR_INTERNAL, "lpv: expected a volume with specular cells, got another"); }
 
     // What of the last record's frame was used, and what not. side: of the grid, or less.
     virtual std::vector<LWChoice> choices(const LWFrame& frame, double side) const = 0;

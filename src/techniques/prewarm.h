@@ -7,7 +7,7 @@
 namespace lightwell {
 
 // Blocks until the device has finished. The technique's state is that of the last made-up frame. makesAmbient: of
-// one that makes ambient occlusion too, beside the other outputs and alone.
-void exerciseTechnique(Executor& executor, Technique& technique, bool makesAmbient = false);
+// one that makes ambient occlusion too, beside the other outputs and alone; makesSpecular: the same of radiance along glossy lobes.
+void exerciseTechnique(Executor& executor, Technique& technique, bool makesAmbient = false, bool makesSpecular = false);
 
 }  // namespace lightwell

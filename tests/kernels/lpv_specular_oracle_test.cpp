@@ -1,7 +1,9 @@
 // Specular rays against closed forms: lit walls at every angle and distance, closed boxes, what stands between, what is outside.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstdio>
 #include <memory>
+#include <random>
 
 #include "support/lit_room.h"
 #include "support/lpv_rig.h"
@@ -23,7 +25,7 @@ struct Wall {
 // Walls as lights and discs, in the cells of a sweep or of propagation.
 struct SpecularScene {
     virtual ~SpecularScene() = default;
-    virtual SpecularLight march(const std::vector<SpecularPoint>& points, const LwSpecularView& view) = 0;
+    virtual SpecularLight march(const std::vector<SpecularPoint>& points, const LwSpecularRays& view) = 0;
 };
 
 struct SweepScene final : SpecularScene {
@@ -48,7 +50,7 @@ struct SweepScene final : SpecularScene {
         rig.specular = &pass;
         rig.sweep(lights, discs);
     }
-    SpecularLight march(const std::vector<SpecularPoint>& points, const LwSpecularView& view) override {
+    SpecularLight march(const std::vector<SpecularPoint>& points, const LwSpecularRays& view) override {
         return marchSpecular(rig, pass, points, view, rig.pass.shownPlace());
     }
 };
@@ -91,7 +93,7 @@ struct StepScene final : SpecularScene {
         pass.show(rig.executor());
         rig.device().finish();
     }
-    SpecularLight march(const std::vector<SpecularPoint>& points, const LwSpecularView& view) override {
+    SpecularLight march(const std::vector<SpecularPoint>& points, const LwSpecularRays& view) override {
         return marchSpecular(rig, pass, points, view, place);
     }
 };
@@ -106,33 +108,102 @@ SpecularPoint mirror(Vec p, Vec ray, Vec eye) { return {p, reference::unit(refer
 
 }  // namespace
 
-TEST_CASE("explore walls", "[lpv_specular]") {
+TEST_CASE("a mirror reads a lit wall's radiance at any distance and angle", "[lpv_specular]") {
     const bool sweeps = GENERATE(false, true), blocks = GENERATE(false, true);
-    for (const double offset : {4.0, 4.25, 4.5, 4.75}) {
-        auto scene = makeScene(sweeps, {{{0, 0, offset}, {32, 0, 0}, {0, 32, 0}, M_PI}}, blocks);
-        for (const double degrees : {0.0, 20.0, 40.0, 44.0, 50.0, 60.0, 70.0, 80.0}) {
-            double sum = 0, least = 1e9, most = 0;
-            int count = 0;
-            std::vector<SpecularPoint> points;
-            const double angle = degrees * M_PI / 180;
-            const Vec eye{16, 16, 31};
-            for (int i = 0; i < 64; ++i) {
-                const double h = 2.0 + i * 0.1, across = h * std::tan(angle);
-                const double turn = 0.3 + i * 0.37;
-                Vec ray{std::sin(angle) * std::cos(turn), std::sin(angle) * std::sin(turn), -std::cos(angle)};
-                Vec p{16 - 0.5 * across * std::cos(turn), 16 - 0.5 * across * std::sin(turn), offset + h};
-                if (across > 26) continue;
-                points.push_back(mirror(p, ray, eye));
-            }
-            if (points.empty()) continue;
-            const auto light = scene->march(points, viewFrom(eye));
-            for (std::size_t i = 0; i < points.size(); ++i) {
-                sum += light.red(i);
-                least = std::min(least, light.red(i));
-                most = std::max(most, light.red(i));
-                ++count;
-            }
-            std::printf("sweep %d blocks %d offset %.2f angle %g: mean %.3f min %.3f max %.3f (%d)\n", sweeps, blocks, offset, degrees, sum / count, least, most, count);
+    const double offset = GENERATE(4.0, 4.25, 4.75);
+    CAPTURE(sweeps, blocks, offset);
+    // Of exitance pi, so that its radiance is 1.
+    const auto scene = makeScene(sweeps, {{{0, 0, offset}, {32, 0, 0}, {0, 32, 0}, M_PI}}, blocks);
+    const Vec eye{14, 19, 31};
+    for (const double degrees : {0.0, 20.0, 40.0, 44.0, 50.0, 60.0, 70.0, 80.0}) {
+        CAPTURE(degrees);
+        const double angle = degrees * M_PI / 180;
+        std::vector<SpecularPoint> points;
+        for (int i = 0; i < 64; ++i) {
+            const double height = 2.0 + 0.1 * i, across = height * std::tan(angle), turn = 0.3 + 0.37 * i;
+            const Vec along{std::cos(turn), std::sin(turn), 0.0};
+            if (across < 26.0)
+                points.push_back(mirror(Vec{16, 16, offset + height} - along * (0.5 * across),
+                                        along * std::sin(angle) - Vec{0, 0, std::cos(angle)}, eye));
         }
+        const SpecularLight light = scene->march(points, raysFrom(eye));
+        double sum = 0.0;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            CAPTURE(i);
+            sum += light.red(i) / double(points.size());
+            CHECK(light.red(i) == Approx(1.0).epsilon(degrees < 45.0 ? 1e-4 : 0.13));
+        }
+        // A ray that goes along the wall goes through its light slowly, and is stopped before the last of it.
+        CHECK(sum == Approx(1.0).epsilon(degrees < 75.0 ? 0.01 : 0.06));
     }
+}
+
+TEST_CASE("in a box of lit walls every lobe reads the walls' radiance", "[lpv_specular]") {
+    const bool sweeps = GENERATE(false, true);
+    CAPTURE(sweeps);
+    const double l = 3.25, h = 28.75, s = h - l;
+    const std::vector<Wall> box = {{{l, l, l}, {s, 0, 0}, {0, s, 0}, M_PI}, {{l, l, h}, {0, s, 0}, {s, 0, 0}, M_PI},
+                                   {{l, l, l}, {0, 0, s}, {s, 0, 0}, M_PI}, {{l, h, l}, {s, 0, 0}, {0, 0, s}, M_PI},
+                                   {{l, l, l}, {0, s, 0}, {0, 0, s}, M_PI}, {{h, l, l}, {0, 0, s}, {0, s, 0}, M_PI}};
+    const auto scene = makeScene(sweeps, box, true);
+    std::mt19937 random(4);
+    std::uniform_real_distribution<double> unit(-1.0, 1.0);
+    for (const double roughness : {0.0, 0.3, 0.6, 1.0}) {
+        CAPTURE(roughness);
+        std::vector<SpecularPoint> points;
+        for (int i = 0; i < 200; ++i)
+            points.push_back({Vec{16, 16, 16} + Vec{unit(random), unit(random), unit(random)} * 9.0,
+                              reference::unit({unit(random), unit(random), unit(random)}), roughness});
+        const SpecularLight light = scene->march(points, raysFrom({16.3, 15.8, 16.1})), outer = scene->march(points, raysFrom({16.3, 15.8, 16.1}, 1.0));
+        double leak = 0.0;
+        for (std::size_t i = 0; i < points.size(); ++i) leak += (outer.red(i) - light.red(i)) / 200.0;
+        double sum = 0.0, squares = 0.0;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            sum += light.red(i) / 200.0;
+            squares += std::pow(light.red(i) - 1.0, 2.0) / 200.0;
+        }
+        std::printf("furnace sweeps %d roughness %g mean %.4f rms %.4f leak %.4f\n", sweeps, roughness, sum, std::sqrt(squares), leak);
+        CHECK(sum == Approx(1.0).epsilon(0.06));
+        CHECK(std::sqrt(squares) < 0.15);
+    }
+}
+
+TEST_CASE("specular rays see nothing behind a closed wall, and what is outside through an empty grid", "[lpv_specular]") {
+    const bool sweeps = GENERATE(false, true);
+    CAPTURE(sweeps);
+    const Vec eye{16, 16, 28};
+    std::vector<SpecularPoint> points;
+    for (int i = 0; i < 200; ++i) {
+        const double turn = 0.37 * i, slope = 0.012 * i;
+        points.push_back(mirror({13.0 + 0.03 * i, 16, 20}, {slope * std::cos(turn), slope * std::sin(turn), -1}, eye));
+        points.back().roughness = i % 2 ? 0.0 : 0.3;
+    }
+    const Wall lit{{0, 0, 4}, {32, 0, 0}, {0, 32, 0}, M_PI}, screen{{0, 0, 12.5}, {0, 32, 0}, {32, 0, 0}, 0.0};
+    const SpecularLight hidden = makeScene(sweeps, {lit, screen}, true)->march(points, raysFrom(eye));
+    for (std::size_t i = 0; i < points.size(); ++i) CHECK(hidden.red(i) < 1e-3);
+    // Of the environment rays see what their lobe has of it: nothing else is there.
+    const SpecularLight open = makeScene(sweeps, {}, true)->march(points, raysFrom(eye, 0.75));
+    for (std::size_t i = 0; i < points.size(); ++i) CHECK(open.red(i) == Approx(0.75).epsilon(1e-5));
+    CHECK(open.counts == std::vector<cl_int>{0, 0, 0, 200});
+}
+
+// The lobe of roughness 1 seen straight on is the hemisphere weighted by the cosine: E / pi.
+TEST_CASE("the roughest lobe is near the diffuse mean", "[lpv_specular]") {
+    const bool sweeps = GENERATE(false, true);
+    const Vec low{8, 8, 4};
+    const double side = 16.0;
+    const auto scene = makeScene(sweeps, {{low, {side, 0, 0}, {0, side, 0}, 1.0}}, true);
+    double difference = 0.0, truths = 0.0, sum = 0.0;
+    for (int j = 0; j < 8; ++j)
+        for (int i = 0; i < 8; ++i) {
+            const Vec p{4.5 + 3.2 * i, 4.5 + 3.2 * j, 24.0};
+            const double truth =
+                polygonIrradiance({low, low + Vec{0, side, 0}, low + Vec{side, side, 0}, low + Vec{side, 0, 0}}, p, {0, 0, -1}, 1.0) / M_PI;
+            const double found = scene->march({{p, {0, 0, -1}, 1.0}}, raysFrom(p - Vec{0, 0, 3})).red(0);
+            difference += (found - truth) * (found - truth);
+            truths += truth * truth;
+            sum += found / truth / 64.0;
+        }
+    std::printf("rough sweeps %d: rms %.3f mean ratio %.3f\n", sweeps, std::sqrt(difference / truths), sum);
+    CHECK(std::sqrt(difference / truths) < 0.3);
 }

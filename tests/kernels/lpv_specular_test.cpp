@@ -145,7 +145,7 @@ TEST_CASE("specular rays find what a march in double finds, and both widths the 
     const bool isOrthographic = GENERATE(false, true), hasFaces = GENERATE(false, true);
     const LpvCells light = someLight();
     const std::vector<SpecularPoint> points = somePoints(testSize({601, 1}).first);
-    LwSpecularView view = viewFrom(kOrigin + Vec{5.0, 3.0, -2.0}, 0.25);
+    LwSpecularRays view = raysFrom(kOrigin + Vec{5.0, 3.0, -2.0}, 0.25);
     if (isOrthographic) view.eye = float4(0.6, 0.0, 0.8, 0.0);
     std::vector<float> first;
     for (const std::uint32_t width : {1u, 16u}) {
@@ -196,8 +196,8 @@ TEST_CASE("specular rays: roughness beyond [0,1] is brought into it, no number i
     const Vec at = kOrigin + Vec{3.3, 4.1, 2.7}, n = reference::unit({1, 2, 3});
     const double nan = std::numeric_limits<double>::quiet_NaN(), most = std::numeric_limits<double>::infinity();
     const std::vector<SpecularPoint> points = {{at, n, 0.0}, {at, n, -3.0}, {at, n, 1.0}, {at, n, 7.0}, {at, n, most}, {at, n, nan}};
-    const std::vector<float> found = marchSpecular(rig, pass, points, viewFrom(at), place).radiance;
-    const std::vector<float> ahead = marchSpecular(rig, pass, points, viewFrom(at + n * 2.0), place).radiance;
+    const std::vector<float> found = marchSpecular(rig, pass, points, raysFrom(at), place).radiance;
+    const std::vector<float> ahead = marchSpecular(rig, pass, points, raysFrom(at + n * 2.0), place).radiance;
     for (std::size_t c = 0; c < 3; ++c) {
         const float* f = &found[6 * c];
         CHECK(f[0] == f[1]);

@@ -29,6 +29,12 @@ struct SpecularTwin {
     }
     double closed(int level, const std::array<int, 3>& i, int axis) const { return double(cell(level, i)[4 * axis + 3]); }
 
+    // What gets from a cell into the one beside it along an axis; each on its level.
+    double passes(int levelFrom, const std::array<int, 3>& from, int levelTo, const std::array<int, 3>& to, int axis, bool up) const {
+        if (!hasFaces || up) return 1 - closed(levelTo, to, axis);
+        return (levelFrom > 0 ? 1 : 1 - closed(levelFrom, from, axis)) * (levelTo > 0 ? 1 - closed(levelTo, to, axis) : 1);
+    }
+
     std::array<double, 3> march(const std::array<double, 3>& at, const std::array<double, 3>& d, double tangent) const {
         const auto size_ = double(size);
         int a = 0;
@@ -48,6 +54,18 @@ struct SpecularTwin {
         double through = 1;
         for (; plane < sideOf(level); ++plane, moved = true) {
             while (level + 1 < levels && plane % 2 == 0 && tangent * (plane * double(1 << level) - start) * slope >= double(1 << level)) {
+                if (plane > 0)
+                    for (std::size_t i = 0; i < 3; ++i) {
+                        if (i == A) continue;
+                        std::array<int, 3> here = before;
+                        for (int& x : here) x >>= level - levelBefore;
+                        here[A] = sign > 0 ? plane - 1 : sideOf(level) - plane;
+                        const bool isUp = d[i] > 0, down = d[i] < 0;
+                        if ((here[i] % 2 == 1) != down) continue;
+                        std::array<int, 3> beside = here;
+                        beside[i] += down ? -1 : 1;
+                        through *= passes(level, here, level, beside, int(i), isUp);
+                    }
                 ++level;
                 plane /= 2;
             }
@@ -85,13 +103,18 @@ struct SpecularTwin {
                                     0.25 * std::max(0.0, mean[c] - std::sqrt(x * x + y * y + z * z));
                 light[c] += through * scale * slope * sent;
             }
-            std::array<int, 3> last = before;
-            for (int& i : last) i >>= level - levelBefore;
+            std::array<int, 3> at_ = before;
+            for (int& i : at_) i >>= level - levelBefore;
+            if (moved) {
+                at_[A] = along;
+                through *= passes(levelBefore, before, level, at_, int(A), sign > 0);
+            }
             for (std::size_t i = 0; i < 3; ++i) {
-                const bool enters = i == A ? moved : own[i] != last[i];
-                const bool down = i == A ? sign < 0 : own[i] < last[i];
-                if (enters)
-                    through *= 1 - (hasFaces && down ? closed(levelBefore, before, int(i)) : closed(level, own, int(i)));
+                if (i == A || own[i] == at_[i]) continue;
+                std::array<int, 3> next = at_;
+                next[i] = own[i];
+                through *= passes(level, at_, level, next, int(i), own[i] > at_[i]);
+                at_ = next;
             }
             if (through < 1e-3) return light;
             before = own;
@@ -105,19 +128,19 @@ struct SpecularTwin {
     std::array<double, 3> lobe(const std::array<double, 3>& at, Vec n, Vec v, double roughness) const {
         const double alpha = roughness * roughness, a2 = alpha * alpha, nv = dot(n, v), pi = 3.14159265358979323846;
         const auto of = [](Vec d) { return std::array<double, 3>{d.x, d.y, d.z}; };
-        if (roughness <= 0.2) return march(at, of(n * (2 * nv) - v), 2 * alpha * std::sqrt(nv));
+        if (roughness <= 0.2) return march(at, of(n * (2 * nv) - v), alpha * std::sqrt(nv));
         const Vec t = unit(v - n * nv), b = {n.y * t.z - n.z * t.y, n.z * t.x - n.x * t.z, n.x * t.y - n.y * t.x};
         std::array<double, 3> sum{};
         double weights = 0;
-        for (int i = 0; i < 8; ++i) {
-            const double u = (i + 0.5) / 8, angle = 2 * pi * ((i & 1) / 2.0 + (i >> 1 & 1) / 4.0 + (i >> 2) / 8.0);
+        for (int i = 0; i < 16; ++i) {
+            const double u = (i + 0.5) / 16, angle = 2 * pi * ((i & 1) / 2.0 + (i >> 1 & 1) / 4.0 + (i >> 2 & 1) / 8.0 + (i >> 3) / 16.0);
             const double theta = std::atan(alpha * std::sqrt(u / (1 - u)));
             const Vec h = t * (std::sin(theta) * std::cos(angle)) + b * (std::sin(theta) * std::sin(angle)) + n * std::cos(theta);
             const Vec l = h * (2 * dot(h, v)) - v;
             if (dot(l, n) <= 0 || dot(h, v) <= 0) continue;
             const double c2 = std::cos(theta) * std::cos(theta), density = a2 / (pi * std::pow(c2 * (a2 - 1) + 1, 2.0));
             const double pdf = density * std::cos(theta) / (4 * dot(h, v));
-            const auto found = march(at, of(l), std::min(std::sqrt(1 / (8 * pdf) / pi), 1.0));
+            const auto found = march(at, of(l), 0.5 * std::sqrt(1 / (16 * pdf) / pi));
             for (std::size_t c = 0; c < 3; ++c) sum[c] += dot(l, n) * found[c];
             weights += dot(l, n);
         }

@@ -15,8 +15,8 @@ struct SpecularPoint {
     double roughness = 0.0;
 };
 
-inline LwSpecularView viewFrom(reference::Vec eye, double environment = 0.0) {
-    LwSpecularView view{};
+inline LwSpecularRays raysFrom(reference::Vec eye, double environment = 0.0) {
+    LwSpecularRays view{};
     view.eye = float4(eye.x, eye.y, eye.z, 1.0);
     view.environment = float4(environment, environment, environment, 0.0);
     return view;
@@ -30,7 +30,7 @@ struct SpecularLight {
 };
 
 inline SpecularLight marchSpecular(KernelRig& rig, LpvSpecular& pass, const std::vector<SpecularPoint>& points,
-                                   const LwSpecularView& view, const Buffer& place) {
+                                   const LwSpecularRays& view, const Buffer& place) {
     const auto count = std::uint32_t(points.size());
     std::vector<float> positions(3 * count), normals(3 * count), roughness(count);
     for (std::uint32_t i = 0; i < count; ++i) {
