@@ -18,30 +18,28 @@
 #include "shared/surface.h"
 #include "shared/wide.h"
 
-// Points of the lobe: u / (1 - u) of u = (i + 1/2) / 16, cos and sin of 2 pi times i with its bits reversed, over 16 (Hammersley's).
+// Points of the lobe: u / (1 - u) of u = (i + 1/2) / 8, cos and sin of 2 pi times i with its bits reversed, over 8 (Hammersley's).
 __constant float kTangents[LW_SPECULAR_RAYS] = {
-    0.0322580645f, 0.1034482759f, 0.1851851852f, 0.28f, 0.3913043478f, 0.5238095238f, 0.6842105263f, 0.8823529412f,
-    1.1333333333f, 1.4615384615f, 1.9090909091f, 2.5555555556f, 3.5714285714f, 5.4f, 9.6666666667f, 31.0f};
+    0.0666666667f, 0.2307692308f, 0.4545454545f, 0.7777777778f, 1.2857142857f, 2.2f, 4.3333333333f, 15.0f};
 __constant float kCosines[LW_SPECULAR_RAYS] = {
-    1.0f, -1.0f, 0.0f, 0.0f, 0.7071067812f, -0.7071067812f, -0.7071067812f, 0.7071067812f, 0.9238795325f, -0.9238795325f,
-    -0.3826834324f, 0.3826834324f, 0.3826834324f, -0.3826834324f, -0.9238795325f, 0.9238795325f};
+    1.0f, -1.0f, 0.0f, 0.0f, 0.7071067812f, -0.7071067812f, -0.7071067812f, 0.7071067812f};
 __constant float kSines[LW_SPECULAR_RAYS] = {
-    0.0f, 0.0f, 1.0f, -1.0f, 0.7071067812f, -0.7071067812f, 0.7071067812f, -0.7071067812f, 0.3826834324f, -0.3826834324f,
-    0.9238795325f, -0.9238795325f, 0.9238795325f, -0.9238795325f, 0.3826834324f, -0.3826834324f};
+    0.0f, 0.0f, 1.0f, -1.0f, 0.7071067812f, -0.7071067812f, 0.7071067812f, -0.7071067812f};
 
 typedef struct {
     __global const float16* cells;
+    __global const float4* ways;
     int size, levels, hasFaces;
     float4 environment;
 } specular_grid;
 
-LW_FN float closed_along(float16 cell, int axis) { return axis == 0 ? cell.s3 : axis == 1 ? cell.s7 : cell.sb; }
+LW_FN float along_axis(float4 way, int axis) { return axis == 0 ? way.x : axis == 1 ? way.y : way.z; }
 
 // What gets from one cell into the next along an axis. Faces are of the finest cells alone: a cell's lower one, so that a way down is
 // closed by the cell it leaves. isCoarse, wasCoarse: of the cells on both sides.
-LW_FN float passes(float16 from, float16 to, int axis, int isUp, int hasFaces, int wasCoarse, int isCoarse) {
-    if (!hasFaces || isUp) return 1.0f - closed_along(to, axis);
-    return (wasCoarse ? 1.0f : 1.0f - closed_along(from, axis)) * (isCoarse ? 1.0f - closed_along(to, axis) : 1.0f);
+LW_FN float passes(float4 from, float4 to, int axis, int isUp, int hasFaces, int wasCoarse, int isCoarse) {
+    if (!hasFaces || isUp) return 1.0f - along_axis(to, axis);
+    return (wasCoarse ? 1.0f : 1.0f - along_axis(from, axis)) * (isCoarse ? 1.0f - along_axis(to, axis) : 1.0f);
 }
 
 // What surfaces of a cell send against direction d: all of one normal n Phi / pi max(0, -n.d), exactly; of several the mean normal's
@@ -52,6 +50,17 @@ LW_FN float4 sent_against(float16 cell, float dx, float dy, float dz) {
     return fmax(-(x * dx + y * dy + z * dz), 0.0f) + 0.25f * fmax(cell.s0123 - length_, 0.0f);
 }
 
+// The nearest cell across a ray, and the mean of the four around it.
+LW_FN int nearest(float p, float inverse, int n) { return clamp((int)(p * inverse), 0, n - 1); }
+
+LW_FN float16 mean_of_four(__global const float16* plane, int n, float pu, float pv, int toU, int toV) {
+    const float border = (float)(n - 1), xu = clamp(pu - 0.5f, 0.0f, border), xv = clamp(pv - 0.5f, 0.0f, border);
+    const int iu = min((int)xu, n - 2), iv = min((int)xv, n - 2);
+    const float fu = xu - (float)iu, fv = xv - (float)iv;
+    __global const float16* corner = plane + iu * toU + iv * toV;
+    return (1.0f - fv) * ((1.0f - fu) * corner[0] + fu * corner[toU]) + fv * ((1.0f - fu) * corner[toV] + fu * corner[toU + toV]);
+}
+
 // Radiance along one ray that starts at `at`, in cells from the grid's corner, and widens by `tangent`.
 LW_FN float4 march(const specular_grid grid, const float* at, const float* d, float tangent) {
     const float ax = fabs(d[0]), ay = fabs(d[1]), az = fabs(d[2]);
@@ -60,53 +69,62 @@ LW_FN float4 march(const specular_grid grid, const float* at, const float* d, fl
     const int up = d[a] > 0.0f;
     const float start = up ? at[a] : most - at[a], su = d[u] * slope, sv = d[v] * slope;
     __global const float16* cells = grid.cells;
-    int n = grid.size, level = 0, k = clamp((int)start, 0, n - 1), lu = clamp((int)at[u], 0, n - 1),
-        lv = clamp((int)at[v], 0, n - 1);
-    float scale = 1.0f, through = 1.0f;
-    float4 light = (float4)(0.0f);
-    const int steps[3] = {1, grid.size, grid.size * grid.size};
-    float16 last = cells[(up ? k : n - 1 - k) * steps[a] + lu * steps[u] + lv * steps[v]];
-    int lastLevel = 0;
-    int isEntered = (float)k + 0.5f < start;
-    for (k += isEntered; k < n; ++k, isEntered = 1) {
+    __global const float4* ways = grid.ways;
+    int n = grid.size, level = 0, k = clamp((int)start, 0, n - 1), lu = nearest(at[u], 1.0f, n), lv = nearest(at[v], 1.0f, n);
+    int toA = a == 0 ? 1 : a == 1 ? n : n * n, toU = u == 0 ? 1 : n, toV = v == 2 ? n * n : n;
+    float scale = 1.0f, inverse = 1.0f, through = 1.0f;
+    float4 light = (float4)(0.0f), last = ways[(up ? k : n - 1 - k) * toA + lu * toU + lv * toV];
+    int lastLevel = 0, isEntered = (float)k + 0.5f < start;
+    for (k += isEntered; k < n; isEntered = 1) {
         while (level + 1 < grid.levels && (k & 1) == 0 && tangent * ((float)k * scale - start) * slope >= scale) {
             // What closes the way to the other half of the coarser cell, aside, is left behind: it counts now.
-            const int toA = a == 0 ? 1 : a == 1 ? n : n * n, toU = u == 0 ? 1 : n, toV = v == 2 ? n * n : n;
-            __global const float16* here = cells + (up ? k - 1 : n - k) * toA + lu * toU + lv * toV;
+            __global const float4* here = ways + (up ? k - 1 : n - k) * toA + lu * toU + lv * toV;
             if (k > 0 && (lu & 1) == (d[u] < 0.0f))
                 through *= passes(here[0], here[d[u] < 0.0f ? -toU : toU], u, d[u] > 0.0f, grid.hasFaces, level > 0, level > 0);
             if (k > 0 && (lv & 1) == (d[v] < 0.0f))
                 through *= passes(here[0], here[d[v] < 0.0f ? -toV : toV], v, d[v] > 0.0f, grid.hasFaces, level > 0, level > 0);
             cells += n * n * n;
+            ways += n * n * n;
             n /= 2;
             k /= 2;
             lu /= 2;
             lv /= 2;
             scale *= 2.0f;
+            inverse *= 0.5f;
             ++level;
+            toA = a == 0 ? 1 : a == 1 ? n : n * n;
+            toU = u == 0 ? 1 : n;
+            toV = v == 2 ? n * n : n;
         }
-        const float along = ((float)k + 0.5f) * scale - start;
-        const float pu = at[u] + su * along, pv = at[v] + sv * along;
+        const float along = ((float)k + 0.5f) * scale - start, pu = at[u] + su * along, pv = at[v] + sv * along;
         if (!(pu >= 0.0f && pu <= most && pv >= 0.0f && pv <= most)) break;
-        const float border = (float)(n - 1), xu = clamp(pu / scale - 0.5f, 0.0f, border), xv = clamp(pv / scale - 0.5f, 0.0f, border);
-        const int iu = min((int)xu, n - 2), iv = min((int)xv, n - 2);
-        const float fu = xu - (float)iu, fv = xv - (float)iv;
-        const int toU = u == 0 ? 1 : n, toV = v == 2 ? n * n : n, toA = a == 0 ? 1 : a == 1 ? n : n * n;
-        __global const float16* corner = cells + (up ? k : n - 1 - k) * toA + iu * toU + iv * toV;
-        const float16 c00 = corner[0], c10 = corner[toU], c01 = corner[toV], c11 = corner[toU + toV];
-        const float16 mean = (1.0f - fv) * ((1.0f - fu) * c00 + fu * c10) + fv * ((1.0f - fu) * c01 + fu * c11);
+        const int plane = (up ? k : n - 1 - k) * toA, nu = nearest(pu, inverse, n), nv = nearest(pv, inverse, n);
+        const float4 own = ways[plane + nu * toU + nv * toV];
+        // Nothing in all cells nearer than that: so many planes have nothing to add, but one that a coarser level may begin at.
+        int empty = (int)own.w - 1;
+        if (empty > 0) {
+            if (level + 1 < grid.levels && tangent > 0.0f) {
+                const float next = (scale / (tangent * slope) + start) * inverse - (float)k;
+                empty = next < 1.0f ? 1 : min(empty, (int)fmin(next, 8.0f));
+            }
+            const float behind = along + (float)(empty - 1) * scale;
+            lu = nearest(at[u] + su * behind, inverse, n);
+            lv = nearest(at[v] + sv * behind, inverse, n);
+            last = (float4)(0.0f);
+            lastLevel = level;
+            k += empty;
+            continue;
+        }
+        const float16 mean = mean_of_four(cells + plane, n, pu * inverse, pv * inverse, toU, toV);
         if (fmax(fmax(mean.s0, mean.s1), mean.s2) > 0.0f) light += through * scale * slope * sent_against(mean, d[0], d[1], d[2]);
-        const int farU = fu >= 0.5f, farV = fv >= 0.5f, nu = iu + farU, nv = iv + farV;
-        const float16 own = farV ? (farU ? c11 : c01) : (farU ? c10 : c00);
-        // To that cell along one axis after the other: where two walls meet there is no way between them.
-        __global const float16* plane = cells + (up ? k : n - 1 - k) * toA;
+        // To the nearest cell along one axis after the other: where two walls meet there is no way between them.
         if (isEntered) {
-            const float16 ahead = plane[lu * toU + lv * toV];
+            const float4 ahead = ways[plane + lu * toU + lv * toV];
             through *= passes(last, ahead, a, up, grid.hasFaces, lastLevel > 0, level > 0);
             last = ahead;
         }
         if (nu != lu) {
-            const float16 aside = plane[nu * toU + lv * toV];
+            const float4 aside = ways[plane + nu * toU + lv * toV];
             through *= passes(last, aside, u, nu > lu, grid.hasFaces, level > 0, level > 0);
             last = aside;
         }
@@ -116,6 +134,7 @@ LW_FN float4 march(const specular_grid grid, const float* at, const float* d, fl
         lastLevel = level;
         lu = nu;
         lv = nv;
+        ++k;
     }
     return light + through * grid.environment;
 }
@@ -184,7 +203,7 @@ __kernel void lpv_specular_pick(__global const float* position, int4 positionLay
 __kernel void lpv_specular_march(__global const float* position, int4 positionLayout, __global const float* normal,
                                  int4 normalLayout, __global const float* roughness, int4 roughnessLayout, int hasRoughness, int width,
                                  int height, LwSpecularRays view, __global const LwLpvPlace* place_, int size, int hasFaces,
-                                 __global const float16* cells, __global float* radiance, int4 radianceLayout,
+                                 __global const float16* cells, __global const float4* ways, __global float* radiance, int4 radianceLayout,
                                  __global int* counts) {
     const int x = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);
     if (x >= width || y >= height) return;
@@ -232,7 +251,7 @@ __kernel void lpv_specular_march(__global const float* position, int4 positionLa
     store(vz, v[2], 0);
     store(rough, r, 0);
     store(ones_(has), live, 0);
-    const specular_grid grid = {cells, size, specular_levels(size), hasFaces, view.environment};
+    const specular_grid grid = {cells, ways, size, specular_levels(size), hasFaces, view.environment};
     for (int l = 0; l < LW_WIDTH; ++l) {
         float4 found = (float4)(0.0f);
         if (live[l] > 0.0f) {

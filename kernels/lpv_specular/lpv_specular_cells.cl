@@ -115,3 +115,42 @@ __kernel void lpv_specular_halve(__global float4* cells, int from, int to, int s
     for (int i = 0; i < 3; ++i) mean[i].w = closed[i];
     for (int i = 0; i < 4; ++i) out[i] = mean[i];
 }
+
+// The level of a cell of all levels' list; at: its place in the level, side: cells a side.
+LW_FN int level_of(int cell, int size, int* at, int* side) {
+    int level = 0;
+    for (*at = cell, *side = size; *at >= *side * *side * *side && *side > 4; ++level) {
+        *at -= *side * *side * *side;
+        *side /= 2;
+    }
+    return level;
+}
+
+// One work-item = one cell of all levels: how much its ways are closed, apart from its light; and 0 where it has any of either, or
+// else LW_SPECULAR_FAR.
+__kernel void lpv_specular_ways(__global const float4* cells, int count, __global float4* ways, __global float* distances) {
+    const int i = (int)get_global_id(0);
+    if (i >= count) return;
+    const float4 c0 = cells[4 * i], x = cells[4 * i + 1], y = cells[4 * i + 2];
+    const float most = fmax(fmax(fmax(c0.x, c0.y), fmax(c0.z, c0.w)), fmax(x.w, y.w));
+    ways[i] = (float4)(c0.w, x.w, y.w, 0.0f);
+    distances[i] = most > 0.0f ? 0.0f : LW_SPECULAR_FAR;
+}
+
+// One work-item = one cell of all levels: how far, in its level's cells and as the largest of the three coordinates, the next cell is
+// that is not empty; along one axis after the other. isLast: into the ways.
+__kernel void lpv_specular_distances(__global const float* from, int count, int size, int axis, int isLast, __global float4* ways,
+                                     __global float* to) {
+    const int i = (int)get_global_id(0);
+    if (i >= count) return;
+    int at, side;
+    level_of(i, size, &at, &side);
+    const int step = axis == 0 ? 1 : axis == 1 ? side : side * side, here = at / step % side;
+    float least = from[i];
+    for (int k = 1; (float)k < least; ++k) {
+        if (here - k >= 0) least = fmin(least, fmax((float)k, from[i - k * step]));
+        if (here + k < side) least = fmin(least, fmax((float)k, from[i + k * step]));
+    }
+    if (isLast) ways[i].w = least;
+    else to[i] = least;
+}

@@ -12,7 +12,7 @@
 #define LW_SPECULAR_CELL 16
 
 // Rays of a lobe, and the largest roughness that takes one ray alone: its lobe is narrower than a cell at a dozen cells' distance.
-#define LW_SPECULAR_RAYS 16
+#define LW_SPECULAR_RAYS 8
 #define LW_SPECULAR_ONE_RAY 0.2f
 // Of a ray's share of directions, a cone, how wide its cells are, by the cone's width: less takes time; more darkens what the ray passes
 // aslant, since in wide cells a wall's light and the wall itself are the same cell (in a box of lit walls 0.79 of the light is left of
@@ -22,6 +22,9 @@
 #define LW_SPECULAR_START 0.5f
 // What still gets through is taken for nothing below this.
 #define LW_SPECULAR_LEAST 1e-3f
+
+// How far empty cells are counted. More: rays leap further, counting takes longer.
+#define LW_SPECULAR_FAR 8.0f
 
 // Levels of a grid, the coarsest of four cells a side.
 LW_FN lw_int specular_levels(lw_int size) {

@@ -39,20 +39,18 @@ public:
                     const Planes& halfRoughness);
 
     const Buffer& cells() const { return shown_; }
-    std::uint64_t bytes() const { return packed_.bytes() + shown_.bytes(); }
-    static std::uint64_t estimateBytes(std::uint32_t size, bool keepsShown) { return (keepsShown ? 2 : 1) * cellBytes(size); }
+    std::uint64_t bytes() const;
+    static std::uint64_t estimateBytes(std::uint32_t size, bool keepsShown);
 
 private:
-    static std::uint64_t cellBytes(std::uint32_t size) {
-        return std::uint64_t(specular_first(lw_int(size), specular_levels(lw_int(size)))) * LW_SPECULAR_CELL * sizeof(float);
-    }
     Buffer& packed();
 
     Device& device_;
     std::uint32_t size_;
     bool keepsShown_, hasFaces_ = false;
-    Kernel &packSteps_, &packSweep_, &halve_, &pick_, &march_;
+    Kernel &packSteps_, &packSweep_, &halve_, &ways_, &distance_, &pick_, &march_;
     Buffer packed_, shown_;  // packed_ only where it is another
+    Buffer closed_, distances_[2];  // float4 of each cell that is shown: how its ways are closed, how far the next is that is not empty
 };
 
 }  // namespace lightwell

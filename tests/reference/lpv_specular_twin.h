@@ -132,15 +132,15 @@ struct SpecularTwin {
         const Vec t = unit(v - n * nv), b = {n.y * t.z - n.z * t.y, n.z * t.x - n.x * t.z, n.x * t.y - n.y * t.x};
         std::array<double, 3> sum{};
         double weights = 0;
-        for (int i = 0; i < 16; ++i) {
-            const double u = (i + 0.5) / 16, angle = 2 * pi * ((i & 1) / 2.0 + (i >> 1 & 1) / 4.0 + (i >> 2 & 1) / 8.0 + (i >> 3) / 16.0);
+        for (int i = 0; i < 8; ++i) {
+            const double u = (i + 0.5) / 8, angle = 2 * pi * ((i & 1) / 2.0 + (i >> 1 & 1) / 4.0 + (i >> 2) / 8.0);
             const double theta = std::atan(alpha * std::sqrt(u / (1 - u)));
             const Vec h = t * (std::sin(theta) * std::cos(angle)) + b * (std::sin(theta) * std::sin(angle)) + n * std::cos(theta);
             const Vec l = h * (2 * dot(h, v)) - v;
             if (dot(l, n) <= 0 || dot(h, v) <= 0) continue;
             const double c2 = std::cos(theta) * std::cos(theta), density = a2 / (pi * std::pow(c2 * (a2 - 1) + 1, 2.0));
             const double pdf = density * std::cos(theta) / (4 * dot(h, v));
-            const auto found = march(at, of(l), 0.5 * std::sqrt(1 / (16 * pdf) / pi));
+            const auto found = march(at, of(l), 0.5 * std::sqrt(1 / (8 * pdf) / pi));
             for (std::size_t c = 0; c < 3; ++c) sum[c] += dot(l, n) * found[c];
             weights += dot(l, n);
         }

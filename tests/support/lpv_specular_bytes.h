@@ -5,11 +5,11 @@
 
 namespace lightwell::test {
 
-// Cells of 16 floats, each level's side half the one's before, to four cells.
+// Cells of 16 floats, and four and two beside, each level's side half the one's before, to four cells.
 inline std::uint64_t specularCellBytes(std::uint64_t size) {
     std::uint64_t cells = 0;
     for (std::uint64_t n = size; n >= 4; n /= 2) cells += n * n * n;
-    return cells * 16 * 4;
+    return cells * (16 + 4 + 2) * 4;
 }
 
 // Four counts, and at half resolution radiance, roughness and two counts. Sizes in pixels, columns with their padding.
