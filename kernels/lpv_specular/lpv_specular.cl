@@ -118,17 +118,12 @@ LW_FN float4 march(const specular_grid grid, const float* at, const float* d, fl
         const float16 mean = mean_of_four(cells + plane, n, pu * inverse, pv * inverse, toU, toV);
         if (fmax(fmax(mean.s0, mean.s1), mean.s2) > 0.0f) light += through * scale * slope * sent_against(mean, d[0], d[1], d[2]);
         // To the nearest cell along one axis after the other: where two walls meet there is no way between them.
-        if (isEntered) {
-            const float4 ahead = ways[plane + lu * toU + lv * toV];
-            through *= passes(last, ahead, a, up, grid.hasFaces, lastLevel > 0, level > 0);
-            last = ahead;
-        }
-        if (nu != lu) {
-            const float4 aside = ways[plane + nu * toU + lv * toV];
-            through *= passes(last, aside, u, nu > lu, grid.hasFaces, level > 0, level > 0);
-            last = aside;
-        }
-        if (nv != lv) through *= passes(last, own, v, nv > lv, grid.hasFaces, level > 0, level > 0);
+        // (Without branches, which nobody could foresee.)
+        const float4 ahead = ways[plane + lu * toU + lv * toV], aside = ways[plane + nu * toU + lv * toV];
+        const float alongA = passes(last, ahead, a, up, grid.hasFaces, lastLevel > 0, level > 0),
+                    alongU = passes(ahead, aside, u, nu > lu, grid.hasFaces, level > 0, level > 0),
+                    alongV = passes(aside, own, v, nv > lv, grid.hasFaces, level > 0, level > 0);
+        through *= (isEntered ? alongA : 1.0f) * (nu != lu ? alongU : 1.0f) * (nv != lv ? alongV : 1.0f);
         if (through < LW_SPECULAR_LEAST) return light;
         last = own;
         lastLevel = level;
