@@ -140,7 +140,7 @@ LW_FN float4 lobe_mean(const specular_grid grid, const float* at, const float* n
     const float nv = n[0] * v[0] + n[1] * v[1] + n[2] * v[2];
     if (roughness <= LW_SPECULAR_ONE_RAY) {
         const float d[3] = {2.0f * nv * n[0] - v[0], 2.0f * nv * n[1] - v[1], 2.0f * nv * n[2] - v[2]};
-        return march(grid, at, d, LW_SPECULAR_WIDTH * 2.0f * alpha * sqrt(nv));
+        return march(grid, at, d, 2.0f * alpha * sqrt(nv));
     }
     // Across the normal: towards the eye, and aside; the lobe is the same on both sides of the two.
     float t[3] = {v[0] - nv * n[0], v[1] - nv * n[1], v[2] - nv * n[2]};

@@ -128,7 +128,7 @@ struct SpecularTwin {
     std::array<double, 3> lobe(const std::array<double, 3>& at, Vec n, Vec v, double roughness) const {
         const double alpha = roughness * roughness, a2 = alpha * alpha, nv = dot(n, v), pi = 3.14159265358979323846;
         const auto of = [](Vec d) { return std::array<double, 3>{d.x, d.y, d.z}; };
-        if (roughness <= 0.2) return march(at, of(n * (2 * nv) - v), alpha * std::sqrt(nv));
+        if (roughness <= 0.2) return march(at, of(n * (2 * nv) - v), 2 * alpha * std::sqrt(nv));
         const Vec t = unit(v - n * nv), b = {n.y * t.z - n.z * t.y, n.z * t.x - n.x * t.z, n.x * t.y - n.y * t.x};
         std::array<double, 3> sum{};
         double weights = 0;
