@@ -61,77 +61,98 @@ LW_FN float16 mean_of_four(__global const float16* plane, int n, float pu, float
     return (1.0f - fv) * ((1.0f - fu) * corner[0] + fu * corner[toU]) + fv * ((1.0f - fu) * corner[toV] + fu * corner[toU + toV]);
 }
 
+// Where a ray is: in plane k of a level, counted along the ray's main axis a; its nearest cell in the plane before, (lu, lv).
+typedef struct {
+    __global const float16* cells;  // the level's
+    __global const float4* ways;
+    int n, level, k, lu, lv, toA, toU, toV;
+    float scale, inverse, through;
+} specular_place;
+
+LW_FN void set_steps(specular_place* s, int a, int u, int v) {
+    s->toA = a == 0 ? 1 : a == 1 ? s->n : s->n * s->n;
+    s->toU = u == 0 ? 1 : s->n;
+    s->toV = v == 2 ? s->n * s->n : s->n;
+}
+
+// On to the next level. What closes the way to the other half of the coarser cell, aside, is left behind: it counts now.
+LW_FN void coarsen(specular_place* s, const float* d, int a, int u, int v, int hasFaces) {
+    if (s->k > 0) {
+        const int along = d[a] > 0.0f ? s->k - 1 : s->n - s->k, isCoarse = s->level > 0;
+        __global const float4* here = s->ways + along * s->toA + s->lu * s->toU + s->lv * s->toV;
+        if ((s->lu & 1) == (d[u] < 0.0f))
+            s->through *= passes(here[0], here[d[u] < 0.0f ? -s->toU : s->toU], u, d[u] > 0.0f, hasFaces, isCoarse, isCoarse);
+        if ((s->lv & 1) == (d[v] < 0.0f))
+            s->through *= passes(here[0], here[d[v] < 0.0f ? -s->toV : s->toV], v, d[v] > 0.0f, hasFaces, isCoarse, isCoarse);
+    }
+    const int count = s->n * s->n * s->n;
+    s->cells += count;
+    s->ways += count;
+    s->n /= 2;
+    s->k /= 2;
+    s->lu /= 2;
+    s->lv /= 2;
+    s->scale *= 2.0f;
+    s->inverse *= 0.5f;
+    ++s->level;
+    set_steps(s, a, u, v);
+}
+
+// Planes that a ray leaps over from one whose nearest cell has nothing nearer than `distance`; not beyond one that a coarser level may
+// begin at.
+LW_FN int leap(const specular_place* s, float distance, float start, float widening, int hasNext) {
+    const int empty = (int)distance - 1;
+    if (empty < 1 || !hasNext || !(widening > 0.0f)) return empty;
+    const float next = (s->scale / widening + start) * s->inverse - (float)s->k;
+    return next < 1.0f ? 1 : min(empty, (int)fmin(next, LW_SPECULAR_FAR));
+}
+
 // Radiance along one ray that starts at `at`, in cells from the grid's corner, and widens by `tangent`.
 LW_FN float4 march(const specular_grid grid, const float* at, const float* d, float tangent) {
-    const float ax = fabs(d[0]), ay = fabs(d[1]), az = fabs(d[2]);
-    const int a = ax >= ay && ax >= az ? 0 : ay >= az ? 1 : 2, u = a == 0 ? 1 : 0, v = a == 2 ? 1 : 2;
-    const float most = (float)grid.size, slope = 1.0f / fabs(d[a]);
-    const int up = d[a] > 0.0f;
-    const float start = up ? at[a] : most - at[a], su = d[u] * slope, sv = d[v] * slope;
-    __global const float16* cells = grid.cells;
-    __global const float4* ways = grid.ways;
-    int n = grid.size, level = 0, k = clamp((int)start, 0, n - 1), lu = nearest(at[u], 1.0f, n), lv = nearest(at[v], 1.0f, n);
-    int toA = a == 0 ? 1 : a == 1 ? n : n * n, toU = u == 0 ? 1 : n, toV = v == 2 ? n * n : n;
-    float scale = 1.0f, inverse = 1.0f, through = 1.0f;
-    float4 light = (float4)(0.0f), last = ways[(up ? k : n - 1 - k) * toA + lu * toU + lv * toV];
-    int lastLevel = 0, isEntered = (float)k + 0.5f < start;
-    for (k += isEntered; k < n; isEntered = 1) {
-        while (level + 1 < grid.levels && (k & 1) == 0 && tangent * ((float)k * scale - start) * slope >= scale) {
-            // What closes the way to the other half of the coarser cell, aside, is left behind: it counts now.
-            __global const float4* here = ways + (up ? k - 1 : n - k) * toA + lu * toU + lv * toV;
-            if (k > 0 && (lu & 1) == (d[u] < 0.0f))
-                through *= passes(here[0], here[d[u] < 0.0f ? -toU : toU], u, d[u] > 0.0f, grid.hasFaces, level > 0, level > 0);
-            if (k > 0 && (lv & 1) == (d[v] < 0.0f))
-                through *= passes(here[0], here[d[v] < 0.0f ? -toV : toV], v, d[v] > 0.0f, grid.hasFaces, level > 0, level > 0);
-            cells += n * n * n;
-            ways += n * n * n;
-            n /= 2;
-            k /= 2;
-            lu /= 2;
-            lv /= 2;
-            scale *= 2.0f;
-            inverse *= 0.5f;
-            ++level;
-            toA = a == 0 ? 1 : a == 1 ? n : n * n;
-            toU = u == 0 ? 1 : n;
-            toV = v == 2 ? n * n : n;
-        }
-        const float along = ((float)k + 0.5f) * scale - start, pu = at[u] + su * along, pv = at[v] + sv * along;
+    const float ax = fabs(d[0]), ay = fabs(d[1]), az = fabs(d[2]), most = (float)grid.size;
+    const int a = ax >= ay && ax >= az ? 0 : ay >= az ? 1 : 2, u = a == 0 ? 1 : 0, v = a == 2 ? 1 : 2, up = d[a] > 0.0f;
+    const float slope = 1.0f / fabs(d[a]), start = up ? at[a] : most - at[a], su = d[u] * slope, sv = d[v] * slope;
+    specular_place s = {grid.cells, grid.ways, grid.size, 0, clamp((int)start, 0, grid.size - 1), nearest(at[u], 1.0f, grid.size),
+                        nearest(at[v], 1.0f, grid.size), 0, 0, 0, 1.0f, 1.0f, 1.0f};
+    set_steps(&s, a, u, v);
+    float4 light = (float4)(0.0f), last = s.ways[(up ? s.k : s.n - 1 - s.k) * s.toA + s.lu * s.toU + s.lv * s.toV];
+    int lastLevel = 0, isEntered = (float)s.k + 0.5f < start;
+    for (s.k += isEntered; s.k < s.n; isEntered = 1) {
+        while (s.level + 1 < grid.levels && (s.k & 1) == 0 && tangent * ((float)s.k * s.scale - start) * slope >= s.scale)
+            coarsen(&s, d, a, u, v, grid.hasFaces);
+        const float along = ((float)s.k + 0.5f) * s.scale - start, pu = at[u] + su * along, pv = at[v] + sv * along;
         if (!(pu >= 0.0f && pu <= most && pv >= 0.0f && pv <= most)) break;
-        const int plane = (up ? k : n - 1 - k) * toA, nu = nearest(pu, inverse, n), nv = nearest(pv, inverse, n);
-        const float4 own = ways[plane + nu * toU + nv * toV];
-        // Nothing in all cells nearer than that: so many planes have nothing to add, but one that a coarser level may begin at.
-        int empty = (int)own.w - 1;
+        const int plane = (up ? s.k : s.n - 1 - s.k) * s.toA, nu = nearest(pu, s.inverse, s.n), nv = nearest(pv, s.inverse, s.n);
+        const float4 own = s.ways[plane + nu * s.toU + nv * s.toV];
+        const int empty = leap(&s, own.w, start, tangent * slope, s.level + 1 < grid.levels);
         if (empty > 0) {
-            if (level + 1 < grid.levels && tangent > 0.0f) {
-                const float next = (scale / (tangent * slope) + start) * inverse - (float)k;
-                empty = next < 1.0f ? 1 : min(empty, (int)fmin(next, 8.0f));
-            }
-            const float behind = along + (float)(empty - 1) * scale;
-            lu = nearest(at[u] + su * behind, inverse, n);
-            lv = nearest(at[v] + sv * behind, inverse, n);
+            const float behind = along + (float)(empty - 1) * s.scale;
+            s.lu = nearest(at[u] + su * behind, s.inverse, s.n);
+            s.lv = nearest(at[v] + sv * behind, s.inverse, s.n);
             last = (float4)(0.0f);
-            lastLevel = level;
-            k += empty;
+            lastLevel = s.level;
+            s.k += empty;
             continue;
         }
-        const float16 mean = mean_of_four(cells + plane, n, pu * inverse, pv * inverse, toU, toV);
-        if (fmax(fmax(mean.s0, mean.s1), mean.s2) > 0.0f) light += through * scale * slope * sent_against(mean, d[0], d[1], d[2]);
-        // To the nearest cell along one axis after the other: where two walls meet there is no way between them.
-        // (Without branches, which nobody could foresee.)
-        const float4 ahead = ways[plane + lu * toU + lv * toV], aside = ways[plane + nu * toU + lv * toV];
-        const float alongA = passes(last, ahead, a, up, grid.hasFaces, lastLevel > 0, level > 0),
-                    alongU = passes(ahead, aside, u, nu > lu, grid.hasFaces, level > 0, level > 0),
-                    alongV = passes(aside, own, v, nv > lv, grid.hasFaces, level > 0, level > 0);
-        through *= (isEntered ? alongA : 1.0f) * (nu != lu ? alongU : 1.0f) * (nv != lv ? alongV : 1.0f);
-        if (through < LW_SPECULAR_LEAST) return light;
+        const float16 mean = mean_of_four(s.cells + plane, s.n, pu * s.inverse, pv * s.inverse, s.toU, s.toV);
+        if (fmax(fmax(mean.s0, mean.s1), mean.s2) > 0.0f)
+            light += s.through * s.scale * slope * sent_against(mean, d[0], d[1], d[2]);
+        // To the nearest cell along one axis after the other: where two walls meet there is no way between them. Without branches,
+        // which nobody could foresee.
+        const int isCoarse = s.level > 0;
+        const float4 ahead = s.ways[plane + s.lu * s.toU + s.lv * s.toV], aside = s.ways[plane + nu * s.toU + s.lv * s.toV];
+        const float alongA = passes(last, ahead, a, up, grid.hasFaces, lastLevel > 0, isCoarse),
+                    alongU = passes(ahead, aside, u, nu > s.lu, grid.hasFaces, isCoarse, isCoarse),
+                    alongV = passes(aside, own, v, nv > s.lv, grid.hasFaces, isCoarse, isCoarse);
+        s.through *= (isEntered ? alongA : 1.0f) * (nu != s.lu ? alongU : 1.0f) * (nv != s.lv ? alongV : 1.0f);
+        if (s.through < LW_SPECULAR_LEAST) return light;
         last = own;
-        lastLevel = level;
-        lu = nu;
-        lv = nv;
-        ++k;
+        lastLevel = s.level;
+        s.lu = nu;
+        s.lv = nv;
+        ++s.k;
     }
-    return light + through * grid.environment;
+    return light + s.through * grid.environment;
 }
 
 // The mean over the lobe. n, v: unit; v . n > 0.
@@ -192,6 +213,27 @@ __kernel void lpv_specular_pick(__global const float* position, int4 positionLay
     half_[halfRoughnessLayout.x + hy * halfRoughnessLayout.y + hx] = found;
 }
 
+typedef struct { real x, y, z; } specular_directions;
+
+// Unit vectors towards the eye, on the visible side also where a normal leans away from it.
+LW_FN specular_directions towards_eye(const LwSpecularRays view, const lw_surface s) {
+    const real one = (real)1.0f, none = (real)0.0f;
+    specular_directions v = {view.eye.x - s.px * view.eye.w, view.eye.y - s.py * view.eye.w, view.eye.z - s.pz * view.eye.w};
+    const real squared = squared_length(v.x, v.y, v.z), inverse = rsqrt(fmax(squared, (real)1e-30f));
+    const mask some = squared > 1e-30f;  // an eye in the surface itself looks straight on
+    v.x = select_(s.nx, v.x * inverse, some);
+    v.y = select_(s.ny, v.y * inverse, some);
+    v.z = select_(s.nz, v.z * inverse, some);
+    const real nv = fma_(v.x, s.nx, fma_(v.y, s.ny, v.z * s.nz));
+    // Of an orthographic camera the way back is known as well; else the part along the normal turns.
+    const real turn = view.eye.w > 0.0f ? one : select_(one, -one, nv < 0.0f);
+    const real behind = view.eye.w > 0.0f ? fmin(nv, none) * 2.0f : none;
+    v.x = turn * v.x - behind * s.nx;
+    v.y = turn * v.y - behind * s.ny;
+    v.z = turn * v.z - behind * s.nz;
+    return v;
+}
+
 // One work-item = LW_WIDTH pixels of a row. roughness: where hasRoughness. hasFaces: the cells' ways are closed by faces (see
 // lpv_specular_pack_steps). counts[0]: pixels that are neither surface nor background; counts[1]: whose light was brought down;
 // counts[2]: surfaces that the grid does not have; counts[3]: surfaces.
@@ -216,20 +258,8 @@ __kernel void lpv_specular_march(__global const float* position, int4 positionLa
     if (any_(missing)) atomic_add(counts + 2, count_(missing));
     if (any_(has)) atomic_add(counts + 3, count_(has));
 
-    // Towards the eye, on the visible side also where a normal leans away from it.
+    const specular_directions to = towards_eye(view, s);
     const real one = (real)1.0f, none = (real)0.0f;
-    real vx = view.eye.x - s.px * view.eye.w, vy = view.eye.y - s.py * view.eye.w, vz = view.eye.z - s.pz * view.eye.w;
-    const real squared = squared_length(vx, vy, vz), inv = rsqrt(fmax(squared, (real)1e-30f));
-    const mask some = squared > 1e-30f;  // an eye in the surface itself looks straight on
-    vx = select_(s.nx, vx * inv, some);
-    vy = select_(s.ny, vy * inv, some);
-    vz = select_(s.nz, vz * inv, some);
-    const real nv = fma_(vx, s.nx, fma_(vy, s.ny, vz * s.nz));
-    const real turn = view.eye.w > 0.0f ? one : select_(one, -one, nv < 0.0f);
-    const real behind = view.eye.w > 0.0f ? fmin(nv, none) * 2.0f : none;
-    vx = turn * vx - behind * s.nx;
-    vy = turn * vy - behind * s.ny;
-    vz = turn * vz - behind * s.nz;
     real rough = (real)view.roughness.x;
     if (hasRoughness) rough = load(roughness, roughnessLayout.x + y * roughnessLayout.y + x);
     rough = select_(one, clamp(rough, none, one), rough == rough);
@@ -241,9 +271,9 @@ __kernel void lpv_specular_march(__global const float* position, int4 positionLa
     store(s.nx, n[0], 0);
     store(s.ny, n[1], 0);
     store(s.nz, n[2], 0);
-    store(vx, v[0], 0);
-    store(vy, v[1], 0);
-    store(vz, v[2], 0);
+    store(to.x, v[0], 0);
+    store(to.y, v[1], 0);
+    store(to.z, v[2], 0);
     store(rough, r, 0);
     store(ones_(has), live, 0);
     const specular_grid grid = {cells, ways, size, specular_levels(size), hasFaces, view.environment};

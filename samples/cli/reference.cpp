@@ -12,6 +12,7 @@
 #include "layers.h"
 #include "path_tracer.h"
 #include "progress.h"
+#include "reference_layers.h"
 
 namespace cli {
 namespace {
@@ -38,10 +39,10 @@ void checkQuantity(const ReferenceOptions& options) {
     requireOneOf("--quantity", options.quantity, {"irradiance", "ambient-occlusion", "specular-radiance"});
     if (!options.isSpecular() && options.roughnessGiven->count() > 0)
         throw UsageError("--roughness: expected --quantity specular-radiance with it");
-    if (options.isSpecular() && options.bounces != "1")
-        throw UsageError("--quantity specular-radiance: knows one bounce only; expected --bounces 1");
-    if (options.isSpecular() && (options.unshadowed || options.onScreen || !options.vpls.empty()))
-        throw UsageError("--quantity specular-radiance: leave out --unshadowed, --on-screen and --vpls");
+    if (options.isSpecular() &&
+        (options.bounces != "1" || options.unshadowed || options.onScreen || !options.vpls.empty()))
+        throw UsageError(
+            "--quantity specular-radiance: expected --bounces 1 without --unshadowed, --on-screen, --vpls");
     requireOneOf("--weighting", options.weighting, {"cosine", "uniform"});
     if (!options.sourceViews.empty() && !options.onScreen)
         throw UsageError("--source-view: expected --on-screen with it, whose light it adds to");
@@ -108,33 +109,6 @@ studio::PathTracerOptions tracerOptions(const ReferenceOptions& options) {
         tracer.maxSamplesPerPixel = kMostSamples;
     }
     return tracer;
-}
-
-void addTo(studio::Image& to, const std::string& prefix, const studio::Image& from,
-           const std::string& layer) {
-    for (const char* channel : {"R", "G", "B"}) {
-        std::vector<float>& sum = to.plane(prefix + channel);
-        const std::vector<float>& values = from.plane(layer + "." + channel);
-        for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += values[i];
-    }
-}
-
-// R, G, B: the sum of the chosen layers, whose halves a.<layer>.*, b.<layer>.* come along; then every
-// layer: direct_irradiance ("direct" is taken by the radiance L_d), bounce1, bounce2, all.
-studio::Image assemble(const studio::Image& traced, const std::vector<std::string>& chosen,
-                       bool isCompact) {
-    studio::Image image(traced.width, traced.height);
-    image.metadata = traced.metadata;
-    for (const std::string& layer : chosen) addTo(image, "", traced, layer);
-    if (isCompact) return image;
-    for (const std::string& layer : chosen)
-        for (const std::string half : {"a.", "b."})
-            if (traced.has(half + layer + ".R")) addTo(image, half + layer + ".", traced, half + layer);
-    for (const std::string layer : {"direct", "bounce1", "bounce2", "all", "ambient", "specular"})
-        if (traced.has(layer + ".R"))
-            addTo(image, layer == "direct" ? "direct_irradiance." : layer + ".", traced, layer);
-    if (traced.has("validity")) image.plane("validity") = traced.plane("validity");
-    return image;
 }
 
 void describe(studio::Image& image, const ReferenceOptions& options, const studio::Camera& camera,
@@ -231,7 +205,7 @@ void traceReference(const ReferenceOptions& options) {
 
     const bool hasHalves = traced.has("a." + tracer.judgedLayers.front() + ".R");
     const double noise = hasHalves ? studio::estimateNoise(traced, tracer.judgedLayers) : -1.0;
-    studio::Image image = assemble(traced, tracer.judgedLayers, options.compact);
+    studio::Image image = assembleReference(traced, tracer.judgedLayers, options.compact);
     addLayer(image, "direct.", gbuffer.direct);
     addLayer(image, "albedo.", gbuffer.albedo);
     if (!options.compact) addLayer(image, "normal.", gbuffer.normal);

@@ -35,6 +35,28 @@ struct SpecularTwin {
         return (levelFrom > 0 ? 1 : 1 - closed(levelFrom, from, axis)) * (levelTo > 0 ? 1 - closed(levelTo, to, axis) : 1);
     }
 
+    // What the cells between `low` and the next, all in one plane across axis A, send against d.
+    std::array<double, 3> sentAgainst(int level, const std::array<int, 3>& low, const std::array<double, 3>& share, std::size_t A,
+                                      const std::array<double, 3>& d) const {
+        double mean[16] = {};
+        for (int k = 0; k < 8; ++k) {
+            double weight = 1;
+            std::array<int, 3> i = low;
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                const bool high = k >> axis & 1;
+                weight *= high ? share[axis] : 1 - share[axis];
+                i[axis] += high && axis != A ? 1 : 0;
+            }
+            for (int f = 0; f < 16; ++f) mean[f] += weight * double(cell(level, i)[f]);
+        }
+        std::array<double, 3> sent{};
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double x = mean[4 + c], y = mean[8 + c], z = mean[12 + c];
+            sent[c] = std::max(0.0, -(x * d[0] + y * d[1] + z * d[2])) + 0.25 * std::max(0.0, mean[c] - std::sqrt(x * x + y * y + z * z));
+        }
+        return sent;
+    }
+
     std::array<double, 3> march(const std::array<double, 3>& at, const std::array<double, 3>& d, double tangent) const {
         const auto size_ = double(size);
         int a = 0;
@@ -86,23 +108,8 @@ struct SpecularTwin {
                 share[i] = i == A ? 0.0 : x - low[i];
                 own[i] = low[i] + (share[i] >= 0.5 ? 1 : 0);
             }
-            double mean[16] = {};
-            for (int k = 0; k < 8; ++k) {
-                double weight = 1;
-                std::array<int, 3> i = low;
-                for (std::size_t axis = 0; axis < 3; ++axis) {
-                    const bool high = k >> axis & 1;
-                    weight *= high ? share[axis] : 1 - share[axis];
-                    i[axis] += high && axis != A ? 1 : 0;
-                }
-                for (int f = 0; f < 16; ++f) mean[f] += weight * double(cell(level, i)[f]);
-            }
-            for (std::size_t c = 0; c < 3; ++c) {
-                const double x = mean[4 + c], y = mean[8 + c], z = mean[12 + c];
-                const double sent = std::max(0.0, -(x * d[0] + y * d[1] + z * d[2])) +
-                                    0.25 * std::max(0.0, mean[c] - std::sqrt(x * x + y * y + z * z));
-                light[c] += through * scale * slope * sent;
-            }
+            const std::array<double, 3> sent = sentAgainst(level, low, share, A, d);
+            for (std::size_t c = 0; c < 3; ++c) light[c] += through * scale * slope * sent[c];
             std::array<int, 3> at_ = before;
             for (int& i : at_) i >>= level - levelBefore;
             if (moved) {
