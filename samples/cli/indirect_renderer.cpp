@@ -41,7 +41,7 @@ std::unique_ptr<IndirectRenderer> makeRenderer(const Parameters& parameters, con
     if (!parameters.needsDevice()) {
         if (options.quantity != Quantity::Irradiance)
             throw UsageError("technique " + parameters.technique() +
-                             ": makes irradiance only; expected one of the library");
+                             ": makes no ambient occlusion or specular radiance; expected one of the library");
         if (!inputs.lwSources().empty())
             throw UsageError("--source-view: technique " + parameters.technique() +
                              " looks at none; expected one of the library");
