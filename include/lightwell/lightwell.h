@@ -264,7 +264,7 @@ typedef struct LWGBuffer {
                                   depth does not unproject to a point within reach have none either */
     LWImage albedo;          /**< diffuse reflectance in [0,1] */
     LWImage directRadiance;  /**< L_d, W/(sr m^2) */
-    LWImage roughness;       /**< 1 channel, [0,1] */
+    LWImage roughness;       /**< 1 channel, [0,1]; GGX alpha is its square. What is no number is 1 */
     LWImage motion;          /**< 2 channels: this pixel's position of the previous frame less this
                                   frame's, in pixels, +x right, +y down */
     LWImage receiveMask;     /**< 1 channel: nonzero pixels receive indirect light but send none */
@@ -369,7 +369,9 @@ typedef struct LWOutput {
                                     the inputs hold: above 1e36 it is brought down ("saturated_pixels") */
     LWImage validity;          /**< 1 channel in [0,1]: share of the hemisphere accounted for */
     LWImage ambientOcclusion;  /**< 1 channel in [0,1]: 1 = open */
-    LWImage specularRadiance;  /**< 3 channels */
+    LWImage specularRadiance;  /**< mean of the indirect radiance that arrives over the GGX lobe of alpha = roughness^2 about the mirrored
+                                    view direction, weighted by n.l, before any reflectance; 3 channels, W/(sr m^2). Takes
+                                    LWGBuffer::camera and `roughness` (0.5 where absent); "lpv" */
     LWImage shadow;            /**< 1 channel */
     const LWSync* sync;
 } LWOutput;

@@ -40,15 +40,17 @@ std::unique_ptr<IndirectRenderer> makeRenderer(const Parameters& parameters, con
                                                const DeviceOptions& options) {
     if (!parameters.needsDevice()) {
         if (options.quantity != Quantity::Irradiance)
-            throw UsageError("technique " + parameters.technique() +
-                             ": makes irradiance only; expected one of the library");
+            throw UsageError(
+                "technique " + parameters.technique() +
+                ": makes no ambient occlusion or specular radiance; expected one of the library");
         if (!inputs.lwSources().empty())
             throw UsageError("--source-view: technique " + parameters.technique() +
                              " looks at none; expected one of the library");
         return makeRenderer(parameters, inputs, nullptr);
     }
     const lightwell::Device device = openDevice(options.device, options.width);
-    return std::make_unique<LibraryRenderer>(device, parameters, inputs, options.quantity, options.roughness);
+    return std::make_unique<LibraryRenderer>(device, parameters, inputs, options.quantity,
+                                             options.roughness);
 }
 
 std::unique_ptr<IndirectRenderer> makeRenderer(const Parameters& parameters, const RenderInputs& inputs,

@@ -35,7 +35,9 @@ double timed(const lightwell::Device& device, F&& call) {
 
 glm::vec3 irradianceOf(const Probe& probe, const glm::vec3& normal) {
     const auto& b = probe.bands;
-    return glm::max(kPi * kY0 * b[0] + 2.0f * kPi / 3.0f * kY1 * (b[1] * normal.x + b[2] * normal.y + b[3] * normal.z), 0.0f);
+    return glm::max(kPi * kY0 * b[0] +
+                        2.0f * kPi / 3.0f * kY1 * (b[1] * normal.x + b[2] * normal.y + b[3] * normal.z),
+                    0.0f);
 }
 
 float ProbeGrid::spacing() const {
@@ -51,17 +53,20 @@ ProbeGrid makeProbes(const studio::Scene& scene, const glm::ivec3& counts) {
         for (int y = 0; y < counts.y; ++y)
             for (int x = 0; x < counts.x; ++x) {
                 Probe probe;
-                probe.position = grid.low + (grid.high - grid.low) * (glm::vec3(x, y, z) + 0.5f) / glm::vec3(counts);
+                probe.position =
+                    grid.low + (grid.high - grid.low) * (glm::vec3(x, y, z) + 0.5f) / glm::vec3(counts);
                 grid.probes.push_back(probe);
             }
     return grid;
 }
 
-ProbeTimes lightProbes(const lightwell::Device& device, const Parameters& parameters, const RenderInputs& inputs, int frames,
-                       bool withNormals, ProbeGrid& grid, studio::PlanarBuffer* irradiance) {
+ProbeTimes lightProbes(const lightwell::Device& device, const Parameters& parameters,
+                       const RenderInputs& inputs, int frames, bool withNormals, ProbeGrid& grid,
+                       studio::PlanarBuffer* irradiance) {
     const Descriptor descriptor(device, parameters);
     lightwell::Technique technique(device, parameters.technique().c_str(), descriptor.get());
-    lightwell::View view(device, std::uint32_t(inputs.gbuffer().width), std::uint32_t(inputs.gbuffer().height));
+    lightwell::View view(device, std::uint32_t(inputs.gbuffer().width),
+                         std::uint32_t(inputs.gbuffer().height));
     technique.prewarm(view);
     const LWSourceView source{view.get(), &inputs.lwGBuffer()};
     LWFrame frame = lightwell::make<LWFrame>();
@@ -79,7 +84,8 @@ ProbeTimes lightProbes(const lightwell::Device& device, const Parameters& parame
             positions.push_back(probe.position[a]);
             normals.push_back(a == 1 ? 1.0f : 0.0f);
         }
-    const LWImage position = listOf(positions, count, 1, LW_FORMAT_FLOAT3), normal = listOf(normals, count, 1, LW_FORMAT_FLOAT3);
+    const LWImage position = listOf(positions, count, 1, LW_FORMAT_FLOAT3),
+                  normal = listOf(normals, count, 1, LW_FORMAT_FLOAT3);
     LWPointOutput output = lightwell::make<LWPointOutput>();
     output.harmonics = listOf(harmonics, count, 4, LW_FORMAT_FLOAT3);
     output.validity = listOf(validity, count, 1, LW_FORMAT_FLOAT1);
@@ -93,16 +99,20 @@ ProbeTimes lightProbes(const lightwell::Device& device, const Parameters& parame
         frame.frameIndex = std::uint64_t(i);
         frame.reset = i == 0 ? 1 : 0;
         updates.push_back(timed(device, [&] { technique.update(frame); }));
-        points.push_back(timed(device, [&] { technique.renderPoints(position, withNormals ? &normal : nullptr, count, output); }));
+        points.push_back(timed(device, [&] {
+            technique.renderPoints(position, withNormals ? &normal : nullptr, count, output);
+        }));
     }
     times.updateMilliseconds = median(updates);
     times.pointsMilliseconds = median(points);
     const LWStats stats = technique.stats();
     times.deviceBytes = stats.deviceBytes;
-    for (std::uint32_t i = 0; i < stats.countCount; ++i) times.counts.emplace_back(stats.counts[i].name, stats.counts[i].value);
+    for (std::uint32_t i = 0; i < stats.countCount; ++i)
+        times.counts.emplace_back(stats.counts[i].name, stats.counts[i].value);
     for (std::size_t i = 0; i < count; ++i) {
         for (std::size_t b = 0; b < 4; ++b)
-            for (int c = 0; c < 3; ++c) grid.probes[i].bands[b][c] = harmonics[3 * (b * count + i) + std::size_t(c)];
+            for (int c = 0; c < 3; ++c)
+                grid.probes[i].bands[b][c] = harmonics[3 * (b * count + i) + std::size_t(c)];
         grid.probes[i].validity = validity[i];
     }
     if (!irradiance) return times;

@@ -37,12 +37,16 @@ struct ProbeTimes {
     std::uint64_t deviceBytes = 0;
 };
 
-// Updates the technique and lights the probes, `frames` times; and the view's irradiance where `irradiance` is given. `withNormals`:
-// irradiance at the points as well, of normals that all point up: for times alone.
-ProbeTimes lightProbes(const lightwell::Device& device, const Parameters& parameters, const RenderInputs& inputs, int frames,
-                       bool withNormals, ProbeGrid& grid, studio::PlanarBuffer* irradiance);
+// Updates the technique and lights the probes, `frames` times; and the view's irradiance where
+// `irradiance` is given. `withNormals`: irradiance at the points as well, of normals that all point up:
+// for times alone.
+ProbeTimes lightProbes(const lightwell::Device& device, const Parameters& parameters,
+                       const RenderInputs& inputs, int frames, bool withNormals, ProbeGrid& grid,
+                       studio::PlanarBuffer* irradiance);
 
-// The picture `background` (radiance, display's exposure not yet applied) with each probe as a small white sphere in its light.
-void drawProbes(const ProbeGrid& grid, const studio::GBuffer& gbuffer, float radius, studio::Image& background);
+// The picture `background` (radiance, display's exposure not yet applied) with each probe as a small
+// white sphere in its light.
+void drawProbes(const ProbeGrid& grid, const studio::GBuffer& gbuffer, float radius,
+                studio::Image& background);
 
 }  // namespace cli

@@ -14,7 +14,8 @@ constexpr float kPi = 3.14159265f;
 struct Rays {
     glm::vec3 eye, forward, across, down;
     int width, height;
-    Rays(const studio::GBuffer& gbuffer) : eye(gbuffer.camera.position), width(gbuffer.width), height(gbuffer.height) {
+    Rays(const studio::GBuffer& gbuffer)
+        : eye(gbuffer.camera.position), width(gbuffer.width), height(gbuffer.height) {
         const studio::Camera& camera = gbuffer.camera;
         forward = glm::normalize(camera.target - camera.position);
         const glm::vec3 right = glm::normalize(glm::cross(forward, camera.up));
@@ -23,7 +24,8 @@ struct Rays {
         across = right * (half * float(width) / float(height));
     }
     glm::vec3 at(int x, int y) const {
-        const float u = (float(x) + 0.5f) / float(width) * 2.0f - 1.0f, v = (float(y) + 0.5f) / float(height) * 2.0f - 1.0f;
+        const float u = (float(x) + 0.5f) / float(width) * 2.0f - 1.0f,
+                    v = (float(y) + 0.5f) / float(height) * 2.0f - 1.0f;
         return glm::normalize(forward + across * u + down * v);
     }
 };
@@ -38,7 +40,8 @@ float hitSphere(const glm::vec3& from, const glm::vec3& along, const glm::vec3& 
 
 }  // namespace
 
-void drawProbes(const ProbeGrid& grid, const studio::GBuffer& gbuffer, float radius, studio::Image& picture) {
+void drawProbes(const ProbeGrid& grid, const studio::GBuffer& gbuffer, float radius,
+                studio::Image& picture) {
     const Rays rays(gbuffer);
     const std::size_t pixels = std::size_t(gbuffer.width) * std::size_t(gbuffer.height);
     std::vector<float> nearest(pixels);
@@ -55,11 +58,14 @@ void drawProbes(const ProbeGrid& grid, const studio::GBuffer& gbuffer, float rad
         const glm::vec3 to = probe.position - rays.eye;
         const float depth = glm::dot(to, rays.forward);
         if (depth < 2.0f * radius) continue;
-        // The square of pixels around it, with room for the perspective's stretch towards the picture's edge.
+        // The square of pixels around it, with room for the perspective's stretch towards the picture's
+        // edge.
         const float scale = perUnit / depth;
         const int reach = int(2.0f * radius * scale) + 2;
-        const int cx = int(0.5f * float(gbuffer.width) + glm::dot(to, glm::normalize(rays.across)) * scale),
-                  cy = int(0.5f * float(gbuffer.height) + glm::dot(to, glm::normalize(rays.down)) * scale);
+        const int cx = int(0.5f * float(gbuffer.width) +
+                           glm::dot(to, glm::normalize(rays.across)) * scale),
+                  cy = int(0.5f * float(gbuffer.height) +
+                           glm::dot(to, glm::normalize(rays.down)) * scale);
         for (int y = std::max(cy - reach, 0); y < std::min(cy + reach, gbuffer.height); ++y)
             for (int x = std::max(cx - reach, 0); x < std::min(cx + reach, gbuffer.width); ++x) {
                 const glm::vec3 ray = rays.at(x, y);
@@ -68,7 +74,8 @@ void drawProbes(const ProbeGrid& grid, const studio::GBuffer& gbuffer, float rad
                 if (!(distance < nearest[at])) continue;
                 nearest[at] = distance;
                 const glm::vec3 radiance =
-                    irradianceOf(probe, glm::normalize(rays.eye + ray * distance - probe.position)) / kPi;
+                    irradianceOf(probe, glm::normalize(rays.eye + ray * distance - probe.position)) /
+                    kPi;
                 for (int c = 0; c < 3; ++c) (*planes[c])[at] = radiance[c];
             }
     }

@@ -29,19 +29,24 @@ glm::ivec3 parseGrid(const std::string& text) {
     std::size_t at = 0;
     for (int a = 0; a < 3; ++a) {
         const std::size_t end = a < 2 ? text.find('x', at) : text.size();
-        if (end == std::string::npos) throw UsageError(fmt::format("--grid '{}': expected a number of probes along x, y and z, as 8x4x8", text));
+        if (end == std::string::npos)
+            throw UsageError(fmt::format(
+                "--grid '{}': expected a number of probes along x, y and z, as 8x4x8", text));
         const std::uint64_t count = parseUnsigned("--grid", text.substr(at, end - at));
-        if (count < 1 || count > 1024) throw UsageError(fmt::format("--grid '{}': expected 1 .. 1024 probes along an axis", text));
+        if (count < 1 || count > 1024)
+            throw UsageError(fmt::format("--grid '{}': expected 1 .. 1024 probes along an axis", text));
         counts[a] = int(count);
         at = end + 1;
     }
     return counts;
 }
 
-Json triple(const glm::vec3& v) { return Json::array({v.x, v.y, v.z}); }
+Json triple(const glm::vec3& v) {
+    return Json::array({v.x, v.y, v.z});
+}
 
-Json describe(const ProbeOptions& options, const Parameters& parameters, const ProbeGrid& grid, const ProbeTimes& times,
-              const LWDeviceInfo& device) {
+Json describe(const ProbeOptions& options, const Parameters& parameters, const ProbeGrid& grid,
+              const ProbeTimes& times, const LWDeviceInfo& device) {
     Json json;
     json["device"] = device.name;
     json["scene"] = options.view.scene;
@@ -72,13 +77,15 @@ void writeProbes(const std::string& path, Json json, const ProbeGrid& grid) {
     if (!file.flush()) throw std::runtime_error("cannot write " + path);
 }
 
-void writePicture(const ProbeOptions& options, const ProbeGrid& grid, const RenderInputs& inputs, const studio::PlanarBuffer& irradiance) {
+void writePicture(const ProbeOptions& options, const ProbeGrid& grid, const RenderInputs& inputs,
+                  const studio::PlanarBuffer& irradiance) {
     studio::Image layers(inputs.gbuffer().width, inputs.gbuffer().height);
     addViewLayers(layers, inputs.gbuffer());
     addLayer(layers, "", irradiance);
     studio::Image picture = studio::composite(layers);
     const float exposure = studio::autoExposure(picture);
-    drawProbes(grid, inputs.gbuffer(), 2.0f * parsePositive("--sphere", options.sphere) * grid.spacing(), picture);
+    drawProbes(grid, inputs.gbuffer(), 2.0f * parsePositive("--sphere", options.sphere) * grid.spacing(),
+               picture);
     studio::writePng(options.png, studio::toneMap(picture, exposure));
 }
 
@@ -86,13 +93,17 @@ void probes(const ProbeOptions& options) {
     requireOneOf("technique", options.technique, techniqueNames());
     Parameters parameters(options.technique);
     for (const std::string& assignment : options.assignments) parameters.set(assignment);
-    if (!parameters.needsDevice()) throw UsageError(fmt::format("technique '{}' is not of the library: it has no points", options.technique));
-    if (options.width != 0) requireOneOf("--width", std::to_string(options.width), {"1", "4", "8", "16"});
+    if (!parameters.needsDevice())
+        throw UsageError(
+            fmt::format("technique '{}' is not of the library: it has no points", options.technique));
+    if (options.width != 0)
+        requireOneOf("--width", std::to_string(options.width), {"1", "4", "8", "16"});
     const glm::ivec3 counts = parseGrid(options.grid);
     if (!options.out.empty()) requireOutputPath("--out", options.out, {".json"});
     if (!options.png.empty()) requireOutputPath("--png", options.png, {".png"});
     parsePositive("--sphere", options.sphere);
-    if (options.out.empty() && options.png.empty() && !options.asJson) throw UsageError("--out, --png or --json is required");
+    if (options.out.empty() && options.png.empty() && !options.asJson)
+        throw UsageError("--out, --png or --json is required");
     const Size size = parseSize(options.view.size);
     const auto scene = loadScene(options.view);
     const studio::Camera camera = findCamera(*scene, options.view);
@@ -111,7 +122,8 @@ void probes(const ProbeOptions& options) {
         times = lightProbes(device, parameters, inputs, options.frames, options.asSurfaces, grid,
                             options.png.empty() ? nullptr : &irradiance);
     } catch (const lightwell::Error& error) {
-        if (error.status() == LW_ERROR_UNSUPPORTED) throw UsageError(fmt::format("--technique '{}': {}", options.technique, error.what()));
+        if (error.status() == LW_ERROR_UNSUPPORTED)
+            throw UsageError(fmt::format("--technique '{}': {}", options.technique, error.what()));
         throw;
     }
     const Json json = describe(options, parameters, grid, times, device.info());
@@ -120,27 +132,49 @@ void probes(const ProbeOptions& options) {
     if (options.asJson)
         fmt::print("{}\n", json.dump(2));
     else
-        fmt::print("{} probes: {:.3f} ms, median of {} frames\n", grid.probes.size(), times.pointsMilliseconds, options.frames);
+        fmt::print("{} probes: {:.3f} ms, median of {} frames\n", grid.probes.size(),
+                   times.pointsMilliseconds, options.frames);
 }
 
 }  // namespace
 
 void addProbes(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("probes", "Indirect light at a box of points over a scene, with a technique that has any");
+    CLI::App* command = app.add_subcommand(
+        "probes", "Indirect light at a box of points over a scene, with a technique that has any");
     auto options = std::make_shared<ProbeOptions>();
     options->view.declare(*command);
-    command->add_option("--technique", options->technique, "With LWTechniqueInfo::points")->capture_default_str();
-    command->add_option("--set", options->assignments, "key=value, one or several: parameters of the technique")->allow_extra_args(false);
-    command->add_option("--grid", options->grid, "Probes along x, y and z, in the middles of the box's parts")->capture_default_str();
-    command->add_option("--out", options->out, "FILE.json: position, validity, c0, c1x, c1y, c1z (r, g, b each) of every probe");
-    command->add_option("--png", options->png, "FILE.png: the view with each probe as a white sphere in its light");
-    command->add_option("--sphere", options->sphere, "Radius of these, as a share of the probes' least distance")->capture_default_str();
-    command->add_flag("--surfaces", options->asSurfaces, "Irradiance of normals that point up instead of both bands, for times");
-    command->add_option("--frames", options->frames, "Frames; times are medians")->check(CLI::Range(1, 10000))->capture_default_str();
-    command->add_option("--rsm-size", options->rsmSize, "Texels along each side of an RSM")->check(CLI::Range(1, kMaxSize))->capture_default_str();
+    command->add_option("--technique", options->technique, "With LWTechniqueInfo::points")
+        ->capture_default_str();
+    command
+        ->add_option("--set", options->assignments,
+                     "key=value, one or several: parameters of the technique")
+        ->allow_extra_args(false);
+    command
+        ->add_option("--grid", options->grid,
+                     "Probes along x, y and z, in the middles of the box's parts")
+        ->capture_default_str();
+    command->add_option(
+        "--out", options->out,
+        "FILE.json: position, validity, c0, c1x, c1y, c1z (r, g, b each) of every probe");
+    command->add_option("--png", options->png,
+                        "FILE.png: the view with each probe as a white sphere in its light");
+    command
+        ->add_option("--sphere", options->sphere,
+                     "Radius of these, as a share of the probes' least distance")
+        ->capture_default_str();
+    command->add_flag("--surfaces", options->asSurfaces,
+                      "Irradiance of normals that point up instead of both bands, for times");
+    command->add_option("--frames", options->frames, "Frames; times are medians")
+        ->check(CLI::Range(1, 10000))
+        ->capture_default_str();
+    command->add_option("--rsm-size", options->rsmSize, "Texels along each side of an RSM")
+        ->check(CLI::Range(1, kMaxSize))
+        ->capture_default_str();
     command->add_option("--device", options->device, "As for render");
-    command->add_option("--width", options->width, "Lanes per work-item: 1, 4, 8 or 16; default: by probe");
-    command->add_flag("--json", options->asJson, "JSON on stdout: parameters, points_ms, update_ms, bytes, counts");
+    command->add_option("--width", options->width,
+                        "Lanes per work-item: 1, 4, 8 or 16; default: by probe");
+    command->add_flag("--json", options->asJson,
+                      "JSON on stdout: parameters, points_ms, update_ms, bytes, counts");
     command->callback([options] { probes(*options); });
 }
 

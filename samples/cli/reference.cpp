@@ -26,8 +26,7 @@ struct ReferenceOptions {
     ViewOptions view;
     std::string bounces, vpls, until, out, checkpoint;
     std::string samples = "256", seed = "1";
-    std::string quantity = "irradiance", radius = "0.2", weighting = "cosine",
-                roughness = "0.5";
+    std::string quantity = "irradiance", radius = "0.2", weighting = "cosine", roughness = "0.5";
     std::vector<std::string> sourceViews;
     bool unshadowed = false, half = false, compact = false, onScreen = false;
     CLI::Option *radiusGiven = nullptr, *weightingGiven = nullptr, *roughnessGiven = nullptr;
@@ -36,13 +35,15 @@ struct ReferenceOptions {
 };
 
 void checkQuantity(const ReferenceOptions& options) {
-    requireOneOf("--quantity", options.quantity, {"irradiance", "ambient-occlusion", "specular-radiance"});
+    requireOneOf("--quantity", options.quantity,
+                 {"irradiance", "ambient-occlusion", "specular-radiance"});
     if (!options.isSpecular() && options.roughnessGiven->count() > 0)
         throw UsageError("--roughness: expected --quantity specular-radiance with it");
     if (options.isSpecular() &&
         (options.bounces != "1" || options.unshadowed || options.onScreen || !options.vpls.empty()))
         throw UsageError(
-            "--quantity specular-radiance: expected --bounces 1 without --unshadowed, --on-screen, --vpls");
+            "--quantity specular-radiance: expected --bounces 1 without --unshadowed, --on-screen, "
+            "--vpls");
     requireOneOf("--weighting", options.weighting, {"cosine", "uniform"});
     if (!options.sourceViews.empty() && !options.onScreen)
         throw UsageError("--source-view: expected --on-screen with it, whose light it adds to");
@@ -234,7 +235,8 @@ void declareTruth(CLI::App& command, ReferenceOptions& options) {
                     "specular-radiance: what arrives along glossy lobes, W/(sr m^2)")
         ->capture_default_str();
     options.roughnessGiven =
-        command.add_option("--roughness", options.roughness, "Of specular-radiance: of all pixels, 0..1")
+        command
+            .add_option("--roughness", options.roughness, "Of specular-radiance: of all pixels, 0..1")
             ->capture_default_str();
     options.radiusGiven =
         command

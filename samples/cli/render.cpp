@@ -32,7 +32,8 @@ struct RenderOptions {
     bool isAmbient() const { return quantity == "ambient-occlusion"; }
     bool isSpecular() const { return quantity == "specular-radiance"; }
     Quantity asked() const {
-        return isAmbient() ? Quantity::AmbientOcclusion : isSpecular() ? Quantity::SpecularRadiance : Quantity::Irradiance;
+        if (isSpecular()) return Quantity::SpecularRadiance;
+        return isAmbient() ? Quantity::AmbientOcclusion : Quantity::Irradiance;
     }
 };
 
@@ -44,8 +45,7 @@ void checkDistinctOutputs(const RenderOptions& options) {
     requireDistinct(outputs);
 }
 
-// Bytes for each pixel and RSM texel: the studio's buffers, the layers of the picture and their copy on
-// writing, the device's buffers; for orientation, not a bound.
+// Bytes for each pixel and RSM texel: the studio's and the device's buffers, layers and their copies; no bound.
 constexpr double kPixelBytes = 300.0, kTexelBytes = 72.0;
 
 void checkMemory(const RenderOptions& options, const Size& size, const studio::Scene& scene) {
@@ -66,7 +66,8 @@ void checkOptions(const RenderOptions& options) {
     if (options.technique.empty())
         throw UsageError("--technique is required; valid: " + joinNames(techniques));
     requireOneOf("technique", options.technique, techniques);
-    requireOneOf("--quantity", options.quantity, {"irradiance", "ambient-occlusion", "specular-radiance"});
+    requireOneOf("--quantity", options.quantity,
+                 {"irradiance", "ambient-occlusion", "specular-radiance"});
     if (!options.isSpecular() && options.roughnessGiven->count() > 0)
         throw UsageError("--roughness: expected --quantity specular-radiance with it");
     parseRoughness(options.roughness);
@@ -136,10 +137,10 @@ void writeOutputs(const RenderOptions& options, const studio::Image& image, Rend
 studio::Image renderWithTechnique(const RenderOptions& options, Sequence& sequence,
                                   RenderReport& report) {
     const Parameters parameters = parseParameters(options);
-    const auto renderer = makeRenderer(
-        parameters, sequence.at(0),
-        DeviceOptions{options.device, std::uint32_t(options.width), options.asked(),
-                      parseRoughness(options.roughness)});
+    const auto renderer =
+        makeRenderer(parameters, sequence.at(0),
+                     DeviceOptions{options.device, std::uint32_t(options.width), options.asked(),
+                                   parseRoughness(options.roughness)});
     report.parameters = parameters.resolved();
     report.figures = measure(
         *renderer, [&](int frame) -> const RenderInputs& { return sequence.at(frame); }, options.warmup,
@@ -155,8 +156,8 @@ studio::Image renderWithTechnique(const RenderOptions& options, Sequence& sequen
         report.outputs.push_back(options.vplsOut);
     }
     if (!options.debugView.empty()) writeDebugView(*renderer, options.debugView);
-    return assemblePicture(sequence.last(), renderer->irradiance(), renderer->validity(), options.asked(),
-                           report);
+    return assemblePicture(sequence.last(), renderer->irradiance(), renderer->validity(),
+                           options.asked(), report);
 }
 
 studio::Image renderDirectOnly(const RenderInputs& inputs, RenderReport& report) {
@@ -279,8 +280,7 @@ void addRender(CLI::App& app) {
                      "specular-radiance (along glossy lobes, W/(sr m^2))")
         ->capture_default_str();
     options->roughnessGiven = command->add_option("--roughness", options->roughness,
-                                                  "Of all pixels, 0..1, with --quantity specular-radiance");
-    options->roughnessGiven->capture_default_str();
+                                                  "Of all pixels, 0..1, of specular-radiance; default 0.5");
     command->add_option("--set", options->assignments,
                         "key=value, one or several: parameters of the technique (below)");
     command->add_option("--frames", options->frames, "Frames measured; times are medians")

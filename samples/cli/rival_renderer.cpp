@@ -107,8 +107,7 @@ const LWTechniqueInfo& rivalInfo() {
         setDefaults,
         0,  // the parameter says it
         kSettings,
-        std::uint32_t(std::size(kSettings)),
-        0};
+        std::uint32_t(std::size(kSettings)), 0};
     return info;
 }
 

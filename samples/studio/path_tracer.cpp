@@ -43,8 +43,9 @@ void checkOptions(const GBuffer& view, const PathTracerOptions& o) {
     if (o.specular != nullptr) {
         requireOption(o.specular->roughness >= 0.0 && o.specular->roughness <= 1.0, "specular.roughness",
                       "0 to 1", text(o.specular->roughness));
-        requireOption(o.vpls == nullptr && o.sendersSeenBy.empty() && !o.unshadowed && o.ambient == nullptr,
-                      "specular", "no VPLs, sendersSeenBy, unshadowed or ambient beside it", "one of them");
+        requireOption(
+            o.vpls == nullptr && o.sendersSeenBy.empty() && !o.unshadowed && o.ambient == nullptr,
+            "specular", "no VPLs, sendersSeenBy, unshadowed or ambient beside it", "one of them");
     }
     if (o.ambient == nullptr) return;
     requireOption(o.ambient->radius > 0.0 && std::isfinite(o.ambient->radius), "ambient.radius",
@@ -141,10 +142,10 @@ std::unique_ptr<LitPoints> makeGuide(const RayScene& scene, const GBuffer& view)
 Image tracePaths(const RayScene& scene, const GBuffer& view, const PathTracerOptions& options) {
     checkOptions(view, options);
     const PixelSurfaces pixels(scene, view);
-    const Film film = options.ambient != nullptr ? traceAmbient(scene, view, pixels, options)
+    const Film film = options.ambient != nullptr    ? traceAmbient(scene, view, pixels, options)
                       : options.specular != nullptr ? traceSpecular(scene, view, pixels, options)
-                      : options.vpls != nullptr  ? gatherVpls(scene, view, pixels, options)
-                                                 : integratePaths(scene, view, pixels, options);
+                      : options.vpls != nullptr     ? gatherVpls(scene, view, pixels, options)
+                                                    : integratePaths(scene, view, pixels, options);
 
     Image image(view.width, view.height);
     std::vector<float>& validity = image.plane("validity");

@@ -65,7 +65,8 @@ struct PathTracerOptions {
     std::vector<PictureView> sendersSeenBy;
     // Not irradiance: "ambient" is the share of the hemisphere that is open, in each channel.
     const AmbientOptions* ambient = nullptr;
-    // Not irradiance: "specular" is the radiance that arrives along the pixel's GGX lobe (traceSpecular).
+    // Not irradiance: "specular" is the radiance that arrives along the pixel's GGX lobe
+    // (traceSpecular).
     const SpecularOptions* specular = nullptr;
     // Irradiance from these VPLs (bounded term) with exact visibility of each (pixel, VPL); with
     // `unshadowed`, the same without shadow rays. Only "bounce1" is made, without halves: no noise.

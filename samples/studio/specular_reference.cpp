@@ -12,12 +12,14 @@ namespace {
 
 // A half-vector about z of the distribution D(h) (n.h).
 glm::vec3 sampleHalf(float alpha, glm::vec2 point) {
-    const float tangent = alpha * std::sqrt(point.x / std::max(1.0f - point.x, 1e-7f)), theta = std::atan(tangent),
-                angle = 2.0f * kPi * point.y;
+    const float tangent = alpha * std::sqrt(point.x / std::max(1.0f - point.x, 1e-7f)),
+                theta = std::atan(tangent), angle = 2.0f * kPi * point.y;
     return {std::sin(theta) * std::cos(angle), std::sin(theta) * std::sin(angle), std::cos(theta)};
 }
 
-glm::vec3 mirrored(const glm::vec3& v, const glm::vec3& h) { return 2.0f * glm::dot(v, h) * h - v; }
+glm::vec3 mirrored(const glm::vec3& v, const glm::vec3& h) {
+    return 2.0f * glm::dot(v, h) * h - v;
+}
 
 // Weight of a direction: n.l, of those above the surface that half-vectors on the eye's side make.
 float weightOf(const glm::vec3& v, const glm::vec3& h, const glm::vec3& n) {
@@ -34,8 +36,11 @@ public:
             const glm::vec3 v{std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)), 0.0f, cosine};
             double sum = 0.0;
             for (int p = 0; p < kPoints; ++p)
-                sum += double(weightOf(v, sampleHalf(alpha, {(float(p) + 0.5f) / float(kPoints), float(reverseBits(std::uint32_t(p)) >> 8) / 16777216.0f}),
-                                       {0.0f, 0.0f, 1.0f}));
+                sum += double(weightOf(
+                    v,
+                    sampleHalf(alpha, {(float(p) + 0.5f) / float(kPoints),
+                                       float(reverseBits(std::uint32_t(p)) >> 8) / 16777216.0f}),
+                    {0.0f, 0.0f, 1.0f}));
             table_[i] = float(sum / kPoints);
         }
     }
@@ -66,7 +71,8 @@ Film traceSpecular(const RayScene& scene, const GBuffer& view, const PixelSurfac
         if (!scene.trace(scene.offset(at.position, at.geometricNormal), direction, 0.0f,
                          std::numeric_limits<float>::infinity(), hit))
             return scene.scene().sky;
-        return hit.albedo * scene.directIrradiance(hit.position, hit.geometricNormal, hit.normal) * (1.0f / kPi);
+        return hit.albedo * scene.directIrradiance(hit.position, hit.geometricNormal, hit.normal) *
+               (1.0f / kPi);
     };
     run.fill([&](const Tile& tile, std::uint32_t first, std::uint32_t last) {
         forEachPixel(tile, film, pixels, [&](std::size_t pixel) {
@@ -80,10 +86,12 @@ Film traceSpecular(const RayScene& scene, const GBuffer& view, const PixelSurfac
             for (int half = 0; half < 2; ++half)
                 for (std::uint32_t s = first; s < last; ++s) {
                     Sampler sampler(options.seed, 2 * pixel + std::size_t(half), s);
-                    const glm::vec3 local = sampleHalf(alpha, sampler.next()), h = local.x * t + local.y * b + local.z * n;
+                    const glm::vec3 local = sampleHalf(alpha, sampler.next()),
+                                    h = local.x * t + local.y * b + local.z * n;
                     const float weight = weightOf(v, h, n);
                     if (weight > 0.0f)
-                        film.at(pixel, half)[0] += glm::dvec3(weight / mean * radiance(at, mirrored(v, h)));
+                        film.at(pixel, half)[0] +=
+                            glm::dvec3(weight / mean * radiance(at, mirrored(v, h)));
                 }
         });
     });

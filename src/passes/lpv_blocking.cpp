@@ -85,8 +85,8 @@ void LpvBlocking::record(Executor& executor, const SurfelSet& surfels, const std
 void LpvBlocking::record(Executor& executor, const GeometryInput& geometry, const Buffer& place) {
     begin(executor, geometry.revision, place);
     if (geometry.triangleCount)
-        executor.run("lpv_blocking.inject", rasterise_, gridOver((geometry.triangleCount + kTriangles - 1) / kTriangles), kListGroup, geometry.triangles.memory,
-                     cl_int(geometry.triangles.planeStride), cl_int(geometry.triangleCount), place, cl_int(size_), sums_, state_);
+        executor.run("lpv_blocking.inject", rasterise_, gridOver((geometry.triangleCount + kTriangles - 1) / kTriangles),
+                     kListGroup, geometry.triangles.memory, cl_int(geometry.triangles.planeStride), cl_int(geometry.triangleCount), place, cl_int(size_), sums_, state_);
     merge(executor, true);
     end(executor);
 }

@@ -45,7 +45,7 @@ public:
     void recordNested(Executor& executor, const LpvGrid& outer, const LpvPlacement& placement);
     // authored: as authored() has them. inner: none, or the place of a grid whose lights are left out.
     void recordInject(Executor& executor, const RsmInput& rsms, const Buffer& authored, std::uint32_t authoredCount,
-                      const Buffer* inner, const float* environment);
+                      const Buffer* inner, const float* environment = nullptr);
 
     const Buffer& injected() const { return injected_; }  // a grid of LpvPropagation's
     const Buffer& place() const { return place_; }        // LwLpvPlace

@@ -31,7 +31,8 @@ void LpvRead::recordGather(Executor& executor, const Planes& position, const Pla
     const auto orElse = [&](const Planes& planes) { return planes ? planes : position; };
     const Range items{(position.width + gather_.width() - 1) / gather_.width(), position.height};
     executor.run("lpv_read.gather", gather_, items, gather_.width() == 1 ? Range{64, 1} : Range{8, 1}, position, normal,
-                 cl_int(position.width), cl_int(position.height), place, cl_int(layer.index), cl_int(layer.count), cl_int(size_), cells_, cl_float(calibration),
+                 cl_int(position.width), cl_int(position.height), place, cl_int(layer.index), cl_int(layer.count),
+                 cl_int(size_), cells_, cl_float(calibration),
                  cl_int(isDamped ? 1 : 0), cl_int(irradiance ? 1 : 0), cl_int(validity ? 1 : 0), orElse(irradiance), orElse(validity), counts);
 }
 

@@ -122,8 +122,9 @@ void LpvSweep::recordCover(Executor& executor, const LpvSweepInput& input) {
     executor.run("lpv_sweep.clear", clear_, gridOver(vectors), kListGroup, areas_, cl_int(vectors), cover_);
     if (hasTriangles) {
         const Planes& planes = input.triangles->triangles;
-        executor.run("lpv_sweep.cover", coverTriangles_, gridOver((input.triangles->triangleCount + kTriangles - 1) / kTriangles), kListGroup, planes.memory,
-                     cl_int(planes.planeStride), cl_int(input.triangles->triangleCount), place_, cl_int(options_.size), cover_, areas_);
+        const std::uint32_t count = input.triangles->triangleCount;
+        executor.run("lpv_sweep.cover", coverTriangles_, gridOver((count + kTriangles - 1) / kTriangles), kListGroup,
+                     planes.memory, cl_int(planes.planeStride), cl_int(count), place_, cl_int(options_.size), cover_, areas_);
     } else if (hasSurfels) {
         const Planes& planes = input.surfels.planes;
         executor.run("lpv_sweep.cover", coverSurfels_, runsOf(input.surfels.count), kListGroup, planes.memory,
@@ -278,7 +279,8 @@ std::uint64_t LpvSweep::bytes() const {
 std::uint64_t LpvSweep::estimateBytes(const LpvSweepOptions& o, std::uint32_t grids) {
     const std::uint64_t flight = sourceBytes(o) + sheetBytes(o) + usedBytes(o) + partBytes(o), fields = 2 * grids - 1;
     const std::uint64_t cellSets = 1 + (o.bounces > 1 ? 1 : 0) + (o.frames > 1 ? 1 : 0);
-    const std::uint64_t own = areaBytes(o) + sizeof(LwSweepCover) + 2 * sizeof(cl_uint) + 3 * sizeof(LwLpvPlace) + cellSets * packedBytes(o);
+    const std::uint64_t own = areaBytes(o) + sizeof(LwSweepCover) + 2 * sizeof(cl_uint) + 3 * sizeof(LwLpvPlace) +
+                              cellSets * packedBytes(o);
     const std::uint64_t outer = sizeof(cl_uint) + packedBytes(o);
     return tableBytes(o) + lightBytes(o) + carriedBytes(o) + sideBytes(o) + (o.frames > 1 ? fields : 1) * flight + grids * own +
            (grids - 1) * outer;

@@ -24,7 +24,8 @@ void LpvPlaces::recordTable(Executor& executor, std::size_t level, const Buffer&
 }
 
 LWChoice LpvPlaces::choice() const {
-    if (extent_ > 0.0f) return {"cascades", hasFocus_ ? "all grids lie around frame.focus" : "all grids lie around the descriptor's center"};
+    if (extent_ > 0.0f)
+        return {"cascades", hasFocus_ ? "all grids lie around frame.focus" : "all grids lie around the descriptor's center"};
     return {"cascades", hasFocus_ ? "the coarsest grid is fitted to the scene, finer ones lie around frame.focus"
                                   : "the coarsest grid is fitted to the scene, finer ones lie in its middle, as there is no frame.focus"};
 }

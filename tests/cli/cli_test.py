@@ -365,6 +365,22 @@ class Render(CommandLine):
             self.refused(["render", "cornell", "--technique", "rsm", "--quantity", "ambient-occlusion", *SIZE, "--hash"], "--quantity", "rsm")
         self.refused(["render", "cornell", "--technique", "horizon", "--quantity", "ambient-occlusion", *SIZE, "--exposure", "2", "--hash"], "--exposure")
 
+    def test_specular_radiance_and_its_truth(self):
+        picture, truth, size = self.path("specular.exr"), self.path("specular-truth.exr"), ["--size", "64x48"]
+        self.done("render", "cornell", "--technique", "lpv", "--quantity", "specular-radiance", "--set", "transport=sweep", "size=16",
+                  "--roughness", "0.2", *size, "--frames", "1", "--warmup", "0", "--out", picture)
+        self.done("reference", "cornell", "--quantity", "specular-radiance", "--bounces", "1", "--roughness", "0.2", *size, "--spp", "64",
+                  "--out", truth)
+        errors = self.json("compare", picture, truth, "--json")
+        self.assertLess(abs(errors["bias"]), 0.3)
+        self.assertLess(errors["nrmse"], 1.0)
+        one = ["reference", "cornell", "--bounces", "1", *SIZE, "--out", truth]
+        self.refused([*one, "--roughness", "0.2"], "--roughness", "specular-radiance")
+        self.refused([*one, "--quantity", "specular-radiance", "--roughness", "1.5"], "--roughness", "1.5")
+        self.refused([*one, "--quantity", "specular-radiance", "--unshadowed"], "--quantity", "--unshadowed")
+        self.refused(["render", "cornell", "--technique", "rsm", "--quantity", "specular-radiance", *SIZE, "--hash"], "--quantity", "rsm")
+        self.refused(["render", "cornell", "--technique", "lpv", "--roughness", "0.2", *SIZE, "--hash"], "--roughness")
+
     def test_debug_view(self):
         view = self.path("vpls.exr")
         self.render("--set", "vpls=64", "--debug-view", "vpls=" + view)
