@@ -132,7 +132,7 @@ __kernel void lpv_read_gather(__global const float* position, int4 positionLayou
     real fx, fy, fz;
     const lanei corners = corner_of(at, size, &fx, &fy, &fz);
     // Pixel by pixel: one load takes all of a cell, where lanes of pixels would gather every number alone.
-    float px[LW_WIDTH], py[LW_WIDTH], pz[LW_WIDTH], nx[LW_WIDTH], ny[LW_WIDTH], nz[LW_WIDTH], reads[LW_WIDTH];
+    float px[LW_WIDTH], py[LW_WIDTH], pz[LW_WIDTH], nx[LW_WIDTH], ny[LW_WIDTH], nz[LW_WIDTH];
     float light[LW_LPV_COLOURS][LW_WIDTH];
     int corner[LW_WIDTH];
     store(fx, px, 0);
@@ -141,13 +141,11 @@ __kernel void lpv_read_gather(__global const float* position, int4 positionLayou
     store(s.nx, nx, 0);
     store(s.ny, ny, 0);
     store(s.nz, nz, 0);
-    store(ones_(own.read), reads, 0);
     store(corners, corner, 0);
-    for (int l = 0; l < LW_WIDTH; ++l) {
-        if (layers > 1 && reads[l] == 0.0f) {
-            light[0][l] = light[1][l] = light[2][l] = 0.0f;
-            continue;
-        }
+    // All or none, as in lpv_sweep_gather.
+    const int count = any_(own.read) ? LW_WIDTH : 0;
+    for (int c = 0; c < LW_LPV_COLOURS; ++c) store(none, light[c], 0);
+    for (int l = 0; l < count; ++l) {
         const float16 v = interpolate(cells + corner[l], size, px[l], py[l], pz[l]);
         float4 e = v.s0123 * LPV_LOBE0 - (v.s4567 * nx[l] + v.s89ab * ny[l] + v.scdef * nz[l]) * LPV_LOBE1;
         if (isDamped) {
