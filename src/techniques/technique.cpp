@@ -7,8 +7,9 @@ namespace lightwell {
 Continuity::Continuity(Device& device) : device_(device), failures_(device.failures()) {}
 
 bool Continuity::beginLost() {
-    const bool lost = isLost_ || device_.failures() != failures_;
-    failures_ = device_.failures();
+    const std::uint64_t failures = device_.failures();  // once: another may happen meanwhile, which the next update's is
+    const bool lost = isLost_ || failures != failures_;
+    failures_ = failures;
     isLost_ = false;
     return lost;
 }
