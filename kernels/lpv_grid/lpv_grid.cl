@@ -281,15 +281,17 @@ __kernel void lpv_grid_resolve(__global const uint* sums, __global const LwLpvPl
     const float first = 1.0f / grid->cell.y, second = 1.0f / grid->cell.z;
     __global const uint* from = sums + 2 * LW_LPV_PLANES * (line * size + x);
     const int at = lpv_cell(size, x, line % size, line / size), plane = lpv_plane(size);
+    for (int p = 0; p < LW_LPV_PLANES; ++p) to[p * plane + at] = convert_float(long_at(from + 2 * p)) * first * second;
     const int y = line % size, z = line / size, last = size - 1;
     const float inX = (float)((x == 0) - (x == last)), inY = (float)((y == 0) - (y == last)), inZ = (float)((z == 0) - (z == last));
+    const float faces = fabs(inX) + fabs(inY) + fabs(inZ);
+    if (faces == 0.0f) return;
     // Of each band: how often the lobes have it.
-    const float bands[LW_LPV_BANDS] = {LPV_LOBE0 * (fabs(inX) + fabs(inY) + fabs(inZ)), LPV_LOBE1 * inX, LPV_LOBE1 * inY,
-                                       LPV_LOBE1 * inZ};
+    const float bands[LW_LPV_BANDS] = {LPV_LOBE0 * faces, LPV_LOBE1 * inX, LPV_LOBE1 * inY, LPV_LOBE1 * inZ};
     const float4 light = environment * (grid->cell.x * grid->cell.x);
-    for (int p = 0; p < LW_LPV_PLANES; ++p) {
-        const int c = p / LW_LPV_BANDS;
-        const float entering = bands[p % LW_LPV_BANDS] * (c == 0 ? light.x : c == 1 ? light.y : light.z);
-        to[p * plane + at] = convert_float(long_at(from + 2 * p)) * first * second + entering;
+    for (int band = 0; band < LW_LPV_BANDS; ++band) {
+        to[band * plane + at] += bands[band] * light.x;
+        to[(LW_LPV_BANDS + band) * plane + at] += bands[band] * light.y;
+        to[(2 * LW_LPV_BANDS + band) * plane + at] += bands[band] * light.z;
     }
 }

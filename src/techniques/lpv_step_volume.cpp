@@ -1,5 +1,6 @@
 #include "techniques/lpv_step_volume.h"
 
+#include <algorithm>
 #include <cstddef>
 
 #include "compute/device.h"
@@ -26,6 +27,7 @@ void LpvStepVolume::record(Executor& executor, const LWFrame& frame, const RsmIn
                                        progress_ ? &*progress_ : nullptr);
     read_.recordPack(executor, *propagated_, progress_ ? &progress_->state() : nullptr);
     isSpecularPacked_ = false;
+    for (std::size_t c = 0; c < 3; ++c) environment_[c] = frame.environment[c];
 }
 
 void LpvStepVolume::recordGather(Executor& executor, const Planes& position, const Planes& normal, const Planes& irradiance,
@@ -38,10 +40,14 @@ void LpvStepVolume::recordHarmonics(Executor& executor, const Planes& position, 
     read_.recordHarmonics(executor, position, normal, grid_.place(), calibration_, harmonics, validity, counts);
 }
 
-// What surfaces send is what was injected: light on its way through the cells belongs to no surface any more.
+// What surfaces send is what was injected: light on its way through the cells belongs to no surface any more. A sky is no surface's:
+// rays that leave the grid bring it, so what it put into the border's cells is left out meanwhile, or would count twice.
 LpvSpecularGrid LpvStepVolume::specular(Executor& executor) {
     if (!isSpecularPacked_) {
+        const bool hasSky = std::any_of(environment_, environment_ + 3, [](float e) { return e > 0.0f; });
+        if (hasSky) grid_.recordResolve(executor, nullptr);
         specular_.recordPackSteps(executor, grid_.injected(), grid_.place(), geometry_.corners());
+        if (hasSky) grid_.recordResolve(executor, environment_);
         specular_.show(executor);
         isSpecularPacked_ = true;
     }

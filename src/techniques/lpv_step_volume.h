@@ -47,6 +47,7 @@ private:
     std::optional<LpvProgress> progress_;  // with an error target
     LpvSpecular specular_;
     bool isSpecularPacked_ = false;  // of the last record
+    float environment_[3] = {0.0f, 0.0f, 0.0f};  // of the last record
     const Buffer* propagated_ = nullptr;  // of the last record
 };
 
