@@ -1,7 +1,5 @@
 #include "passes/lpv_specular.h"
 
-#include <utility>
-
 #include "compute/device.h"
 
 namespace lightwell {
@@ -42,6 +40,7 @@ LpvSpecular::LpvSpecular(Device& device, std::uint32_t size, bool keepsShown)
 Buffer& LpvSpecular::packed() {
     shown_.reserve(device_, cellBytes(size_), "cells of specular rays");
     if (keepsShown_) packed_.reserve(device_, cellBytes(size_), "cells of specular rays to come");
+    if (!keepsShown_) isShown_ = false;
     return keepsShown_ ? packed_ : shown_;
 }
 
@@ -58,7 +57,7 @@ void LpvSpecular::recordPackSweep(Executor& executor, const LpvSweepSources& fro
 }
 
 void LpvSpecular::show(Executor& executor) {
-    if (keepsShown_) std::swap(packed_, shown_);
+    if (isShown_) return;
     const lw_int size = lw_int(size_);
     for (lw_int level = 1; level < specular_levels(size); ++level)
         executor.run("lpv_specular.halve", halve_, cellsOf(size_ >> level), kCellGroup, shown_, cl_int(specular_first(size, level - 1)),
@@ -70,6 +69,7 @@ void LpvSpecular::show(Executor& executor) {
     for (int axis = 0; axis < 3; ++axis)
         executor.run("lpv_specular.ways", distance_, {count, 1}, {64, 1}, distances_[axis % 2], cl_int(count), size, cl_int(axis),
                      cl_int(axis == 2 ? 1 : 0), closed_, distances_[1 - axis % 2]);
+    isShown_ = true;
 }
 
 void LpvSpecular::recordMarch(Executor& executor, const Planes& position, const Planes& normal, const Planes& roughness,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 
 #include "compute/buffer.h"
 #include "compute/executor.h"
@@ -18,14 +19,20 @@ LwSpecularRays specularRays(const Camera& camera, const float* environment, floa
 // One grid's cells.
 class LpvSpecular {
 public:
-    // keepsShown: what is packed is not marched before show().
+    // keepsShown: what is packed is not marched before complete().
     LpvSpecular(Device& device, std::uint32_t size, bool keepsShown = false);
 
     // Pass "lpv_specular.pack": the cells of light that was injected for propagation (LpvGrid's), with what blocks about their corners
     // (LpvBlocking's, or null); or of a sweep's bounce, beside that of the bounces before where isAdded.
     void recordPackSteps(Executor& executor, const Buffer& injected, const Buffer& place, const Buffer* corners);
     void recordPackSweep(Executor& executor, const LpvSweepSources& from, bool isAdded);
-    // Pass "lpv_specular.halve": the coarser cells of what was packed, which march() sees from now on.
+    // All is packed: what show() is of from now on.
+    void complete() {
+        if (!keepsShown_) return;
+        std::swap(packed_, shown_);
+        isShown_ = false;
+    }
+    // Passes "lpv_specular.halve" and ".ways": the coarser cells, and what else march() needs of them, unless they are there already.
     void show(Executor& executor);
 
     // Pass "lpv_specular.march". place: LwLpvPlace of what is shown. roughness: none where the view's own is taken. counts: kCounts ints,
@@ -47,7 +54,7 @@ private:
 
     Device& device_;
     std::uint32_t size_;
-    bool keepsShown_, hasFaces_ = false;
+    bool keepsShown_, hasFaces_ = false, isShown_ = false;
     Kernel &packSteps_, &packSweep_, &halve_, &ways_, &distance_, &pick_, &march_;
     Buffer packed_, shown_;  // packed_ only where it is another
     Buffer closed_, distances_[2];  // float4 of each cell that is shown: how its ways are closed, how far the next is that is not empty

@@ -211,7 +211,7 @@ bool LpvSweep::recordPart(Executor& executor, const LpvSweepInput& input, const 
             recordRelight(executor, input.surfels, field == kOuter ? inner : nullptr);
         if (nextGroup_ == 0) recordResolve(executor, bounce_ == 0 ? place_ : unitPlace_, flight);
         if (nextGroup_ == 0 && field == kAll && input.specular)
-            input.specular->recordPackSweep(executor, {flight.sources, flight.sheets, flight.used}, bounce_ > 0);
+            input.specular->recordPackSweep(executor, sources(), bounce_ > 0);
         recordGroups(executor, flight);
         if (isLast) recordBounce(executor, field);
     }
@@ -225,7 +225,7 @@ void LpvSweep::recordEnd(Executor& executor, LpvSpecular* specular) {
     isShown_ = true;
     executor.copy("lpv_sweep.place", place_.get(), shownPlace_.get(), 0, 0, sizeof(LwLpvPlace));
     if (options_.frames > 1) std::swap(totalCells_, shownCells_);
-    if (specular) specular->show(executor);
+    if (specular) specular->complete();
 }
 
 void LpvSweep::record(Executor& executor, const LpvSweepInput& input) {

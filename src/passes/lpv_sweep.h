@@ -37,7 +37,7 @@ struct LpvSweepInput {
     bool restart;         // nothing of the frames before is right any more
     const float* environment = nullptr;  // radiance from outside of the grid, of three colours; none: 0
     const GeometryInput* triangles = nullptr;  // block in place of the surfels, as samples on the grid's own lattice
-    LpvSpecular* specular = nullptr;  // gets each bounce's light as well, and is told when to show it
+    LpvSpecular* specular = nullptr;  // gets each bounce's light as well, and is told when that is all
 };
 
 // What surfaces send and cover in a bounce's cells, as lpv_sweep_resolve leaves it.
@@ -85,6 +85,8 @@ public:
     void recordHarmonics(Executor& executor, const Planes& position, const Planes& normal, const Harmonics& harmonics,
                          const Planes& validity, const Buffer& counts, const Buffer* places = nullptr, LpvLayer layer = {});
 
+    // Of the last bounce, until the next one begins.
+    LpvSweepSources sources() const { return {flights_[kAll]->sources, flights_[kAll]->sheets, flights_[kAll]->used}; }
     const Buffer& parts() const { return flights_[kAll]->parts; }  // of the last sweep, see lpv_sweep_types.h
     const Buffer& outside() const { return outside_; }  // a cl_uint: lights that no cell took
     std::uint64_t bytes() const;

@@ -22,14 +22,16 @@ LpvSweepVolume::LpvSweepVolume(Device& device, const LWLpvDesc& desc, int hidden
       surfaces_(device, desc, hidden),
       grid_(device, desc.size),
       sweep_(device, optionsOf(desc)),
-      specular_(device, desc.size, desc.frames > 1) {}
+      specular_(device, desc.size, desc.frames > 1),
+      packsLater_(desc.bounces == 1 && desc.frames == 1) {}
 
 void LpvSweepVolume::record(Executor& executor, const LWFrame& frame, const RsmInput& rsms,
                             const LpvPlacement& placement) {
     grid_.recordPlace(executor, rsms, frame.vpls, frame.vplCount, placement);
     const bool restart = surfaces_.import(executor, frame) || placement.refit;
     sweep_.record(executor, {rsms, grid_.authored(), frame.vplCount, grid_.place(), surfaces_.surfels(), surfaces_.areaScale(), restart,
-                             frame.environment, nullptr, &specular_});
+                             frame.environment, nullptr, packsLater_ ? nullptr : &specular_});
+    isPacked_ = !packsLater_;
 }
 
 void LpvSweepVolume::report(Report& report) const {

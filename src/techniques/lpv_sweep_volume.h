@@ -23,7 +23,12 @@ public:
         sweep_.recordHarmonics(executor, position, normal, harmonics, validity, counts);
     }
     bool hasSpecular() const override { return true; }
-    LpvSpecularGrid specular(Executor&) override { return {specular_, sweep_.shownPlace()}; }
+    LpvSpecularGrid specular(Executor& executor) override {
+        if (!isPacked_) specular_.recordPackSweep(executor, sweep_.sources(), false);
+        isPacked_ = true;
+        specular_.show(executor);
+        return {specular_, sweep_.shownPlace()};
+    }
     std::vector<LWChoice> choices(const LWFrame& frame, double side) const override { return surfaces_.choices(frame, side); }
     void report(Report& report) const override;
     std::uint64_t bytes() const override {
@@ -40,6 +45,8 @@ private:
     LpvGrid grid_;  // its place alone
     LpvSweep sweep_;
     LpvSpecular specular_;
+    // One bounce's sources are there when the first view asks; of several, or over frames, they are gone by then.
+    bool packsLater_, isPacked_ = false;
 };
 
 }  // namespace lightwell

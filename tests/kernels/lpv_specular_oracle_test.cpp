@@ -48,6 +48,7 @@ struct SweepScene final : SpecularScene {
         }
         rig.specular = &pass;
         rig.sweep(lights, discs);
+        pass.show(rig.executor());
     }
     SpecularLight march(const std::vector<SpecularPoint>& points, const LwSpecularRays& view) override {
         return marchSpecular(rig, pass, points, view, rig.pass.shownPlace());
