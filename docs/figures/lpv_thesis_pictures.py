@@ -31,7 +31,8 @@ def write(settings, rows_of, folder):
             height = round(2 * WIDTH * reference.shape[0] / reference.shape[1])
             picture.resize(((len(columns) + 1) * WIDTH, height), Image.Resampling.LANCZOS).save(folder / f"lpv_thesis_{scene}_{view}.jpg", quality=85)
             lines += [f"![{s['title']}, {view}](../images/lpv_thesis_{scene}_{view}.jpg)", ""]
-    return lines + ["*Truth | " + " | ".join(SHOWN) + f"*, in Sponza *| {NESTED}*" + "; below, on the screen's scale, red where too bright and blue where too dark, full at "
+    return lines + ["*Truth | " + " | ".join(SHOWN) + f"*, in Sponza *| {NESTED}*; "
+                    "below, on the screen's scale, red where too bright and blue where too dark, full at "
                     f"{FULL:g} of its range.", ""]
 
 

@@ -14,7 +14,8 @@ constexpr double kFarthest = 1e9;  // as positions, lightwell.h
 float coordinate(const std::string& option, const std::string& text) {
     const double value = parseNumber(option, text);
     if (std::abs(value) > kFarthest)
-        throw UsageError(fmt::format("{} '{}': expected a coordinate within {:g}", option, text, kFarthest));
+        throw UsageError(
+            fmt::format("{} '{}': expected a coordinate within {:g}", option, text, kFarthest));
     return float(value);
 }
 

@@ -257,8 +257,8 @@ void declareExtras(CLI::App& command, RenderOptions& options) {
         ->capture_default_str();
     command
         .add_option("--focus", options.focus,
-                    "What a technique's grids lie around that do not hold all of the scene: eye, a point "
-                    "X,Y,Z, or none, for its own center_x, ...")
+                    "What a technique's grids lie around that do not hold all of the scene: eye, a "
+                    "point X,Y,Z, or none, for its own center_x, ...")
         ->capture_default_str();
     command.add_flag("--hash", options.printsHash,
                      "Print a hash of the irradiance's bits (always in JSON)");

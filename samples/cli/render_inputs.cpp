@@ -123,7 +123,8 @@ RenderInputs::RenderInputs(const studio::RayScene& scene, const studio::Camera& 
             describeLight(light, lwRsms_.back()));  // a moved vector keeps its data's address
     }
     copyVector(scene.scene().sky, environment_);
-    copyVector(options.focus.kind == FrameFocus::Kind::Point ? options.focus.point : camera.position, focus_);
+    const bool isPoint = options.focus.kind == FrameFocus::Kind::Point;
+    copyVector(isPoint ? options.focus.point : camera.position, focus_);
 }
 
 std::uint64_t RenderInputs::rsmTexelCount() const {
