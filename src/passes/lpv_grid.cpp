@@ -99,6 +99,10 @@ void LpvGrid::recordInject(Executor& executor, const RsmInput& rsms, const Buffe
     if (authoredCount)
         executor.run("lpv_grid.inject", injectVpls_, runsOf(authoredCount), kListGroup, authored, cl_int(authoredCount), place_, left,
                      hasInner, cl_int(size_), sums_, state_);
+    recordResolve(executor, environment);
+}
+
+void LpvGrid::recordResolve(Executor& executor, const float* environment) {
     const cl_float4 outside = environment ? cl_float4{{environment[0], environment[1], environment[2], 0.0f}} : cl_float4{};
     executor.run("lpv_grid.resolve", resolve_, {size_, std::size_t(size_) * size_}, kCellGroup, sums_, place_, cl_int(size_),
                  outside, injected_);

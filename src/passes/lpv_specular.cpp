@@ -40,6 +40,7 @@ LpvSpecular::LpvSpecular(Device& device, std::uint32_t size, bool keepsShown)
       march_(device.programs().kernel(kMarch, "lpv_specular_march")) {}
 
 Buffer& LpvSpecular::packed() {
+    if (!keepsShown_) isShown_ = false;
     shown_.reserve(device_, cellBytes(size_), "cells of specular rays");
     if (keepsShown_) packed_.reserve(device_, cellBytes(size_), "cells of specular rays to come");
     return keepsShown_ ? packed_ : shown_;
@@ -57,8 +58,13 @@ void LpvSpecular::recordPackSweep(Executor& executor, const LpvSweepSources& fro
                  cl_int(isAdded ? 1 : 0), packed());
 }
 
-void LpvSpecular::show(Executor& executor) {
+void LpvSpecular::complete() {
     if (keepsShown_) std::swap(packed_, shown_);
+    isShown_ = false;
+}
+
+void LpvSpecular::show(Executor& executor) {
+    if (isShown_) return;
     const lw_int size = lw_int(size_);
     for (lw_int level = 1; level < specular_levels(size); ++level)
         executor.run("lpv_specular.halve", halve_, cellsOf(size_ >> level), kCellGroup, shown_, cl_int(specular_first(size, level - 1)),
@@ -70,10 +76,12 @@ void LpvSpecular::show(Executor& executor) {
     for (int axis = 0; axis < 3; ++axis)
         executor.run("lpv_specular.ways", distance_, {count, 1}, {64, 1}, distances_[axis % 2], cl_int(count), size, cl_int(axis),
                      cl_int(axis == 2 ? 1 : 0), closed_, distances_[1 - axis % 2]);
+    isShown_ = true;
 }
 
 void LpvSpecular::recordMarch(Executor& executor, const Planes& position, const Planes& normal, const Planes& roughness,
                               const LwSpecularRays& view, const Buffer& place, const Planes& radiance, const Buffer& counts) {
+    show(executor);
     const Range items{(position.width + march_.width() - 1) / march_.width(), position.height};
     // A kernel's argument must be some memory, also where it is not touched.
     executor.run("lpv_specular.march", march_, items, march_.width() == 1 ? Range{64, 1} : Range{8, 1}, position, normal,

@@ -25,7 +25,10 @@ public:
     // (LpvBlocking's, or null); or of a sweep's bounce, beside that of the bounces before where isAdded.
     void recordPackSteps(Executor& executor, const Buffer& injected, const Buffer& place, const Buffer* corners);
     void recordPackSweep(Executor& executor, const LpvSweepSources& from, bool isAdded);
-    // Pass "lpv_specular.halve": the coarser cells of what was packed, which march() sees from now on.
+    // What was packed is what is marched from now on; with keepsShown it was not before.
+    void complete();
+    // Passes "lpv_specular.halve" and ".ways": the coarser cells of that. recordMarch() calls it, so that frames that nobody
+    // marches in do not pay for them; once is enough.
     void show(Executor& executor);
 
     // Pass "lpv_specular.march". place: LwLpvPlace of what is shown. roughness: none where the view's own is taken. counts: kCounts ints,
@@ -48,6 +51,7 @@ private:
     Device& device_;
     std::uint32_t size_;
     bool keepsShown_, hasFaces_ = false;
+    bool isShown_ = false;  // the coarser cells are those of shown_
     Kernel &packSteps_, &packSweep_, &halve_, &ways_, &distance_, &pick_, &march_;
     Buffer packed_, shown_;  // packed_ only where it is another
     Buffer closed_, distances_[2];  // float4 of each cell that is shown: how its ways are closed, how far the next is that is not empty

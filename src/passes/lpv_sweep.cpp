@@ -225,7 +225,7 @@ void LpvSweep::recordEnd(Executor& executor, LpvSpecular* specular) {
     isShown_ = true;
     executor.copy("lpv_sweep.place", place_.get(), shownPlace_.get(), 0, 0, sizeof(LwLpvPlace));
     if (options_.frames > 1) std::swap(totalCells_, shownCells_);
-    if (specular) specular->show(executor);
+    if (specular) specular->complete();
 }
 
 void LpvSweep::record(Executor& executor, const LpvSweepInput& input) {
