@@ -69,7 +69,7 @@ TEST_CASE("a million points: the same bits as a few, memory as documented, kept 
     const std::uint64_t uploads = device.info().hostUnifiedMemory ? 0 : (12 + 12 + 12 + 48 + 4) * std::uint64_t(kMany);
     CHECK(held <= 89 * std::uint64_t(kMany) + uploads);
     CHECK(held > 80 * std::uint64_t(kMany));
-    renderPoints(device, technique, few);
+    renderPoints(device, technique, few.part(0, 1001));  // rows that are whole lines of memory are copied with their padding
     CHECK(technique.stats().deviceBytes - before == held);
 }
 
