@@ -73,7 +73,8 @@ public:
 
     void render(Executor& executor, const std::shared_ptr<View>& view, const LWGBuffer& gbuffer, const LWOutput& output) override {
         if (!imageAbsent(output.specularRadiance) && !volume_->hasSpecular())
-            fail(LW_ERROR_UNSUPPORTED, "output.specularRadiance: technique lpv makes it with cascades=1 only, got cascades=", desc_.cascades);
+            fail(LW_ERROR_UNSUPPORTED, "output.specularRadiance: technique lpv makes it with cascades=1 only, got cascades=",
+                 desc_.cascades);
         checkLightOutputs(device_, *view, output, "lpv", true);
         const std::optional<LwSpecularRays> rays = LpvSpecularView::rays(*view, gbuffer, output, environment_);
         LpvView& state = states_.get(view, [&] { return std::make_unique<LpvView>(device_, *view, isHalf(desc_)); });

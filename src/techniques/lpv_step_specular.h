@@ -18,8 +18,9 @@ public:
         std::copy_n(environment, 3, environment_);
     }
 
-    // What surfaces send is what was injected: light on its way through the cells belongs to no surface any more. Nor is the
-    // environment's, which border cells send as if they were walls of it: rays that leave the grid bring it, and would bring it twice.
+    // What surfaces send is what was injected: light on its way through the cells belongs to no surface any more. Nor does the
+    // environment's, which border cells send as if they were walls of it: rays that leave the grid bring it, and it would
+    // come twice.
     LpvSpecularGrid get(Executor& executor, LpvGrid& grid, const Buffer* corners) {
         if (!isPacked_) {
             const bool hasEnvironment = std::any_of(environment_, environment_ + 3, [](float x) { return x != 0.0f; });
