@@ -165,7 +165,8 @@ __kernel void lpv_read_gather(__global const float* position, int4 positionLayou
         real coarser = none;
         if (!isCoarsest) coarser = load(irradiance, at);
         const real found = select_(none, fmax(load(light[c], 0), none) * calibration * inverse * inverse, own.read);
-        saturated = or_(saturated, or_(found > LW_LARGEST_IRRADIANCE, and_(coarser >= LW_LARGEST_IRRADIANCE, own.share < 1.0f)));
+        const mask cut = and_(coarser >= LW_LARGEST_IRRADIANCE, own.share < 1.0f);
+        saturated = or_(saturated, and_(own.read, or_(found > LW_LARGEST_IRRADIANCE, cut)));
         store(layered(own, coarser, fmin(found, (real)LW_LARGEST_IRRADIANCE)), irradiance, at);
     }
     saturated = and_(saturated, own.isLast);

@@ -95,7 +95,8 @@ __kernel void lpv_sweep_gather(__global const float* position, int4 positionLayo
         if (!isCoarsest) coarser = load(irradiance, at);
         const real found = select_(none, load(light[c], 0), own.read);
         // Beyond float's range it is not a number.
-        saturated = or_(saturated, or_(not_(found <= LW_LARGEST_IRRADIANCE), and_(coarser >= LW_LARGEST_IRRADIANCE, own.share < 1.0f)));
+        const mask cut = and_(coarser >= LW_LARGEST_IRRADIANCE, own.share < 1.0f);
+        saturated = or_(saturated, and_(own.read, or_(not_(found <= LW_LARGEST_IRRADIANCE), cut)));
         store(layered(own, coarser, fmin(found, (real)LW_LARGEST_IRRADIANCE)), irradiance, at);
     }
     saturated = and_(saturated, own.isLast);

@@ -76,6 +76,7 @@ ProbeTimes lightProbes(const lightwell::Device& device, const Parameters& parame
     frame.sourceViewCount = 1;
     frame.geometry = &inputs.geometry();
     std::copy_n(inputs.environment(), 3, frame.environment);
+    frame.focus = inputs.focus();
 
     const auto count = std::uint32_t(grid.probes.size());
     std::vector<float> positions, normals, harmonics(12 * count), validity(count), surfaces(3 * count);

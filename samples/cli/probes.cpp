@@ -38,6 +38,9 @@ glm::ivec3 parseGrid(const std::string& text) {
         counts[a] = int(count);
         at = end + 1;
     }
+    constexpr std::int64_t kMost = 4194240;  // of lwRenderPoints
+    if (std::int64_t(counts.x) * counts.y * counts.z > kMost)
+        throw UsageError(fmt::format("--grid '{}': expected at most {} probes", text, kMost));
     return counts;
 }
 
@@ -104,6 +107,8 @@ void probes(const ProbeOptions& options) {
     parsePositive("--sphere", options.sphere);
     if (options.out.empty() && options.png.empty() && !options.asJson)
         throw UsageError("--out, --png or --json is required");
+    if (options.asSurfaces && !(options.out.empty() && options.png.empty()))
+        throw UsageError("--surfaces: expected neither --out nor --png with it, which are of both bands");
     const Size size = parseSize(options.view.size);
     const auto scene = loadScene(options.view);
     const studio::Camera camera = findCamera(*scene, options.view);

@@ -41,6 +41,8 @@ public:
     void recordInject(Executor& executor, const RsmInput& rsms, std::uint32_t authoredCount, const float* environment = nullptr) {
         recordInject(executor, rsms, authored_, authoredCount, nullptr, environment);
     }
+    // Once more of the last recordInject's sums, with another environment.
+    void recordResolve(Executor& executor, const float* environment);
     // In place of recordPlace: with cells half as large as those of `outer`, which it lies in.
     void recordNested(Executor& executor, const LpvGrid& outer, const LpvPlacement& placement);
     // authored: as authored() has them. inner: none, or the place of a grid whose lights are left out.

@@ -38,9 +38,9 @@ LpvSpecular::LpvSpecular(Device& device, std::uint32_t size, bool keepsShown)
       march_(device.programs().kernel(kMarch, "lpv_specular_march")) {}
 
 Buffer& LpvSpecular::packed() {
+    if (!keepsShown_) isShown_ = false;
     shown_.reserve(device_, cellBytes(size_), "cells of specular rays");
     if (keepsShown_) packed_.reserve(device_, cellBytes(size_), "cells of specular rays to come");
-    if (!keepsShown_) isShown_ = false;
     return keepsShown_ ? packed_ : shown_;
 }
 
@@ -54,6 +54,11 @@ void LpvSpecular::recordPackSweep(Executor& executor, const LpvSweepSources& fro
     hasFaces_ = false;
     executor.run("lpv_specular.pack", packSweep_, cellsOf(size_), kCellGroup, from.sources, from.sheets, from.used, cl_int(size_),
                  cl_int(isAdded ? 1 : 0), packed());
+}
+
+void LpvSpecular::complete() {
+    if (keepsShown_) std::swap(packed_, shown_);
+    isShown_ = false;
 }
 
 void LpvSpecular::show(Executor& executor) {
@@ -74,6 +79,7 @@ void LpvSpecular::show(Executor& executor) {
 
 void LpvSpecular::recordMarch(Executor& executor, const Planes& position, const Planes& normal, const Planes& roughness,
                               const LwSpecularRays& view, const Buffer& place, const Planes& radiance, const Buffer& counts) {
+    show(executor);
     const Range items{(position.width + march_.width() - 1) / march_.width(), position.height};
     // A kernel's argument must be some memory, also where it is not touched.
     executor.run("lpv_specular.march", march_, items, march_.width() == 1 ? Range{64, 1} : Range{8, 1}, position, normal,

@@ -26,13 +26,10 @@ public:
     // (LpvBlocking's, or null); or of a sweep's bounce, beside that of the bounces before where isAdded.
     void recordPackSteps(Executor& executor, const Buffer& injected, const Buffer& place, const Buffer* corners);
     void recordPackSweep(Executor& executor, const LpvSweepSources& from, bool isAdded);
-    // All is packed: what show() is of from now on.
-    void complete() {
-        if (!keepsShown_) return;
-        std::swap(packed_, shown_);
-        isShown_ = false;
-    }
-    // Passes "lpv_specular.halve" and ".ways": the coarser cells, and what else march() needs of them, unless they are there already.
+    // What was packed is what is marched from now on; with keepsShown it was not before.
+    void complete();
+    // Passes "lpv_specular.halve" and ".ways": the coarser cells of that. recordMarch() calls it, so that frames that nobody
+    // marches in do not pay for them; once is enough.
     void show(Executor& executor);
 
     // Pass "lpv_specular.march". place: LwLpvPlace of what is shown. roughness: none where the view's own is taken. counts: kCounts ints,
@@ -54,7 +51,8 @@ private:
 
     Device& device_;
     std::uint32_t size_;
-    bool keepsShown_, hasFaces_ = false, isShown_ = false;
+    bool keepsShown_, hasFaces_ = false;
+    bool isShown_ = false;  // the coarser cells are those of shown_
     Kernel &packSteps_, &packSweep_, &halve_, &ways_, &distance_, &pick_, &march_;
     Buffer packed_, shown_;  // packed_ only where it is another
     Buffer closed_, distances_[2];  // float4 of each cell that is shown: how its ways are closed, how far the next is that is not empty

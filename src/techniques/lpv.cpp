@@ -9,6 +9,7 @@
 #include "compute/device.h"
 #include "compute/error.h"
 #include "inputs/geometry_box.h"
+#include "inputs/image_check.h"
 #include "inputs/rsm_input.h"
 #include "shared/lpv_types.h"
 #include "techniques/lpv_parameters.h"
@@ -75,7 +76,10 @@ public:
     }
 
     void render(Executor& executor, const std::shared_ptr<View>& view, const LWGBuffer& gbuffer, const LWOutput& output) override {
-        checkLightOutputs(device_, *view, output, "lpv", volume_->hasSpecular());
+        if (!imageAbsent(output.specularRadiance) && !volume_->hasSpecular())
+            fail(LW_ERROR_UNSUPPORTED, "output.specularRadiance: technique lpv makes it with cascades=1 only, got cascades=",
+                 desc_.cascades);
+        checkLightOutputs(device_, *view, output, "lpv", true);
         const std::optional<LwSpecularRays> rays = LpvSpecularView::rays(*view, gbuffer, output, environment_);
         LpvView& state = states_.get(view, [&] { return std::make_unique<LpvView>(device_, *view, isHalf(desc_)); });
         state.render(executor, *view, gbuffer, output, bilateral_ ? &*bilateral_ : nullptr, *volume_, rays);

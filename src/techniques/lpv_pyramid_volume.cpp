@@ -13,7 +13,8 @@ LpvPyramidVolume::LpvPyramidVolume(Device& device, const LWLpvDesc& desc)
       geometry_(device, desc, LpvPyramid::levelsOf(desc.size)),
       grid_(device, desc.size),
       pyramid_(device, desc.size, desc.steps),
-      read_(device, desc.size) {}
+      read_(device, desc.size),
+      specular_(device, desc.size) {}
 
 void LpvPyramidVolume::record(Executor& executor, const LWFrame& frame, const RsmInput& rsms, const LpvPlacement& placement) {
     geometry_.import(executor, frame, rsms);
@@ -25,6 +26,7 @@ void LpvPyramidVolume::record(Executor& executor, const LWFrame& frame, const Rs
         return found ? &*blockers : nullptr;
     });
     read_.recordPack(executor, *propagated_);
+    specular_.startFrame(frame.environment);
 }
 
 void LpvPyramidVolume::recordGather(Executor& executor, const Planes& position, const Planes& normal, const Planes& irradiance,
@@ -62,11 +64,14 @@ void LpvPyramidVolume::addDebugViews(std::vector<DebugView>& views) const {
                      LpvPropagation::debugPlanes(*propagated_, desc_.size), {}});
 }
 
-std::uint64_t LpvPyramidVolume::bytes() const { return geometry_.bytes() + grid_.bytes() + pyramid_.bytes() + read_.bytes(); }
+std::uint64_t LpvPyramidVolume::bytes() const {
+    return geometry_.bytes() + grid_.bytes() + pyramid_.bytes() + read_.bytes() + specular_.bytes();
+}
 
 std::uint64_t LpvPyramidVolume::estimateBytes(const LWLpvDesc& desc, const FrameShape& shape) {
     return LpvGrid::estimateBytes(desc.size, shape.vplCount) + LpvPyramid::estimateBytes(desc.size, desc.steps) +
-           LpvRead::estimateBytes(desc.size) + LpvGeometry::estimateBytes(desc, shape, LpvPyramid::levelsOf(desc.size));
+           LpvRead::estimateBytes(desc.size) + LpvStepSpecular::estimateBytes(desc.size) +
+           LpvGeometry::estimateBytes(desc, shape, LpvPyramid::levelsOf(desc.size));
 }
 
 }  // namespace lightwell

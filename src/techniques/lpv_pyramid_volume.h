@@ -4,6 +4,7 @@
 #include "passes/lpv_pyramid.h"
 #include "passes/lpv_read.h"
 #include "techniques/lpv_geometry.h"
+#include "techniques/lpv_step_specular.h"
 #include "techniques/lpv_volume.h"
 
 namespace lightwell {
@@ -18,6 +19,8 @@ public:
                       const Planes& validity, const Buffer& counts) override;
     void recordHarmonics(Executor& executor, const Planes& position, const Planes& normal, const Harmonics& harmonics,
                          const Planes& validity, const Buffer& counts) override;
+    bool hasSpecular() const override { return true; }
+    LpvSpecularGrid specular(Executor& executor) override { return specular_.get(executor, grid_, geometry_.corners()); }
     std::vector<LWChoice> choices(const LWFrame& frame, double side) const override;
     void report(Report& report) const override;
     void addDebugViews(std::vector<DebugView>& views) const override;
@@ -32,6 +35,7 @@ private:
     LpvGrid grid_;
     LpvPyramid pyramid_;
     LpvRead read_;
+    LpvStepSpecular specular_;
     const Buffer* propagated_ = nullptr;  // of the last record
 };
 

@@ -26,8 +26,7 @@ void LpvStepVolume::record(Executor& executor, const LWFrame& frame, const RsmIn
     propagated_ = &propagation_.record(executor, grid_.injected(), stepsOf(desc_), blockers ? &*blockers : nullptr,
                                        progress_ ? &*progress_ : nullptr);
     read_.recordPack(executor, *propagated_, progress_ ? &progress_->state() : nullptr);
-    isSpecularPacked_ = false;
-    for (std::size_t c = 0; c < 3; ++c) environment_[c] = frame.environment[c];
+    specular_.startFrame(frame.environment);
 }
 
 void LpvStepVolume::recordGather(Executor& executor, const Planes& position, const Planes& normal, const Planes& irradiance,
@@ -38,20 +37,6 @@ void LpvStepVolume::recordGather(Executor& executor, const Planes& position, con
 void LpvStepVolume::recordHarmonics(Executor& executor, const Planes& position, const Planes& normal, const Harmonics& harmonics,
                                     const Planes& validity, const Buffer& counts) {
     read_.recordHarmonics(executor, position, normal, grid_.place(), calibration_, harmonics, validity, counts);
-}
-
-// What surfaces send is what was injected: light on its way through the cells belongs to no surface any more. A sky is no surface's:
-// rays that leave the grid bring it, so what it put into the border's cells is left out meanwhile, or would count twice.
-LpvSpecularGrid LpvStepVolume::specular(Executor& executor) {
-    if (!isSpecularPacked_) {
-        const bool hasSky = std::any_of(environment_, environment_ + 3, [](float e) { return e > 0.0f; });
-        if (hasSky) grid_.recordResolve(executor, nullptr);
-        specular_.recordPackSteps(executor, grid_.injected(), grid_.place(), geometry_.corners());
-        if (hasSky) grid_.recordResolve(executor, environment_);
-        specular_.show(executor);
-        isSpecularPacked_ = true;
-    }
-    return {specular_, grid_.place()};
 }
 
 std::vector<LWChoice> LpvStepVolume::choices(const LWFrame& frame, double) const { return geometry_.choices(frame); }
@@ -89,7 +74,7 @@ std::uint64_t LpvStepVolume::bytes() const {
 
 std::uint64_t LpvStepVolume::estimateBytes(const LWLpvDesc& desc, const FrameShape& shape) {
     return LpvGrid::estimateBytes(desc.size, shape.vplCount) + LpvPropagation::estimateBytes(desc.size, stepsOf(desc)) +
-           LpvRead::estimateBytes(desc.size) + LpvSpecular::estimateBytes(desc.size, false) + LpvGeometry::estimateBytes(desc, shape) +
+           LpvRead::estimateBytes(desc.size) + LpvStepSpecular::estimateBytes(desc.size) + LpvGeometry::estimateBytes(desc, shape) +
            (desc.autoError > 0.0f ? LpvProgress::estimateBytes(desc.size) : 0);
 }
 

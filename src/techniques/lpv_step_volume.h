@@ -7,6 +7,7 @@
 #include "passes/lpv_propagation.h"
 #include "passes/lpv_read.h"
 #include "techniques/lpv_geometry.h"
+#include "techniques/lpv_step_specular.h"
 #include "techniques/lpv_volume.h"
 
 namespace lightwell {
@@ -22,7 +23,7 @@ public:
     void recordHarmonics(Executor& executor, const Planes& position, const Planes& normal, const Harmonics& harmonics,
                          const Planes& validity, const Buffer& counts) override;
     bool hasSpecular() const override { return true; }
-    LpvSpecularGrid specular(Executor& executor) override;
+    LpvSpecularGrid specular(Executor& executor) override { return specular_.get(executor, grid_, geometry_.corners()); }
     std::vector<LWChoice> choices(const LWFrame& frame, double side) const override;
     void report(Report& report) const override;
     void addDebugViews(std::vector<DebugView>& views) const override;
@@ -45,9 +46,7 @@ private:
     LpvPropagation propagation_;
     LpvRead read_;
     std::optional<LpvProgress> progress_;  // with an error target
-    LpvSpecular specular_;
-    bool isSpecularPacked_ = false;  // of the last record
-    float environment_[3] = {0.0f, 0.0f, 0.0f};  // of the last record
+    LpvStepSpecular specular_;
     const Buffer* propagated_ = nullptr;  // of the last record
 };
 

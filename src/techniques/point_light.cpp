@@ -56,17 +56,6 @@ std::uint64_t PointOutputs::bytes() const {
     return total;
 }
 
-std::uint64_t PointOutputs::estimateBytes(std::uint32_t count, bool uploads) {
-    std::uint64_t total = 0;
-    for (const Output& output : kOutputs) {
-        LWViewDesc view{};
-        view.maxWidth = count;
-        view.maxHeight = output.height;
-        total += OutputTarget::estimateBytes(view, output.channels, uploads);
-    }
-    return total;
-}
-
 Harmonics harmonicsOf(const PointRows& rows, const Planes& harmonics) {
     return {rows.of(harmonics), harmonics ? cl_int(harmonics.rowStride) : 0};
 }
@@ -123,10 +112,6 @@ void PointLight::report(Device& device, Report& report, const Counts& counts) co
 
 std::uint64_t PointLight::bytes() const {
     return points_.bytes() + outputs_.bytes() + counts_.bytes() + harmonicsCounts_.bytes() + rejected_.bytes();
-}
-
-std::uint64_t PointLight::estimateBytes(std::uint32_t count, bool uploads) {
-    return PointsInput::estimateBytes(count, uploads) + PointOutputs::estimateBytes(count, uploads) + 2 * kCountBytes + sizeof(cl_int);
 }
 
 }  // namespace lightwell

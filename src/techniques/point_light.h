@@ -37,7 +37,6 @@ public:
     void end(Executor& executor);
     void report(Report& report) const;
     std::uint64_t bytes() const;
-    static std::uint64_t estimateBytes(std::uint32_t count, bool uploads);
 
 private:
     std::array<OutputTarget, 3> targets_;
@@ -61,8 +60,6 @@ public:
     };
     void report(Device& device, Report& report, const Counts& counts) const;
     std::uint64_t bytes() const;
-    // The most that bytes() becomes for so many points, all outputs wanted and all images to be unpacked.
-    static std::uint64_t estimateBytes(std::uint32_t count, bool uploads);
 
 private:
     void light(Executor& executor, PointGather& gather);

@@ -47,6 +47,8 @@ class Probes(CommandLine):
         out = ["--out", self.path("never.json")]
         self.refused(["probes", "cornell", "--grid", "8x8", *out], "--grid", "8x4x8")
         self.refused(["probes", "cornell", "--grid", "0x1x1", *out], "--grid", "1024")
+        self.refused(["probes", "cornell", "--grid", "1024x1024x8", *out], "--grid", "4194240")
+        self.refused(["probes", "cornell", "--surfaces", *out], "--surfaces", "--out")
         self.refused(["probes", "cornell"], "--out")
         self.refused(["probes", "cornell", "--out", self.path("never.png")], ".json")
         self.refused(["probes", "cornell", "--technique", "nothing", *out], "nothing", "lpv")

@@ -276,3 +276,25 @@ TEST_CASE("frames of nothing, of one point, and grids of any extent: light is fi
         CHECK(lwCreateLpv(device, &desc, &none) == LW_ERROR_INVALID_ARGUMENT);
     }
 }
+
+TEST_CASE("nested grids: light that is brought down is counted once, whatever the width", "[lpv]") {
+    LWLpvDesc desc = descOf(GENERATE(LW_LPV_TRANSPORT_PROPAGATE, LW_LPV_TRANSPORT_SWEEP));
+    desc.cascades = 2;
+    CAPTURE(int(desc.transport));
+    constexpr double kScale = 1e-3;
+    LitFloor floor(48, [](double, double) { return 1e37; }, kScale);
+    const WallAndCeiling scene(kWidth, kHeight, kScale);
+    const std::vector<LWLight> lights = {floor.light};
+    std::uint64_t counts[2];
+    for (const std::uint32_t width : {1u, 16u}) {
+        TestDevice device(width);
+        TestTechnique technique(device, "lpv", &desc);
+        TestView view(device, kWidth, kHeight);
+        technique.update(frameOf(lights, nullptr));
+        technique.render(view, scene.gbuffer);
+        counts[width / 16] = technique.count("saturated_pixels");
+    }
+    CHECK(counts[0] > 0);
+    CHECK(counts[0] == counts[1]);
+    CHECK(counts[0] <= kWidth * kHeight);
+}

@@ -1,92 +1,19 @@
-// Technique lpv's output specularRadiance through the C API.
+// Technique lpv's output specularRadiance through the C API: what mirrors and glossy surfaces show.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
-#include "support/lpv_room.h"
-#include "support/lpv_specular_bytes.h"
+#include "support/lpv_mirrors.h"
 #include "support/packed_light.h"
-#include "support/scoped_api.h"
-#include "support/view_scene.h"
 
 using namespace lightwell::test;
-using Catch::Matchers::Contains;
 using lightwell::reference::Vec;
 
 namespace {
 
-constexpr std::uint32_t kWidth = 45, kHeight = 30;
 constexpr double kPi = 3.14159265358979323846;
 // A side of the floor's: 13 or 14 to a cell, whose light differs by 7 % of the mean at most.
 constexpr std::uint32_t kTexels = 384;
-
-double evenProfile(double, double) { return 1.0; }
-
-LWLpvDesc descOf(LWLpvTransport transport, LWResolution resolution = LW_RESOLUTION_FULL) {
-    LWLpvDesc desc;
-    lwDefaultLpv(&desc);
-    desc.transport = transport;
-    desc.size = 32;
-    desc.resolution = resolution;
-    return desc;
-}
-
-LWFrame frameOf(const std::vector<LWLight>& lights, const LWGeometry* geometry, float environment = 0.0f) {
-    LWFrame frame{};
-    frame.structSize = sizeof frame;
-    frame.lights = lights.data();
-    frame.lightCount = std::uint32_t(lights.size());
-    frame.geometry = geometry;
-    frame.environment[0] = frame.environment[1] = frame.environment[2] = environment;
-    return frame;
-}
-
-// The lit room's wall and ceiling, seen from inside it.
-struct Mirrors : WallAndCeiling {
-    glm::dvec3 eye{0.0, 0.6, 0.5};
-    PlanarPixels roughness{kWidth, kHeight, 1};
-    explicit Mirrors(double scale = 1.0, float rough = 0.0f) : WallAndCeiling(kWidth, kHeight, scale) {
-        eye *= scale;
-        gbuffer.camera = lookAt(eye, eye + glm::dvec3(0.0, 0.2, -0.3), 0.7).matrices();
-        for (std::uint32_t y = 0; y < kHeight; ++y)
-            for (std::uint32_t x = 0; x < kWidth; ++x) roughness.at(x, y, 0) = rough;
-        gbuffer.roughness = roughness.image();
-    }
-    // Where a mirrored ray meets the floor's plane, or far off.
-    Vec floorOf(std::uint32_t x, std::uint32_t y) const {
-        const Vec p = position.get(x, y), n = normal.get(x, y), v = lightwell::reference::unit(Vec{eye.x, eye.y, eye.z} - p);
-        const Vec r = n * (2.0 * lightwell::reference::dot(v, n)) - v;
-        return r.y < 0.0 ? p + r * (-p.y / r.y) : Vec{1e9, 0, 1e9};
-    }
-};
-
-struct Asked {
-    bool specular = true, irradiance = false;
-};
-
-struct Picture {
-    std::vector<float> specular, irradiance;
-};
-
-Picture render(TestTechnique& technique, LWDevice device, const TestView& view, const LWGBuffer& gbuffer, Asked asked = {}) {
-    PlanarPixels specular(view.width(), view.height(), 3), irradiance(view.width(), view.height(), 3);
-    LWOutput output{};
-    output.structSize = sizeof output;
-    if (asked.specular) output.specularRadiance = specular.image();
-    if (asked.irradiance) output.irradiance = irradiance.image();
-    const LWStatus status = lwRender(technique, view, &gbuffer, &output);
-    INFO(lastError(device));
-    REQUIRE(status == LW_SUCCESS);
-    REQUIRE(lwFinish(device) == LW_SUCCESS);
-    return {specular.packed(), irradiance.packed()};
-}
-
-std::vector<float> renderOnce(LWDevice device, const LWLpvDesc& desc, const LWFrame& frame, const LWGBuffer& gbuffer) {
-    TestTechnique technique(device, "lpv", &desc);
-    TestView view(device, kWidth, kHeight);
-    technique.update(frame);
-    return render(technique, device, view, gbuffer).specular;
-}
 
 // Of pixels that are mirrors of the floor, two cells from its border: of exitance 1, radiance 1 / pi.
 void checkFloor(const std::vector<float>& light, const Mirrors& scene, double tolerance) {
@@ -108,7 +35,7 @@ void checkFloor(const std::vector<float>& light, const Mirrors& scene, double to
 }  // namespace
 
 TEST_CASE("mirrors of a lit floor read its radiance, and background nothing", "[lpv]") {
-    const auto transport = GENERATE(LW_LPV_TRANSPORT_PROPAGATE, LW_LPV_TRANSPORT_SWEEP);
+    const auto transport = GENERATE(LW_LPV_TRANSPORT_PROPAGATE, LW_LPV_TRANSPORT_SWEEP, LW_LPV_TRANSPORT_COARSE_TO_FINE);
     const std::uint32_t width = GENERATE(1u, 16u);
     CAPTURE(int(transport), width);
     TestDevice device(width);
@@ -176,7 +103,7 @@ TEST_CASE("specular radiance: without roughness it is that of 0.5; what is not a
 }
 
 TEST_CASE("rays that leave the grid bring the environment's radiance", "[lpv]") {
-    const auto transport = GENERATE(LW_LPV_TRANSPORT_PROPAGATE, LW_LPV_TRANSPORT_SWEEP);
+    const auto transport = GENERATE(LW_LPV_TRANSPORT_PROPAGATE, LW_LPV_TRANSPORT_SWEEP, LW_LPV_TRANSPORT_COARSE_TO_FINE);
     TestDevice device(16);
     LitFloor floor(96, [](double, double) { return 0.0; });
     const Mirrors scene;
@@ -199,60 +126,4 @@ TEST_CASE("rays that leave the grid bring the environment's radiance", "[lpv]") 
         }
     CHECK(closed > 100);
     CHECK(open > 100);
-}
-
-TEST_CASE("specular radiance: nothing is compiled after lwPrewarm, memory is as estimated", "[lpv]") {
-    TestDevice device(16);
-    LitFloor floor(32, evenProfile);
-    const Mirrors scene;
-    const RoomTriangles room(1.0);
-    const auto transport = GENERATE(LW_LPV_TRANSPORT_PROPAGATE, LW_LPV_TRANSPORT_SWEEP);
-    const auto resolution = GENERATE(LW_RESOLUTION_FULL, LW_RESOLUTION_HALF);
-    const LWLpvDesc desc = descOf(transport, resolution);
-    TestTechnique technique(device, "lpv", &desc);
-    TestView view(device, kWidth, kHeight);
-    REQUIRE(lwPrewarm(technique, view) == LW_SUCCESS);
-    const LWDeviceInfo before = device.info();
-    const std::vector<LWLight> lights = {floor.light};
-    const LWFrame frame = frameOf(lights, &room.geometry);
-    technique.update(frame);
-    render(technique, device, view, scene.gbuffer);
-    render(technique, device, view, scene.gbuffer, {true, true});
-    CHECK(device.info().programsBuilt == before.programsBuilt);
-    CHECK(device.info().kernelsSpecialised == before.kernelsSpecialised);
-    LWViewDesc size{};
-    size.structSize = sizeof size;
-    size.maxWidth = kWidth;
-    size.maxHeight = kHeight;
-    std::uint64_t estimate = 0;
-    REQUIRE(lwEstimateFrameMemory(device, "lpv", &desc, &size, &frame, &estimate) == LW_SUCCESS);
-    // The estimate is of images that have to be unpacked; these are used in place, or copied as they are.
-    const std::uint64_t unpacked = (3 + 3 + 3 + 1) * sizeof(float) * 48 * kHeight + specularUnpackedBytes(48 * kHeight);
-    const std::uint64_t held = technique.stats().deviceBytes;
-    if (device.info().hostUnifiedMemory && transport == LW_LPV_TRANSPORT_PROPAGATE)
-        CHECK(held + unpacked == estimate);
-    else
-        CHECK(held <= estimate);
-}
-
-TEST_CASE("specular radiance: who cannot make it says so, as does one without a camera", "[lpv]") {
-    TestDevice device(16);
-    Mirrors scene;
-    PlanarPixels pixels(kWidth, kHeight, 3);
-    LWOutput output{};
-    output.structSize = sizeof output;
-    output.specularRadiance = pixels.image();
-    TestView view(device, kWidth, kHeight);
-    LWRsmDesc rsm;
-    lwDefaultRsm(&rsm);
-    TestTechnique other(device, rsm);
-    other.update(frameOf({}, nullptr));
-    CHECK(lwRender(other, view, &scene.gbuffer, &output) == LW_ERROR_UNSUPPORTED);
-    CHECK_THAT(lastError(device), Contains("output.specularRadiance") && Contains("rsm"));
-    const LWLpvDesc desc = descOf(LW_LPV_TRANSPORT_PROPAGATE);
-    TestTechnique technique(device, "lpv", &desc);
-    technique.update(frameOf({}, nullptr));
-    scene.gbuffer.camera = LWCamera{};
-    CHECK(lwRender(technique, view, &scene.gbuffer, &output) == LW_ERROR_INVALID_ARGUMENT);
-    CHECK_THAT(lastError(device), Contains("gbuffer.camera"));
 }
