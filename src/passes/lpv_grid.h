@@ -48,8 +48,6 @@ public:
     // authored: as authored() has them. inner: none, or the place of a grid whose lights are left out.
     void recordInject(Executor& executor, const RsmInput& rsms, const Buffer& authored, std::uint32_t authoredCount,
                       const Buffer* inner, const float* environment = nullptr);
-    // injected() once more of the same lights, under another sky.
-    void recordResolve(Executor& executor, const float* environment);
 
     const Buffer& injected() const { return injected_; }  // a grid of LpvPropagation's
     const Buffer& place() const { return place_; }        // LwLpvPlace
