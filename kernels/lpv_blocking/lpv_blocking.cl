@@ -135,7 +135,8 @@ __kernel void lpv_blocking_triangles(__global const float* triangles, int stride
     long run[LW_LPV_BANDS] = {0, 0, 0, 0};
     int corner = -1;
     for (int t = first; t < last; ++t) {
-        const lpv_raster r = raster_of(triangles, stride, t, place, size);
+        lpv_raster r;
+        raster_of(triangles, stride, t, place, size, &r);
         if (r.firstU <= r.lastU && r.firstV <= r.lastV) corner = block_triangle(&r, size, corner, run, sums);
     }
     end_run(run, corner, sums);

@@ -167,7 +167,8 @@ __kernel void lpv_sweep_cover_triangles(__global const float* triangles, int str
     __global uint* marks = sums + sweep_area_marks(size);
     sweep_areas run = no_areas();
     for (int t = first; t < last; ++t) {
-        const lpv_raster r = raster_of(triangles, stride, t, place, size);
+        lpv_raster r;
+        raster_of(triangles, stride, t, place, size, &r);
         if (r.firstU <= r.lastU && r.firstV <= r.lastV) cover_triangle(&r, size, &run, sums, marks);
     }
     end_areas(&run, sums, marks);

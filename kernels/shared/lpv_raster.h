@@ -25,20 +25,20 @@ LW_FN float raster_corner(__global const float* triangles, int stride, int plane
     return (triangles[plane * stride + t] - origin) * scale;
 }
 
-LW_FN lpv_raster raster_of(__global const float* triangles, int stride, int t, const LwLpvPlace place, int size) {
-    lpv_raster r;
+// (Not as a result: of a loop's, compilers say what Oclgrind does not know.)
+LW_FN void raster_of(__global const float* triangles, int stride, int t, const LwLpvPlace place, int size, lpv_raster* r) {
     const float origin[3] = {place.origin.x, place.origin.y, place.origin.z}, scale = (float)LPV_RASTER * place.origin.w;
     const float most = (float)(LPV_RASTER * size);
-    r.firstU = r.firstV = 0;
-    r.lastU = r.lastV = -1;
+    r->firstU = r->firstV = 0;
+    r->lastU = r->lastV = -1;
     int isNear = 1, spans = 0;
     for (int a = 0; a < 3; ++a) {
         const float p = raster_corner(triangles, stride, LW_TRIANGLE_A + a, t, origin[a], scale),
                     q = raster_corner(triangles, stride, LW_TRIANGLE_B + a, t, origin[a], scale),
                     s = raster_corner(triangles, stride, LW_TRIANGLE_C + a, t, origin[a], scale);
-        r.at[0][a] = p;
-        r.at[1][a] = q;
-        r.at[2][a] = s;
+        r->at[0][a] = p;
+        r->at[1][a] = q;
+        r->at[2][a] = s;
         const float low = fmin(fmin(p, q), s), high = fmax(fmax(p, q), s);
         // What lies half a cell off is of use.
         isNear = isNear && high > -(float)LPV_RASTER && low < most + (float)LPV_RASTER;
@@ -47,33 +47,32 @@ LW_FN lpv_raster raster_of(__global const float* triangles, int stride, int t, c
         spans += upper >= 0.0f && (float)(int)fmin(upper, most - 1.0f) + 0.5f >= low;
     }
     // Without samples along two axes there are none seen along any: most triangles are that small.
-    if (!isNear || spans < 2 || !(place.origin.w > 0.0f)) return r;
-    const float ux = r.at[1][0] - r.at[0][0], uy = r.at[1][1] - r.at[0][1], uz = r.at[1][2] - r.at[0][2];
-    const float vx = r.at[2][0] - r.at[0][0], vy = r.at[2][1] - r.at[0][1], vz = r.at[2][2] - r.at[0][2];
+    if (!isNear || spans < 2 || !(place.origin.w > 0.0f)) return;
+    const float ux = r->at[1][0] - r->at[0][0], uy = r->at[1][1] - r->at[0][1], uz = r->at[1][2] - r->at[0][2];
+    const float vx = r->at[2][0] - r->at[0][0], vy = r->at[2][1] - r->at[0][1], vz = r->at[2][2] - r->at[0][2];
     float n[3] = {uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx};
     const float largest = fmax(fmax(fabs(n[0]), fabs(n[1])), fabs(n[2]));
-    if (!(largest > 0.0f && largest < FLT_MAX)) return r;
+    if (!(largest > 0.0f && largest < FLT_MAX)) return;
     for (int a = 0; a < 3; ++a) n[a] /= largest;
     const float length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-    r.nx = n[0] / length;
-    r.ny = n[1] / length;
-    r.nz = n[2] / length;
-    r.axis = fabs(n[0]) == 1.0f ? 0 : fabs(n[1]) == 1.0f ? 1 : 2;
-    r.u = r.axis == 0 ? 1 : 0;
-    r.v = r.axis == 2 ? 1 : 2;
+    r->nx = n[0] / length;
+    r->ny = n[1] / length;
+    r->nz = n[2] / length;
+    r->axis = fabs(n[0]) == 1.0f ? 0 : fabs(n[1]) == 1.0f ? 1 : 2;
+    r->u = r->axis == 0 ? 1 : 0;
+    r->v = r->axis == 2 ? 1 : 2;
     // Along y, (u, v) is (x, z), which is left-handed about it.
-    r.turn = (n[r.axis] > 0.0f) == (r.axis != 1) ? 1.0f : -1.0f;
-    r.slopeU = -n[r.u] / n[r.axis];
-    r.slopeV = -n[r.v] / n[r.axis];
-    r.area = length / (float)(LPV_RASTER * LPV_RASTER);
-    const float lowU = fmin(fmin(r.at[0][r.u], r.at[1][r.u]), r.at[2][r.u]), highU = fmax(fmax(r.at[0][r.u], r.at[1][r.u]), r.at[2][r.u]);
-    const float lowV = fmin(fmin(r.at[0][r.v], r.at[1][r.v]), r.at[2][r.v]), highV = fmax(fmax(r.at[0][r.v], r.at[1][r.v]), r.at[2][r.v]);
+    r->turn = (n[r->axis] > 0.0f) == (r->axis != 1) ? 1.0f : -1.0f;
+    r->slopeU = -n[r->u] / n[r->axis];
+    r->slopeV = -n[r->v] / n[r->axis];
+    r->area = length / (float)(LPV_RASTER * LPV_RASTER);
+    const float lowU = fmin(fmin(r->at[0][r->u], r->at[1][r->u]), r->at[2][r->u]), highU = fmax(fmax(r->at[0][r->u], r->at[1][r->u]), r->at[2][r->u]);
+    const float lowV = fmin(fmin(r->at[0][r->v], r->at[1][r->v]), r->at[2][r->v]), highV = fmax(fmax(r->at[0][r->v], r->at[1][r->v]), r->at[2][r->v]);
     // One too many does no harm.
-    r.firstU = (int)clamp(lowU - 0.5f, 0.0f, most);
-    r.lastU = (int)clamp(highU - 0.5f, 0.0f, most - 1.0f);
-    r.firstV = (int)clamp(lowV - 0.5f, 0.0f, most);
-    r.lastV = (int)clamp(highV - 0.5f, 0.0f, most - 1.0f);
-    return r;
+    r->firstU = (int)clamp(lowU - 0.5f, 0.0f, most);
+    r->lastU = (int)clamp(highU - 0.5f, 0.0f, most - 1.0f);
+    r->firstV = (int)clamp(lowV - 0.5f, 0.0f, most);
+    r->lastV = (int)clamp(highV - 0.5f, 0.0f, most - 1.0f);
 }
 
 // Is (x, y) on this triangle's side of the edge between two of its vertices? The edge is taken from its lower end, whichever way the

@@ -119,7 +119,7 @@ TEST_CASE("a target that is never met changes nothing, however many steps there 
         }
 }
 
-TEST_CASE("a target is a share: light's unit does not count, and no light is done at once", "[lpv_propagation]") {
+TEST_CASE("a target is a share: light's unit does not count, and no light is done at once", "[lpv_propagation][large]") {
     LpvCells cells = lamps();
     const Ended ended = until(16, cells, 32, 0.4f);
     for (float& value : cells.values) value *= 0x1p-40f;

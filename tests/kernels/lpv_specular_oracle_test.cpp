@@ -108,7 +108,7 @@ SpecularPoint mirror(Vec p, Vec ray, Vec eye) { return {p, reference::unit(refer
 
 }  // namespace
 
-TEST_CASE("a mirror reads a lit wall's radiance at any distance and angle", "[lpv_specular]") {
+TEST_CASE("a mirror reads a lit wall's radiance at any distance and angle", "[lpv_specular][large]") {
     const bool sweeps = GENERATE(false, true), blocks = GENERATE(false, true);
     const double offset = GENERATE(4.0, 4.25, 4.75);
     CAPTURE(sweeps, blocks, offset);
@@ -138,7 +138,7 @@ TEST_CASE("a mirror reads a lit wall's radiance at any distance and angle", "[lp
     }
 }
 
-TEST_CASE("in a box of lit walls every lobe reads the walls' radiance", "[lpv_specular]") {
+TEST_CASE("in a box of lit walls every lobe reads the walls' radiance", "[lpv_specular][large]") {
     const bool sweeps = GENERATE(false, true);
     CAPTURE(sweeps);
     const double l = 3.25, h = 28.75, s = h - l;
@@ -170,7 +170,7 @@ TEST_CASE("in a box of lit walls every lobe reads the walls' radiance", "[lpv_sp
     }
 }
 
-TEST_CASE("specular rays see nothing behind a closed wall, and what is outside through an empty grid", "[lpv_specular]") {
+TEST_CASE("specular rays see nothing behind a closed wall, and what is outside through an empty grid", "[lpv_specular][large]") {
     const bool sweeps = GENERATE(false, true);
     CAPTURE(sweeps);
     const Vec eye{16, 16, 28};
@@ -191,7 +191,7 @@ TEST_CASE("specular rays see nothing behind a closed wall, and what is outside t
 
 // The lobe of roughness 1 seen straight on is the hemisphere weighted by the cosine: E / pi. Of eight rays half are below the
 // surface: what a lobe sees of a light that fills a tenth of the hemisphere is in one ray or none, but in the mean it is there.
-TEST_CASE("the roughest lobe is the diffuse mean, in the mean over places", "[lpv_specular]") {
+TEST_CASE("the roughest lobe is the diffuse mean, in the mean over places", "[lpv_specular][large]") {
     const bool sweeps = GENERATE(false, true);
     const Vec low{8, 8, 4};
     const double side = 16.0;
