@@ -21,10 +21,12 @@ constexpr double kMostFaces = 40.0;
 // grid's). In finer grids than they suffice for, light that is sent on comes from too few cells.
 constexpr std::uint64_t kMostSending = std::uint64_t(1) << 22;
 
+std::uint64_t surfelsOfOne(const LWLpvDesc& desc) { return kSurfelsPerSide * std::uint64_t(desc.size) * desc.size; }
+std::uint64_t surfelsWanted(const LWLpvDesc& desc) { return surfelsOfOne(desc) << 2 * (desc.cascades - 1); }
+
 std::uint32_t sampledCount(const LWLpvDesc& desc) {
-    const std::uint64_t one = kSurfelsPerSide * std::uint64_t(desc.size) * desc.size;
-    if (desc.cascades == 1) return std::uint32_t(one);
-    return desc.bounces == 1 ? 0 : std::uint32_t(std::max(one, std::min(one << 2 * (desc.cascades - 1), kMostSending)));
+    if (desc.cascades == 1) return std::uint32_t(surfelsOfOne(desc));
+    return desc.bounces == 1 ? 0 : std::uint32_t(std::max(surfelsOfOne(desc), std::min(surfelsWanted(desc), kMostSending)));
 }
 
 }  // namespace
@@ -71,6 +73,8 @@ std::vector<LWChoice> LpvSurfaces::choices(const LWFrame& frame, double side) co
         choices.push_back({"frame.geometry", "not used: no triangle has an area and lies within reach"});
     if (source_ == Source::triangles && !triangles() && triangles_.area > kMostFaces * side * side)
         choices.push_back({"blockers.holes", "triangles of more than 40 faces of the grid: too few surfels for each cell to be closed"});
+    if (triangles() && desc_.bounces > 1 && surfelsWanted(desc_) > kMostSending)
+        choices.push_back({"bounces.surfels", "4,194,304 send light on, fewer than the finest grid wants: it is sent from too few of its cells"});
     if (source_ == Source::triangles && frame.geometry->surfelCount)
         choices.push_back({"frame.geometry.surfels", "not used: the triangles are"});
     return choices;

@@ -219,3 +219,18 @@ TEST_CASE("cascades: a scene that is a thousand times as large, or as small, is 
     for (const double scale : {std::ldexp(1.0, -10), std::ldexp(1.0, 10)}) CHECK((at(scale) == one));
     for (const double scale : {1e-3, 1e3}) CHECK(difference(at(scale), one) < 0.01);
 }
+
+TEST_CASE("sweeps through cascades: too few surfels for further bounces in the finest grid are told", "[lpv_cascades]") {
+    TestDevice device(16);
+    const Scene scene(Scene::kTriangles, true, 0.0f);
+    const auto told = [&](std::uint32_t cascades, std::uint32_t bounces) {
+        LWLpvDesc desc = descOf(LW_LPV_TRANSPORT_SWEEP, cascades);
+        desc.bounces = bounces;
+        TestTechnique technique(device, "lpv", &desc);
+        technique.update(scene.frame);
+        return reasonOf(technique, "bounces.surfels");
+    };
+    CHECK(told(4, 2) == "");  // as many as there may be
+    CHECK_THAT(told(5, 2), Contains("4,194,304"));
+    CHECK(told(5, 1) == "");
+}
