@@ -587,8 +587,8 @@ LW_API void lwDefaultAo(LWAoDesc* desc);
 typedef enum LWGeometryVolume {
     LW_GEOMETRY_VOLUME_OFF = 0,       /**< nothing: light goes through walls */
     LW_GEOMETRY_VOLUME_AUTO = 1,      /**< the frame's triangles, else its surfels, else as SCREEN; the stats say which */
-    LW_GEOMETRY_VOLUME_TRIANGLES = 2, /**< LWGeometry's triangles, sampled to surfels */
-    LW_GEOMETRY_VOLUME_SURFELS = 3,   /**< LWGeometry's surfels; without any, its triangles sampled to surfels */
+    LW_GEOMETRY_VOLUME_TRIANGLES = 2, /**< LWGeometry's triangles: as surfels sampled from them, of cascades on each grid's lattice */
+    LW_GEOMETRY_VOLUME_SURFELS = 3,   /**< LWGeometry's surfels; without any, its triangles */
     LW_GEOMETRY_VOLUME_SCREEN = 4     /**< the texels of all RSMs and the pixels of LWFrame::sourceViews */
 } LWGeometryVolume;
 
