@@ -1,4 +1,5 @@
-// `lightwell render`: one view of a scene with a technique, measured.
+// `lightwell render`: one view of a scene with a technique, measured. Some lines over 300: most are the command's options and what
+// they mean, which are to be read in one place.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>

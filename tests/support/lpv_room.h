@@ -49,4 +49,14 @@ double ceilingError(const std::vector<float>& light, const Scene& scene, std::ui
     return std::sqrt(squared / truths);
 }
 
+// Its lights, and triangles or none.
+inline LWFrame roomFrame(const std::vector<LWLight>& lights, const LWGeometry* geometry) {
+    LWFrame frame{};
+    frame.structSize = sizeof frame;
+    frame.lights = lights.data();
+    frame.lightCount = std::uint32_t(lights.size());
+    frame.geometry = geometry;
+    return frame;
+}
+
 }  // namespace lightwell::test

@@ -78,4 +78,22 @@ struct PointRoom {
     PointRoom(const PointRoom&) = delete;
 };
 
+// Descriptors of small techniques: few VPLs, a coarse grid.
+inline LWRsmDesc rsmDesc() {
+    LWRsmDesc desc;
+    lwDefaultRsm(&desc);
+    desc.vpls = 64;
+    desc.interleave = 1;
+    return desc;
+}
+inline LWLpvDesc lpvDesc(LWLpvTransport transport, double extent = 0.0) {
+    LWLpvDesc desc;
+    lwDefaultLpv(&desc);
+    desc.size = 16;
+    desc.transport = transport;
+    desc.extent = float(extent);
+    desc.center[1] = desc.center[2] = 0.25f;
+    return desc;
+}
+
 }  // namespace lightwell::test

@@ -24,15 +24,6 @@ LWLpvDesc descOf(std::uint32_t size) {
     return desc;
 }
 
-LWFrame frameOf(const std::vector<LWLight>& lights, const LWGeometry* geometry) {
-    LWFrame frame{};
-    frame.structSize = sizeof frame;
-    frame.lights = lights.data();
-    frame.lightCount = std::uint32_t(lights.size());
-    frame.geometry = geometry;
-    return frame;
-}
-
 std::vector<float> render(LWDevice device, const LWLpvDesc& desc, const LWFrame& frame, const WallAndCeiling& scene) {
     TestTechnique technique(device, "lpv", &desc);
     TestView view(device, kWidth, kHeight);
@@ -49,14 +40,14 @@ TEST_CASE("coarse to fine: light arrives where steps of one grid leave none, and
     const std::vector<LWLight> lights = {floor.light};
     TestDevice wide(16), scalar(1);
     const LWLpvDesc desc = descOf(32);
-    const auto lit = render(wide, desc, frameOf(lights, &open.geometry), scene);
-    for (int run = 0; run < 3; ++run) CHECK(render(wide, desc, frameOf(lights, &open.geometry), scene) == lit);
-    CHECK(render(scalar, desc, frameOf(lights, &open.geometry), scene) == lit);
-    const auto dark = render(wide, desc, frameOf(lights, &closed.geometry), scene);
+    const auto lit = render(wide, desc, roomFrame(lights, &open.geometry), scene);
+    for (int run = 0; run < 3; ++run) CHECK(render(wide, desc, roomFrame(lights, &open.geometry), scene) == lit);
+    CHECK(render(scalar, desc, roomFrame(lights, &open.geometry), scene) == lit);
+    const auto dark = render(wide, desc, roomFrame(lights, &closed.geometry), scene);
     LWLpvDesc steps = desc;
     steps.transport = LW_LPV_TRANSPORT_PROPAGATE;
     steps.steps = 4;
-    const auto near = render(wide, steps, frameOf(lights, &open.geometry), scene);
+    const auto near = render(wide, steps, roomFrame(lights, &open.geometry), scene);
     const auto ceiling = [](const std::vector<float>& light) {
         double sum = 0.0;
         for (std::uint32_t y = kHeight / 2; y < kHeight; ++y)
@@ -79,7 +70,7 @@ TEST_CASE("coarse to fine compiles nothing after lwPrewarm, and takes the memory
     REQUIRE(lwPrewarm(technique, view) == LW_SUCCESS);
     const LWDeviceInfo before = device.info();
     const std::vector<LWLight> lights = {floor.light};
-    const LWFrame frame = frameOf(lights, &room.geometry);
+    const LWFrame frame = roomFrame(lights, &room.geometry);
     technique.update(frame);
     technique.render(view, scene.gbuffer);
     CHECK(technique.count("steps") == 4 + 128);
@@ -92,7 +83,7 @@ TEST_CASE("coarse to fine compiles nothing after lwPrewarm, and takes the memory
     REQUIRE(lwEstimateFrameMemory(device, "lpv", &desc, &size, &frame, &estimate) == LW_SUCCESS);
     CHECK(technique.stats().deviceBytes <= estimate);
     CHECK(technique.stats().deviceBytes > estimate / 2);
-    technique.update(frameOf(lights, nullptr));
+    technique.update(roomFrame(lights, nullptr));
     technique.render(view, scene.gbuffer);
     CHECK(device.info().programsBuilt == before.programsBuilt);
     CHECK(device.info().kernelsSpecialised == before.kernelsSpecialised);
@@ -109,7 +100,7 @@ TEST_CASE("coarse to fine has one grid to read: cascades are refused, also by es
     size.structSize = sizeof size;
     size.maxWidth = kWidth;
     size.maxHeight = kHeight;
-    const LWFrame frame = frameOf({}, nullptr);
+    const LWFrame frame = roomFrame({}, nullptr);
     std::uint64_t estimate = 0;
     CHECK(lwEstimateMemory(device, "lpv", &desc, &size, 1024, &estimate) == LW_ERROR_INVALID_ARGUMENT);
     CHECK_THAT(lastError(device), Contains("cascades") && Contains("coarse_to_fine"));

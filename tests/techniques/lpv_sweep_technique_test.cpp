@@ -25,15 +25,6 @@ LWLpvDesc sweepOf(std::uint32_t size) {
     return desc;
 }
 
-LWFrame frameOf(const std::vector<LWLight>& lights, const LWGeometry* geometry) {
-    LWFrame frame{};
-    frame.structSize = sizeof frame;
-    frame.lights = lights.data();
-    frame.lightCount = std::uint32_t(lights.size());
-    frame.geometry = geometry;
-    return frame;
-}
-
 std::vector<float> render(LWDevice device, const LWLpvDesc& desc, const LWFrame& frame, const WallAndCeiling& scene) {
     TestTechnique technique(device, "lpv", &desc);
     TestView view(device, kWidth, kHeight);
@@ -51,8 +42,8 @@ TEST_CASE("a sweep lights the ceiling as a polygon does, and a plate between sto
     const RoomTriangles open(std::nullopt), closed(0.5);
     LWLpvDesc desc = sweepOf(32);
     desc.directions = 384;
-    const auto lit = render(device, desc, frameOf(lights, &open.geometry), scene),
-               dark = render(device, desc, frameOf(lights, &closed.geometry), scene);
+    const auto lit = render(device, desc, roomFrame(lights, &open.geometry), scene),
+               dark = render(device, desc, roomFrame(lights, &closed.geometry), scene);
     CHECK(ceilingError(lit, scene, kWidth, kHeight) < 0.05);
     double shadow = 0.0;
     for (std::uint32_t y = kHeight / 2; y < kHeight; ++y)
@@ -69,21 +60,21 @@ TEST_CASE("sweeps: same input, same bits, over runs, widths and frames that shar
     LWLpvDesc desc = sweepOf(16);
     desc.bounces = 2;
     TestDevice wide(16), scalar(1);
-    const auto first = render(wide, desc, frameOf(lights, &room.geometry), scene);
+    const auto first = render(wide, desc, roomFrame(lights, &room.geometry), scene);
     CHECK(meanOf(first) > 0.0);
-    for (int run = 0; run < 5; ++run) CHECK(render(wide, desc, frameOf(lights, &room.geometry), scene) == first);
-    CHECK(render(scalar, desc, frameOf(lights, &room.geometry), scene) == first);
+    for (int run = 0; run < 5; ++run) CHECK(render(wide, desc, roomFrame(lights, &room.geometry), scene) == first);
+    CHECK(render(scalar, desc, roomFrame(lights, &room.geometry), scene) == first);
     desc.frames = 4;
     TestTechnique technique(wide, "lpv", &desc);
     TestView view(wide, kWidth, kHeight);
-    technique.update(frameOf({}, &room.geometry));
-    technique.update(frameOf(lights, &room.geometry));
+    technique.update(roomFrame({}, &room.geometry));
+    technique.update(roomFrame(lights, &room.geometry));
     for (int frame = 1; frame < 8; ++frame) {
         CHECK(meanOf(technique.render(view, scene.gbuffer)) == 0.0);
-        technique.update(frameOf(lights, &room.geometry));
+        technique.update(roomFrame(lights, &room.geometry));
     }
     CHECK(technique.render(view, scene.gbuffer) == first);
-    LWFrame cut = frameOf({}, &room.geometry);
+    LWFrame cut = roomFrame({}, &room.geometry);
     cut.reset = 1;
     technique.update(cut);
     CHECK(meanOf(technique.render(view, scene.gbuffer)) == 0.0);
@@ -102,18 +93,18 @@ TEST_CASE("sweeps compile nothing after lwPrewarm, and take the memory that was 
     REQUIRE(lwPrewarm(technique, view) == LW_SUCCESS);
     const LWDeviceInfo before = device.info();
     const std::vector<LWLight> lights = {floor.light};
-    technique.update(frameOf(lights, &room.geometry));
+    technique.update(roomFrame(lights, &room.geometry));
     technique.render(view, scene.gbuffer);
     LWViewDesc size{};
     size.structSize = sizeof size;
     size.maxWidth = kWidth;
     size.maxHeight = kHeight;
     std::uint64_t estimate = 0;
-    const LWFrame frame = frameOf(lights, &room.geometry);
+    const LWFrame frame = roomFrame(lights, &room.geometry);
     REQUIRE(lwEstimateFrameMemory(device, "lpv", &desc, &size, &frame, &estimate) == LW_SUCCESS);
     CHECK(technique.stats().deviceBytes <= estimate);
     CHECK(technique.stats().deviceBytes > estimate / 2);
-    technique.update(frameOf(lights, nullptr));
+    technique.update(roomFrame(lights, nullptr));
     technique.render(view, scene.gbuffer);
     CHECK(device.info().programsBuilt == before.programsBuilt);
     CHECK(device.info().kernelsSpecialised == before.kernelsSpecialised);

@@ -19,23 +19,6 @@ struct Room : PointRoom {
     Room() : PointRoom(32, evenProfile, kWidth, kHeight) {}
 };
 
-LWRsmDesc rsmDesc() {
-    LWRsmDesc desc;
-    lwDefaultRsm(&desc);
-    desc.vpls = 64;
-    desc.interleave = 1;
-    return desc;
-}
-LWLpvDesc lpvDesc(LWLpvTransport transport, double extent = 0.0) {
-    LWLpvDesc desc;
-    lwDefaultLpv(&desc);
-    desc.size = 16;
-    desc.transport = transport;
-    desc.extent = float(extent);
-    desc.center[1] = desc.center[2] = 0.25f;
-    return desc;
-}
-
 }  // namespace
 
 TEST_CASE("a million points: the same bits as a few, memory as documented, kept for fewer", "[points]") {

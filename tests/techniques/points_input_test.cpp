@@ -22,23 +22,6 @@ struct Room : PointRoom {
     Room() : PointRoom(32, evenProfile, kWidth, kHeight) {}
 };
 
-LWRsmDesc rsmDesc() {
-    LWRsmDesc desc;
-    lwDefaultRsm(&desc);
-    desc.vpls = 64;
-    desc.interleave = 1;
-    return desc;
-}
-LWLpvDesc lpvDesc(LWLpvTransport transport, double extent = 0.0) {
-    LWLpvDesc desc;
-    lwDefaultLpv(&desc);
-    desc.size = 16;
-    desc.transport = transport;
-    desc.extent = float(extent);
-    desc.center[1] = desc.center[2] = 0.25f;
-    return desc;
-}
-
 // Of a list of `count` points, all outputs as one host image would have them.
 struct Call {
     std::vector<float> positions, normals, irradiance, harmonics, validity;
