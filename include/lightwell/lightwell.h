@@ -358,7 +358,7 @@ typedef struct LWFrame {
     float environment[3];      /**< radiance from infinity, constant over directions */
     const LWSync* sync;
     const float* focus;        /**< xyz in world space, host memory: what grids that do not hold all of the scene lie around,
-                                    the eye or a point ahead of it ("lpv"); or null */
+                                    the eye or a point ahead of it ("lpv", "cone_tracing"); or null */
 } LWFrame;
 
 /** Where results go; each image optional (format LW_FORMAT_NONE), at least one given. Writable host
@@ -371,9 +371,12 @@ typedef struct LWOutput {
     LWImage ambientOcclusion;  /**< 1 channel in [0,1]: 1 = open */
     LWImage specularRadiance;  /**< mean of the indirect radiance that arrives over the GGX lobe of alpha = roughness^2 about the mirrored
                                     view direction, weighted by n.l, before any reflectance; 3 channels, W/(sr m^2). Takes
-                                    LWGBuffer::camera and `roughness` (0.5 where absent); "lpv" */
-    LWImage shadow;            /**< 1 channel */
+                                    LWGBuffer::camera and `roughness` (0.5 where absent); "lpv", "cone_tracing" */
+    LWImage shadow;            /**< 1 channel in [0,1]: share of one light's direct light that arrives; 1 = all; "cone_tracing" */
     const LWSync* sync;
+    LWImage refractedRadiance; /**< the indirect radiance that arrives along the refracted view direction, about as wide as
+                                    `roughness` makes it, before any transmittance; 3 channels, W/(sr m^2). Takes
+                                    LWGBuffer::camera and `roughness`; "cone_tracing" */
 } LWOutput;
 
 /** Where the light at points goes (lwRenderPoints): writable host memory or cl_mem; each image optional, at least one of the
@@ -414,7 +417,14 @@ typedef enum LWVplSampling {
     LW_SAMPLING_UNIFORM = 1 /**< Hammersley set over the texels */
 } LWVplSampling;
 
-/** Technique "rsm": virtual point lights from reflective shadow maps, gathered without visibility. */
+/** What stands between a VPL of technique "rsm" and a pixel. */
+typedef enum LWRsmVisibility {
+    LW_RSM_VISIBILITY_NONE = 0, /**< nothing */
+    LW_RSM_VISIBILITY_VOXEL = 1 /**< the voxels that LWGeometry's triangles, else its surfels, else all texels of RSMs and pixels
+                                     of LWFrame::sourceViews occupy */
+} LWRsmVisibility;
+
+/** Technique "rsm": virtual point lights from reflective shadow maps, gathered without visibility or with that of a grid. */
 typedef struct LWRsmDesc {
     uint32_t structSize;
     uint32_t vpls;           /**< drawn from all RSMs together; 0: every texel */
@@ -427,6 +437,8 @@ typedef struct LWRsmDesc {
                                   their sample sets differ. Needs LWGBuffer::camera; takes LWGBuffer::motion, if given */
     float historyClamp;      /**< how far a pixel's history may lie from its frame's light, in deviations of that light over
                                   time and in its neighbourhood; 0: as far as it likes */
+    LWRsmVisibility visibility;
+    uint32_t voxels;         /**< of visibility VOXEL: a side of the grid, fitted to the scene; 32, 64, 128, 256 */
 } LWRsmDesc;
 
 LW_API void lwDefaultRsm(LWRsmDesc* desc);
@@ -434,7 +446,8 @@ LW_API void lwDefaultRsm(LWRsmDesc* desc);
 typedef enum LWVisibility {
     LW_VISIBILITY_NONE = 0, /**< every VPL lights every surface that faces it */
     LW_VISIBILITY_HARD = 1, /**< the nearest texel of the cluster's map decides */
-    LW_VISIBILITY_SOFT = 2  /**< the share of its four nearest texels (percentage-closer) */
+    LW_VISIBILITY_SOFT = 2, /**< the share of its four nearest texels (percentage-closer) */
+    LW_VISIBILITY_VOXEL = 3 /**< instead of maps, the voxels that the occluders occupy, between each VPL and the pixel */
 } LWVisibility;
 
 typedef enum LWDirections {
@@ -484,6 +497,7 @@ typedef struct LWSsvpDesc {
     uint32_t compensation;   /**< 0 .. 64: samples a pixel of the surfaces around it on the screen, which make up for near light
                                   that VPLs of some size lack; 0: none. Above 0 the G-buffer needs `directRadiance`, of the
                                   lights that have RSMs, and `camera` */
+    uint32_t voxels;         /**< as LWRsmDesc's */
 } LWSsvpDesc;
 
 LW_API void lwDefaultSsvp(LWSsvpDesc* desc);
@@ -625,6 +639,70 @@ typedef struct LWLpvDesc {
 
 LW_API void lwDefaultLpv(LWLpvDesc* desc);
 
+/** What the voxels of technique "cone_tracing" hold above the finest level. */
+typedef enum LWVoxelMode {
+    LW_VOXEL_MODE_ISOTROPIC = 0,   /**< one radiance and opacity for all directions */
+    LW_VOXEL_MODE_ANISOTROPIC = 1, /**< one for each of the six axis directions */
+    LW_VOXEL_MODE_SH2 = 2          /**< radiance in two bands of spherical harmonics, opacity for all directions */
+} LWVoxelMode;
+
+/** What is made voxels of by technique "cone_tracing". Asking for what a frame does not bring is an error of lwUpdate. */
+typedef enum LWVoxelSource {
+    LW_VOXEL_SOURCE_AUTO = 0,      /**< the frame's triangles, else its surfels, else as SCREEN; the stats say which */
+    LW_VOXEL_SOURCE_TRIANGLES = 1, /**< LWGeometry's triangles, every voxel that they touch */
+    LW_VOXEL_SOURCE_SURFELS = 2,   /**< LWGeometry's surfels */
+    LW_VOXEL_SOURCE_SCREEN = 3     /**< the texels of all RSMs and the pixels of LWFrame::sourceViews, in every frame anew */
+} LWVoxelSource;
+
+/** On which pixels technique "cone_tracing" traces. */
+typedef enum LWConeResolution {
+    LW_CONE_RESOLUTION_FULL = 0,
+    LW_CONE_RESOLUTION_HALF = 1,       /**< on every second pixel and row, then up-sampled */
+    LW_CONE_RESOLUTION_QUARTER = 2,    /**< on every fourth pixel and row, then up-sampled */
+    LW_CONE_RESOLUTION_INTERLEAVED = 3 /**< on all, a share of the cones each, then a filter over the pixels that have all:
+                                            3 x 3 for 9 cones */
+} LWConeResolution;
+
+/** What ambient occlusion from voxels dims of the light of technique "cone_tracing". */
+typedef enum LWConeOcclusion {
+    LW_CONE_OCCLUSION_OFF = 0, /**< nothing: the light has come past the voxels already */
+    LW_CONE_OCCLUSION_ALL = 1, /**< all of it, so that what is hidden counts twice: the source's */
+    LW_CONE_OCCLUSION_NEAR = 2 /**< all of it, by what stands nearer than where light's cones begin */
+} LWConeOcclusion;
+
+/** Technique "cone_tracing": the scene as voxels, lit by the RSMs, followed from each pixel in a few cones (voxel cone
+ *  tracing). Makes irradiance, validity, ambientOcclusion, specularRadiance, refractedRadiance and shadow. */
+typedef struct LWConeTracingDesc {
+    uint32_t structSize;
+    uint32_t size;           /**< voxels a side: 32, 64, 128, 256 */
+    LWVoxelMode mode;
+    uint32_t cones;          /**< of diffuse light: 6, 9; 16, 64, 256: narrower ones, all of the same weight */
+    LWConeResolution resolution;
+    uint32_t cascades;       /**< 1 .. 4 grids of `size` voxels, each half as large as the one around it, `extent` the largest
+                                  one's; the finer ones lie around LWFrame::focus, else in the middle, at multiples of an eighth of
+                                  their own sides */
+    float extent;            /**< as LWLpvDesc's */
+    float center[3];         /**< as LWLpvDesc's */
+    LWVoxelSource source;
+    uint32_t bounces;        /**< 1; or 0: all of them, each frame adding to the voxels what the last one's send on */
+    uint32_t sparse;         /**< 1: only bricks of voxels that hold something are stored and filtered; 0: all */
+    float nudge;             /**< where cones begin, in voxels along the normal; 0 .. 8 */
+    float step;              /**< of a cone, in its diameters; 0.125 .. 1. Less: time, fewer bands */
+    float distance;          /**< that cones reach, in sides of the largest grid; above 0 .. 2 */
+    uint32_t opacityCorrection;  /**< 1: opacity follows the length of steps; 0: each step takes its voxel's as it is */
+    uint32_t directionalOpacity; /**< 1: the finest voxels too have an opacity for each axis, of what they show that way */
+    uint32_t apertureOffset;     /**< 1: cones begin further off the wider they are, so that none takes light from its own surface */
+    uint32_t normalAware;        /**< 1: a voxel whose surfaces all face away from a cone sends it nothing */
+    LWConeOcclusion occlusion;
+    float occlusionDistance; /**< within which ambient occlusion counts what it meets, less with distance; in sides of the
+                                  largest grid, above 0 .. 2 */
+    uint32_t shadowLight;    /**< index in LWFrame::lights of the one whose `shadow` is asked for */
+    float shadowAngle;       /**< full angle of its cone, in radians; above 0 .. 1.5: the angle that the light's source fills */
+    float refractiveIndex;   /**< of what `refractedRadiance` is seen through, to that around it; 1 .. 4 */
+} LWConeTracingDesc;
+
+LW_API void lwDefaultConeTracing(LWConeTracingDesc* desc);
+
 /* A technique's parameters, described for tools: the command line's --set and every chart read them
  * here, so a new technique needs no other registration. */
 typedef enum LWParameterKind {
@@ -687,6 +765,7 @@ LW_API LWStatus lwCreateScreenSpace(LWDevice device, const LWScreenSpaceDesc* de
 LW_API LWStatus lwCreateHorizon(LWDevice device, const LWHorizonDesc* desc, LWTechnique* technique);
 LW_API LWStatus lwCreateAo(LWDevice device, const LWAoDesc* desc, LWTechnique* technique);
 LW_API LWStatus lwCreateLpv(LWDevice device, const LWLpvDesc* desc, LWTechnique* technique);
+LW_API LWStatus lwCreateConeTracing(LWDevice device, const LWConeTracingDesc* desc, LWTechnique* technique);
 LW_API LWStatus lwRetainTechnique(LWTechnique technique);
 LW_API LWStatus lwReleaseTechnique(LWTechnique technique);
 
