@@ -118,8 +118,8 @@ LW_FN void fill_voxels(const lw_facet* f, const lw_coat* coat, const int* corner
     float low[3];
     for (int a = 0; a < 3; ++a) {
         low[a] = (float)corner[a] - f->base[a];
-        const int begin = a == 2 ? first : 0, end = a == 2 ? last + 1 : LW_VOXEL_BRICK;
-        keep_between(&g, a, (float)(corner[a] + begin) - f->base[a], (float)(corner[a] + end) - f->base[a]);
+        // (By the whole brick, not by the layers: cuts, and what they round, are the same however a brick is shared out.)
+        keep_between(&g, a, low[a], (float)(corner[a] + LW_VOXEL_BRICK) - f->base[a]);
         if (g.count == 0) return;
     }
     const float unit = 0.5f / fabs(f->n[w]);

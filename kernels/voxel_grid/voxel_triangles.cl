@@ -64,16 +64,23 @@ LW_FN uint touching(const lw_walk* walk, __global const float* triangles, int st
     return bits;
 }
 
+// From the vertex on that lies opposite the longest edge: of a sliver the short edge, which its area hangs on, is then not the
+// difference of two long ones.
 LW_FN void facet_of(__global const float* triangles, int stride, int t, const float4 origin, lw_facet* f) {
     const float corner[3] = {origin.x, origin.y, origin.z};
+    float p[3][3], opposite[3] = {0.0f, 0.0f, 0.0f};
+    for (int a = 0; a < 3; ++a) {
+        for (int k = 0; k < 3; ++k) p[k][a] = triangles[(LW_TRIANGLE_A + 3 * k + a) * stride + t];
+        for (int k = 0; k < 3; ++k) {
+            const float d = p[(k + 2) % 3][a] - p[(k + 1) % 3][a];
+            opposite[k] += d * d;
+        }
+    }
+    const int first = opposite[0] >= fmax(opposite[1], opposite[2]) ? 0 : opposite[1] >= opposite[2] ? 1 : 2;
     f->count = 3;
     for (int a = 0; a < 3; ++a) {
-        const float p = triangles[(LW_TRIANGLE_A + a) * stride + t], q = triangles[(LW_TRIANGLE_B + a) * stride + t],
-                    s = triangles[(LW_TRIANGLE_C + a) * stride + t];
-        f->base[a] = (p - corner[a]) * origin.w;
-        f->at[0][a] = 0.0f;
-        f->at[1][a] = (q - p) * origin.w;
-        f->at[2][a] = (s - p) * origin.w;
+        f->base[a] = (p[first][a] - corner[a]) * origin.w;
+        for (int k = 0; k < 3; ++k) f->at[k][a] = (p[(first + k) % 3][a] - p[first][a]) * origin.w;
     }
     bound_facet(f);
 }

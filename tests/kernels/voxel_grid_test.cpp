@@ -98,7 +98,7 @@ std::string occupancyFaults(const VoxelRig& rig, std::size_t count, double slack
     return missing || extra ? std::to_string(missing) + " missing, " + std::to_string(extra) + " too many" : "";
 }
 
-std::string areaFaults(const VoxelRig& rig, std::size_t count, double tolerance) {
+std::string areaFaults(const VoxelRig& rig, std::size_t count, double tolerance, double sumTolerance) {
     const Clipped exact = clip(rig, count, 0.0);
     const std::vector<float> area = rig.floats(LW_SURFACE_AREA);
     double worst = 0.0, sum = 0.0, expected = 0.0;
@@ -107,7 +107,7 @@ std::string areaFaults(const VoxelRig& rig, std::size_t count, double tolerance)
         sum += double(area[i]);
         expected += exact.area[i];
     }
-    if (worst <= tolerance && std::abs(sum - expected) <= 1e-5 * expected) return "";
+    if (worst <= tolerance && std::abs(sum - expected) <= sumTolerance * expected) return "";
     return "worst " + std::to_string(worst) + ", sum " + std::to_string(sum) + " for " + std::to_string(expected);
 }
 
@@ -117,17 +117,19 @@ TEST_CASE("voxels are occupied where triangles touch them, and nowhere else, and
     VoxelRig rig(GENERATE(1u, 16u), kSize);
     Random random(7);
     // How much wider a voxel may be taken for: rounding, which grows with what the triangle reaches.
-    const auto check = [&](const char* kind, const std::vector<VoxelTriangle>& triangles, double slack, double tolerance) {
+    const auto check = [&](const char* kind, const std::vector<VoxelTriangle>& triangles, double slack, double tolerance,
+                           double sumTolerance = 1e-5) {
         INFO(kind);
         rig.voxelise(triangles);
         CHECK(occupancyFaults(rig, triangles.size(), slack) == "");
-        CHECK(areaFaults(rig, triangles.size(), tolerance) == "");
+        CHECK(areaFaults(rig, triangles.size(), tolerance, sumTolerance) == "");
     };
     check("small", scattered(random, 2000, 0.2), 2e-4, 2e-5);
     check("medium", scattered(random, 200, 4.0), 2e-4, 2e-5);
     check("large", scattered(random, 20, 60.0), 5e-4, 2e-4);
-    check("slivers", slivers(random, 100), 2e-3, 2e-5);
+    // Of slivers 12 long and 0.001 wide, cut places round by a share of the width.
+    check("slivers", slivers(random, 100), 2e-3, 2e-5, 1e-4);
     // (Whether one that lies between two voxels has its area in one or in the other is rounding.)
     check("across an axis", aligned(random, 60), 2e-4, 1.5);
-    check("huge", scattered(random, 4, 1e5), 0.2, 0.5);
+    check("huge", scattered(random, 4, 1e5), 0.5, 0.01, 1e-4);
 }
