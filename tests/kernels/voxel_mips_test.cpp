@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "support/voxel_rig.h"
+#include "support/voxel_volume_rig.h"
 
 using namespace lightwell;
 using namespace lightwell::test;
