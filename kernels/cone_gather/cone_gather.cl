@@ -60,8 +60,8 @@ __kernel void cone_gather_trace(__global const float* position, int4 positionLay
     const int positionRow = positionLayout.x + y * positionLayout.y, normalRow = normalLayout.x + y * normalLayout.y;
     real p[3][LW_CONE_COLUMNS], n[3][LW_CONE_COLUMNS], out[6][LW_CONE_COLUMNS];
     LW_UNROLL for (int a = 0; a < 3; ++a) {
-        load_dealt(p[a], position, positionRow + a * positionLayout.z, x, width);
-        load_dealt(n[a], normal, normalRow + a * normalLayout.z, x, width);
+        load_cones(p[a], position, positionRow + a * positionLayout.z, x, width);
+        load_cones(n[a], normal, normalRow + a * normalLayout.z, x, width);
     }
     cone_volume volumes[LW_CONE_CASCADES];
     volumes_of(volumes, grids, table, base, mips, states);
@@ -90,12 +90,12 @@ __kernel void cone_gather_trace(__global const float* position, int4 positionLay
         saturated += selecti_((lanei)0, (lanei)1, and_(has, not_(fmax(r, fmax(g, b)) <= most)));
     }
 #if LW_CONE_INTERLEAVED
-    for (int a = 0; a < 6; ++a) store_dealt(out[a], irradiance, irradianceLayout.x + a * irradianceLayout.z + y * irradianceLayout.y, x, width);
+    for (int a = 0; a < 6; ++a) store_cones(out[a], irradiance, irradianceLayout.x + a * irradianceLayout.z + y * irradianceLayout.y, x, width);
 #else
     if (hasIrradiance)
-        for (int a = 0; a < 3; ++a) store_dealt(out[a], irradiance, irradianceLayout.x + a * irradianceLayout.z + y * irradianceLayout.y, x, width);
-    if (hasOpen) store_dealt(out[3], open, openLayout.x + y * openLayout.y, x, width);
-    if (hasValidity) store_dealt(out[4], validity, validityLayout.x + y * validityLayout.y, x, width);
+        for (int a = 0; a < 3; ++a) store_cones(out[a], irradiance, irradianceLayout.x + a * irradianceLayout.z + y * irradianceLayout.y, x, width);
+    if (hasOpen) store_cones(out[3], open, openLayout.x + y * openLayout.y, x, width);
+    if (hasValidity) store_cones(out[4], validity, validityLayout.x + y * validityLayout.y, x, width);
 #endif
     if (any_(to_mask(rejected))) atomic_add(counts, sum_(rejected));
     if (any_(to_mask(saturated))) atomic_add(counts + 1, sum_(saturated));
