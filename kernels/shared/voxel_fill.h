@@ -7,10 +7,9 @@
 #include "voxel_grid_types.h"
 #include "voxel_surface.h"
 
-// Parts of a brick, of whole layers, that are a task each: where a work-item is one lane there are thousands of them at once, and
-// the sums of all of a brick would not fit beside it.
+// Parts of a brick, of whole layers, that are a task each: 1, 2, 4, 8.
 #ifndef FILL_TASKS
-#define FILL_TASKS (LW_WIDTH == 1 ? 8 : 1)
+#define FILL_TASKS 1
 #endif
 #define FILL_LAYERS (LW_VOXEL_BRICK / FILL_TASKS)
 #define FILL_WORDS (LW_VOXEL_WORDS / FILL_TASKS)
