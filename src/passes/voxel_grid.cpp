@@ -29,6 +29,12 @@ std::uint32_t firstSlots(std::uint32_t size, bool sparse) {
     return sparse ? std::min(bricksOf(size), 6 * side * side) : bricksOf(size);
 }
 
+// Parts that a brick is shared out in: where work-items are lanes, thousands run at once; and a grid of few bricks has some that
+// hold most of the scene, which its other cores would wait for. What comes out is the same.
+Defines tasksOf(const Device& device, std::uint32_t size) {
+    return {{"FILL_TASKS", device.width() == 1 ? "8" : size <= 64 ? "4" : "1"}};
+}
+
 std::size_t chunksOf(std::size_t count) { return (count + LW_VOXEL_CHUNK - 1) / LW_VOXEL_CHUNK; }
 std::size_t surfaceBytes(std::uint32_t slots) {
     return std::size_t(slots) * LW_VOXEL_BRICK_VOXELS * LW_SURFACE_PLANES * sizeof(cl_uint);
@@ -70,9 +76,9 @@ VoxelGrid::VoxelGrid(Device& device, std::uint32_t size, bool sparse)
       scan_(device.programs().kernel(kProgram, "voxel_grid_scan")),
       listFree_(device.programs().kernel(kProgram, "voxel_grid_list_free")),
       give_(device.programs().kernel(kProgram, "voxel_grid_give")),
-      occupy_(device.programs().kernel(kTriangles, "voxel_triangles_occupy")),
-      fill_(device.programs().kernel(kTriangles, "voxel_triangles_fill")),
-      outside_(device.programs().kernel(kTriangles, "voxel_triangles_outside")),
+      occupy_(device.programs().kernel(kTriangles, "voxel_triangles_occupy", tasksOf(device, size))),
+      fill_(device.programs().kernel(kTriangles, "voxel_triangles_fill", tasksOf(device, size))),
+      outside_(device.programs().kernel(kTriangles, "voxel_triangles_outside", tasksOf(device, size))),
       counts_(std::make_unique<Counts>()) {}
 
 VoxelGrid::~VoxelGrid() = default;
