@@ -88,7 +88,7 @@ TEST_CASE("normals, albedo and emission are means by area", "[voxel_grid]") {
     CHECK(rig.state().voxels == 1);
 }
 
-TEST_CASE("only bricks that a change touches are made anew, with the same bits as all", "[voxel_grid]") {
+TEST_CASE("only bricks that a change touches are made anew, with the same bits as all", "[voxel_grid][large]") {
     VoxelRig rig(16, kSize);
     std::vector<VoxelTriangle> triangles = someScene(60, 9);
     rig.voxelise(triangles, true);
@@ -179,7 +179,7 @@ TEST_CASE("a revision that was missed, or another emission's scale, makes all an
     CHECK((anew.everything() == rig.everything()));
 }
 
-TEST_CASE("bricks that find no slot are counted, and have one as soon as the count is back", "[voxel_grid]") {
+TEST_CASE("bricks that find no slot are counted, and have one as soon as the count is back", "[voxel_grid][large]") {
     VoxelRig rig(16, 64), all(16, 64, false);
     // Everywhere: more bricks than a room's sides.
     std::mt19937 random(2);

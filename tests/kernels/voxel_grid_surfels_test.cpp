@@ -106,7 +106,7 @@ reference::VoxelPolygon polygonOf(const Disc& d) {
 
 }  // namespace
 
-TEST_CASE("surfels' area is all there, the same bits at any width and in any order", "[voxel_grid]") {
+TEST_CASE("surfels' area is all there, the same bits at any width and in any order", "[voxel_grid][large]") {
     // From less than half a voxel to several bricks.
     const double largest = GENERATE(0.4, 2.0, 11.0);
     std::vector<Disc> discs = someDiscs(largest < 1.0 ? 3000 : 200, largest, largest, kSize - largest);
@@ -132,7 +132,7 @@ TEST_CASE("surfels' area is all there, the same bits at any width and in any ord
     CHECK((other.everything() == wide.everything()));
 }
 
-TEST_CASE("a small surfel lies in its centre's voxel whole, a larger one where its disc does", "[voxel_grid]") {
+TEST_CASE("a small surfel lies in its centre's voxel whole, a larger one where its disc does", "[voxel_grid][large]") {
     DiscRig rig(GENERATE(1u, 16u), kSize);
     Disc small{{{10.99, 4.5, 17.01}}, {{0.0, 0.6, -0.8}}, 0.3};
     small.albedo = {{0.2, 1.0, 0.0}};
