@@ -203,10 +203,17 @@ TEST_CASE("light of any brightness makes the same words in other units", "[voxel
 
 TEST_CASE("emissive surfaces shine by themselves", "[voxel_light]") {
     VoxelLightRig rig(16, 32, LW_VOXEL_MODE_ISOTROPIC, false);
-    std::vector<VoxelTriangle> wall = sheet(13.5, 4.0, 28.0, 1);
-    for (VoxelTriangle& t : wall) t.emission = {8.0f, 4.0f, 2.0f};
-    rig.setTriangles(wall);
-    rig.shine({}, true);
+    rig.setTriangles(sheet(13.5, 4.0, 28.0, 1));
+    rig.shine({});
+    // As VoxelGrid says it: shares of 16, here 1/2, 1/4, 1/8, on all surfaces.
+    const std::vector<cl_uint> emission(rig.pass.slots() * std::size_t(LW_VOXEL_BRICK_VOXELS), 256u | 128u << 9 | 64u << 18);
+    const std::size_t plane = emission.size() * sizeof(cl_uint);
+    LwVoxelGrid state = rig.state();
+    state.emission = 16.0f;
+    rig.executor().write("test.write", rig.pass.surfaces(), LW_SURFACE_EMISSION * plane, plane, emission.data());
+    rig.executor().write("test.write", rig.pass.state(), 0, sizeof state, &state);
+    rig.light.forget();
+    rig.shine({});
     const LwVoxelValue v = rig.value(0, 13, 10, 10);
     CHECK(v.opacity == 1.0f);
     CHECK(double(v.red) == Approx(8.0).epsilon(1.0 / 32));
