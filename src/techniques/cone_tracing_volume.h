@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "compute/late_read.h"
 #include "inputs/frame_shape.h"
 #include "inputs/geometry_box.h"
 #include "inputs/rsm_input.h"
@@ -37,13 +38,20 @@ public:
     static std::uint64_t estimateBytes(const LWConeTracingDesc& desc, const FrameShape& shape);
 
 private:
+    GridPlacement placementOf(const LWFrame& frame, bool refit) const;
+    void growSlots();
+
     Device& device_;
     LWConeTracingDesc desc_;
     GeometryBox box_;
     ConeTracingSurfaces surfaces_;
     GridPlaces places_;
     std::vector<std::unique_ptr<VoxelGrid>> grids_;  // from the finest on, as all below
+    std::vector<std::unique_ptr<VoxelMips>> mips_;
+    std::vector<std::unique_ptr<VoxelLight>> lights_;
+    std::vector<std::unique_ptr<LateRead<LwVoxelWork>>> wanted_;  // slots that frames have wanted
     VoxelVolume volume_;
+    std::uint32_t baseSlots_, mipSlots_;  // that each grid has room for
     float environment_[3] = {0.0f, 0.0f, 0.0f};
 };
 
