@@ -29,7 +29,7 @@ LW_FN void trace_cones(cone_sums* sums, const lw_surface* s, const cone_volume* 
             cone_light l;
             l.r = l.g = l.b = l.occluded = (real)0.0f;
             l.through = (real)1.0f;
-            march(&l, volumes, o, grid, dx, dy, dz, steps + cone.first, cone.count, view->environment.w, begun);
+            march(&l, volumes, o, grid, dx, dy, dz, steps + cone.first, cone.count, view->environment.w, (real)INFINITY, begun);
             const real share = ones_(begun) * cone.direction.w, rest = share * l.through;
             sums->r = fma_(share, l.r, fma_(rest, (real)view->environment.x, sums->r));
             sums->g = fma_(share, l.g, fma_(rest, (real)view->environment.y, sums->g));

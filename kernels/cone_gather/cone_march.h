@@ -78,20 +78,23 @@ LW_FN void add_sample(cone_light* l, const cone_sample* s, const LwConeStep* ste
 }
 
 // The corner of a step's place in grid c; 0: nothing there.
+#if LW_CONE_CASCADES == 1
 LW_FN int find_at(cone_corner* corner, const cone_volume* volumes, const cone_origin* from, int c, __global const LwConeStep* step, real dx,
                   real dy, real dz, mask live, real out) {
     const real d = (real)step->distance;
     return find_corner(corner, volumes[c].table + volumes[c].grids.first[step->level], volumes[c].grids.size, step->level,
                        fma_(dx, d, from->x[c]), fma_(dy, d, from->y[c]), fma_(dz, d, from->z[c]), and_(live, out >= d));
 }
+#endif
 
-// grid: the one whose voxels the steps are counted in. reach: how far the cone reaches, in voxels of the finest. live: the lanes that
-// it is followed for.
+// grid: the one whose voxels the steps are counted in. reach, far: how far the cone reaches, all lanes and each, in voxels of the
+// finest. live: the lanes that it is followed for.
 LW_FN void march(cone_light* l, const cone_volume* volumes, const cone_origin* from, int grid, real dx, real dy, real dz,
-                 __global const LwConeStep* steps, int count, float reach, mask live) {
+                 __global const LwConeStep* steps, int count, float reach, real far, mask live) {
     const int last = LW_CONE_CASCADES - 1, size = volumes[0].grids.size;
-    const float most = (float)size, whole = (float)(1 << last), stretch = (float)(1 << grid);
-    const real out = whole * fmin(way_out(from->x[last], dx, most), fmin(way_out(from->y[last], dy, most), way_out(from->z[last], dz, most)));
+    const float most = (float)size, whole = (float)(1 << last);
+    const real leaves = fmin(way_out(from->x[last], dx, most), fmin(way_out(from->y[last], dy, most), way_out(from->z[last], dz, most)));
+    const real out = fmin(whole * leaves, far);
     // Steps up to where the last lane leaves the grid are known before there is any light: a count that the processor need not guess.
     const float end = fmin(reach, max_lane(select_((real)-1.0f, out, live)));
 #if LW_CONE_CASCADES == 1
@@ -110,6 +113,7 @@ LW_FN void march(cone_light* l, const cone_volume* volumes, const cone_origin* f
         add_sample(l, &s, &step, step.exponent, select_((real)0.0f, l->through, lit));
     }
 #else
+    const float stretch = (float)(1 << grid);
     for (int i = 0; i < count; ++i) {
         const LwConeStep step = steps[i];
         const float distance = step.distance * stretch;

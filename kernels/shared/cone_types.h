@@ -8,6 +8,10 @@
 // What still gets through is taken for nothing below this: 0.1 % of what a cone meets.
 #define LW_CONE_LEAST 1e-3f
 
+// Apertures of glossy cones are one of so many, each as wide as the one before by the same factor, so that the lanes of a class have one
+// schedule. Fewer: blur changes in steps of more than a tenth; more: more classes in a picture of all roughnesses, each a trace.
+#define LW_CONE_APERTURES 48
+
 typedef struct {
     // xyz: of a set about a normal, in the frame of two tangents and the normal; of a set over the sphere, in the world. w: share
     // of the set, all together 1.
