@@ -29,13 +29,20 @@ LW_SIZE_CHECK(LwVoxelContents, 32);
 #define LW_LIGHT_LIT 2      // it held light when it was last settled
 #define LW_LIGHT_HEARD 4    // what arrives at its receivers has changed
 
-// What befell the frame's texels, and what is to be done.
+// What befell the frame's texels.
 typedef struct {
-    lw_int outside;    // texels with flux that lie beyond the grid
-    lw_int lost;       // that lie in it where no surface has become a voxel
-    lw_int receivers;  // on the list
-    lw_int missing;    // receivers that the list has no room for
+    lw_int outside;  // texels with flux that lie beyond the grid
+    lw_int lost;     // that lie in it where no surface has become a voxel
 } LwVoxelTexels;
-LW_SIZE_CHECK(LwVoxelTexels, 16);
+LW_SIZE_CHECK(LwVoxelTexels, 8);
+
+// Voxels that hear, for further bounces.
+typedef struct {
+    lw_int receivers;  // on the list
+    lw_int missing;    // that the list has no room for
+    lw_int moved;      // 1: the grid lies elsewhere than when they last heard
+    lw_int unused;
+} LwVoxelReceivers;
+LW_SIZE_CHECK(LwVoxelReceivers, 16);
 
 #endif

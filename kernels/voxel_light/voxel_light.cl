@@ -190,8 +190,7 @@ __kernel void voxel_light_settle(__global const LwGridPlace* grid, LwVoxelConten
         most = largest[brick];
     }
     marks[brick] = mark;
-    __global int* to = &states[cascade].largest;
-    if (as_int(most) > *(volatile __global int*)to) atomic_max(to, as_int(most));
+    if (most > 0.0f) atomic_max(&states[cascade].largest, as_int(most));
 }
 
 // One work-item in all: what the words are in. Another unit: all words are written anew.
