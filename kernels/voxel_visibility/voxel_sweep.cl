@@ -35,27 +35,24 @@ LW_FN lanei sight_of(real nn, real fn, real nf, real ff, real t, real u, lanei s
     return to_lanei(light + 0.5f) | solid;
 }
 
-// Along one axis: voxels towards the eye that the way goes while it goes one voxel along the main axis, and on which side.
-LW_FN float share_of(int voxel, float eye, float perVoxel, bool isEdge, int size, int* next) {
-    const float from = (float)voxel + 0.5f - eye;
-    *next = from > 0.0f ? voxel - 1 : voxel + 1;
-    if (isEdge) return 1.0f;
-    if (*next < 0 || *next >= size) {  // only beside the eye's own
-        *next = voxel;
-        return 0.0f;
-    }
-    return fmin(fabs(from) * perVoxel, 1.0f);
+// Along one axis: the voxel next to this one towards the eye, and how far the way goes to it while it goes one voxel along the main
+// axis. Once in the eye's row a way stays there: interpolated between it and the next one, light would be lost to the surface
+// that the eye stands off by a voxel.
+LW_FN float share_of(int voxel, float eye, int eyeVoxel, float perVoxel, int shell, int* next) {
+    const int off = voxel - eyeVoxel;
+    *next = off > 0 ? voxel - 1 : off < 0 ? voxel + 1 : voxel;
+    if (off == 0) return 0.0f;
+    if (off >= shell || -off >= shell) return 1.0f;
+    return fmin(fabs((float)voxel + 0.5f - eye) * perVoxel, 1.0f);
 }
 
 // The lanes' coordinates likewise; those of other shells, which are worked out anew later, take anything.
-LW_FN real shares_of(lanei voxel, float eye, int eyeVoxel, float perVoxel, int shell, int size, lanei* next) {
-    const real from = to_real(voxel) + (0.5f - eye);
-    const lanei towards = selecti_(voxel + 1, voxel - 1, from > (real)0.0f);
-    const mask inside = and_(towards >= 0, towards < size), isEdge = or_(voxel - eyeVoxel >= shell, eyeVoxel - voxel >= shell);
-    *next = selecti_(voxel, towards, inside);
-    real share = fmin(fabs(from) * perVoxel, (real)1.0f);
-    share = select_(share, (real)1.0f, isEdge);
-    return select_((real)0.0f, share, inside);
+LW_FN real shares_of(lanei voxel, float eye, int eyeVoxel, float perVoxel, int shell, lanei* next) {
+    const lanei off = voxel - eyeVoxel;
+    const mask isOwn = off == 0;
+    *next = selecti_(selecti_(voxel + 1, voxel - 1, off > 0), voxel, isOwn);
+    const real share = fmin(fabs(to_real(voxel) + (0.5f - eye)) * perVoxel, (real)1.0f);
+    return select_(select_(share, (real)1.0f, or_(off >= shell, -off >= shell)), (real)0.0f, isOwn);
 }
 
 // One work-item = one eye: its own voxel and those about it, which nothing stands before.
@@ -86,12 +83,12 @@ __kernel void voxel_sweep_across(__global const LwVoxelEye* eyes, int count, int
     __global uchar* sight = sights + LW_SIGHT_PAD + (long)e * size * size * size;
     const float perVoxel = 1.0f / fabs((float)x + 0.5f - eye.x);
     int nextZ;
-    const real u = (real)share_of(z, eye.z, perVoxel, false, size, &nextZ);
+    const real u = (real)share_of(z, eye.z, ez, perVoxel, shell, &nextZ);
     const int near = x - side + size * size * z, far = x - side + size * size * nextZ;
     for (int y = max(ey - shell + 1, 0) / LW_WIDTH * LW_WIDTH; y <= min(ey + shell - 1, size - 1); y += LW_WIDTH) {
         const lanei row = lanei_iota() + y;
         lanei next;
-        const real t = shares_of(row, eye.y, ey, perVoxel, shell, size, &next);
+        const real t = shares_of(row, eye.y, ey, perVoxel, shell, &next);
         const lanei own = row * size + (x + size * size * z);
         const lanei byte = sight_of(onward(gather_bytes(sight, row * size + near)), onward(gather_bytes(sight, next * size + near)),
                                     onward(gather_bytes(sight, row * size + far)), onward(gather_bytes(sight, next * size + far)),
@@ -121,9 +118,8 @@ __kernel void voxel_sweep_along(__global const LwVoxelEye* eyes, int count, int 
     if (main < 0 || main >= size || other > min((int)eyeOther + reach, size - 1)) return;
     __global uchar* sight = sights + LW_SIGHT_PAD + (long)e * size * size * size;
     const float perVoxel = 1.0f / fabs((float)main + 0.5f - eyeMain);
-    const int distance = other - (int)eyeOther;
     int nextOther;
-    const float u = share_of(other, eyeOther, perVoxel, distance == shell || distance == -shell, size, &nextOther);
+    const float u = share_of(other, eyeOther, (int)eyeOther, perVoxel, shell, &nextOther);
     const int mainStep = isZ ? size * size : size, otherStep = isZ ? size : size * size;
     const int own = main * mainStep + other * otherStep, before = (main - side) * mainStep;
     // On an edge the nearer row is this shell's, and counts nothing.
@@ -131,7 +127,7 @@ __kernel void voxel_sweep_along(__global const LwVoxelEye* eyes, int count, int 
     for (int x = max(ex - shell, 0) / LW_WIDTH * LW_WIDTH; x <= min(ex + shell, size - 1); x += LW_WIDTH) {
         const lanei column = lanei_iota() + x;
         lanei next;
-        const real t = shares_of(column, eye.x, ex, perVoxel, shell, size, &next);
+        const real t = shares_of(column, eye.x, ex, perVoxel, shell, &next);
         const mask isUp = next < column;
         real nn, fn, nf, ff;
         load_onward(sight, near + x, isUp, &nn, &fn);

@@ -8,7 +8,7 @@
 
 #include "passes/clustered_gather.h"
 #include "passes/voxel_visibility.h"
-#include "reference/surfaces.h"
+#include "reference/paraboloid.h"
 #include "shared/cluster_types.h"
 #include "shared/grid_types.h"
 #include "shared/voxel_types.h"
