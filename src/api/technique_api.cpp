@@ -42,7 +42,7 @@ bool refusedUnchanged(LWStatus status) {
 
 void checkOutput(const LWOutput& output) {
     for (const LWImage* image : {&output.irradiance, &output.validity, &output.ambientOcclusion,
-                                 &output.specularRadiance, &output.shadow})
+                                 &output.specularRadiance, &output.refractedRadiance, &output.shadow})
         if (rawEnum(image->format) != LW_FORMAT_NONE || image->host || image->clMem) return;
     fail(LW_ERROR_INVALID_ARGUMENT, "output: expected at least one image, got none");
 }
