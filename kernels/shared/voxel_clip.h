@@ -15,6 +15,16 @@ typedef struct {
     float p[CLIP_VERTICES][3];  // relative to the facet's base
 } lw_polygon;
 
+LW_FN int dominant_axis(const float* n) {
+    return fabs(n[0]) >= fmax(fabs(n[1]), fabs(n[2])) ? 0 : fabs(n[1]) >= fabs(n[2]) ? 1 : 2;
+}
+
+LW_FN void polygon_of(const lw_facet* f, lw_polygon* g) {
+    g->count = f->count;
+    for (int i = 0; i < f->count; ++i)
+        for (int a = 0; a < 3; ++a) g->p[i][a] = f->at[i][a];
+}
+
 LW_FN void add_vertex(lw_polygon* to, const float* p) {
     if (to->count >= CLIP_VERTICES) return;
     for (int a = 0; a < 3; ++a) to->p[to->count][a] = p[a];
@@ -109,17 +119,15 @@ LW_FN int first_reached(const lw_polygon* g, int axis, float corner) { return (i
 // Adds the facet's area in each voxel of a brick, in the layers first .. last, to the voxels' sums (of the first such layer on).
 LW_FN void fill_voxels(const lw_facet* f, const lw_coat* coat, const int* corner, int first, int last, long* sums) {
     if (!(f->area > 0.0f)) return;
-    const int w = fabs(f->n[0]) >= fmax(fabs(f->n[1]), fabs(f->n[2])) ? 0 : fabs(f->n[1]) >= fabs(f->n[2]) ? 1 : 2;
-    const int u = w == 0 ? 1 : 0, v = w == 2 ? 1 : 2;
+    const int w = dominant_axis(f->n), u = w == 0 ? 1 : 0, v = w == 2 ? 1 : 2;
     lw_polygon g;
-    g.count = f->count;
-    for (int i = 0; i < f->count; ++i)
-        for (int a = 0; a < 3; ++a) g.p[i][a] = f->at[i][a];
+    polygon_of(f, &g);
     float low[3];
     for (int a = 0; a < 3; ++a) {
         low[a] = (float)corner[a] - f->base[a];
         // (By the whole brick, not by the layers: cuts, and what they round, are the same however a brick is shared out.)
-        keep_between(&g, a, low[a], (float)(corner[a] + LW_VOXEL_BRICK) - f->base[a]);
+        if (f->low[a] <= (float)corner[a] || f->high[a] >= (float)(corner[a] + LW_VOXEL_BRICK))
+            keep_between(&g, a, low[a], (float)(corner[a] + LW_VOXEL_BRICK) - f->base[a]);
         if (g.count == 0) return;
     }
     const float unit = 0.5f / fabs(f->n[w]);

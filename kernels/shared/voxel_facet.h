@@ -50,15 +50,19 @@ LW_FN void orient_facet(lw_facet* f) {
     f->area = 0.5f * length * most * most;
 }
 
-// Is all of it in one voxel of the grid, far enough from its sides that rounding does not matter? Then in which.
-LW_FN int facet_voxel(const lw_facet* f, int* voxel) {
+// The voxels that its bounds reach along each axis, those included that rounding might; of how many axes these are several. 3 as
+// well where not all of it lies where the grid may be.
+LW_FN int facet_spans(const lw_facet* f, int* from, int* to) {
+    int spans = 0;
     for (int a = 0; a < 3; ++a) {
         const float low = f->low[a] * (1.0f - FACET_PLACE_ERROR), high = f->high[a] * (1.0f + FACET_PLACE_ERROR);
-        if (!(low > 0.0f && high < 65536.0f)) return 0;
-        voxel[a] = (int)low;
-        if (voxel[a] != (int)high || (float)voxel[a] == low) return 0;
+        if (!(low > 0.0f && high < 65536.0f)) return 3;
+        from[a] = (int)low;
+        if ((float)from[a] == low) --from[a];  // a side that two voxels share is both's
+        to[a] = (int)high;
+        spans += from[a] != to[a];
     }
-    return 1;
+    return spans;
 }
 
 // ------------------------------------------------------------------------------------------ what it touches

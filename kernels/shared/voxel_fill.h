@@ -7,10 +7,9 @@
 #include "voxel_grid_types.h"
 #include "voxel_surface.h"
 
-// Parts of a brick, of whole layers, that are a task each: where a work-item is one lane there are thousands of them at once, and
-// the sums of all of a brick would not fit beside it.
+// Parts of a brick, of whole layers, that are a task each: 1, 2, 4, 8.
 #ifndef FILL_TASKS
-#define FILL_TASKS (LW_WIDTH == 1 ? 8 : 1)
+#define FILL_TASKS 1
 #endif
 #define FILL_LAYERS (LW_VOXEL_BRICK / FILL_TASKS)
 #define FILL_WORDS (LW_VOXEL_WORDS / FILL_TASKS)
@@ -46,12 +45,40 @@ LW_FN int place_in(const lw_task* task, const int* voxel) {
     return x + LW_VOXEL_BRICK * (y + LW_VOXEL_BRICK * (z - task->first));
 }
 
-// (Most triangles lie in one voxel each.)
-LW_FN void occupy_task(lw_facet* f, const lw_task* task, uint* words) {
-    int voxel[3];
-    if (facet_voxel(f, voxel)) {
+// The axis along which its voxels are several, where that is one.
+LW_FN int axis_of_spans(const int* from, const int* to) { return from[0] != to[0] ? 0 : from[1] != to[1] ? 1 : 2; }
+
+// Of a facet in a row of voxels: cuts across the row only.
+LW_FN void fill_row(const lw_facet* f, const lw_coat* coat, const lw_task* task, int* voxel, const int* to, long* sums) {
+    const int axis = axis_of_spans(voxel, to), w = dominant_axis(f->n), last = min(to[axis], task->corner[axis] + LW_VOXEL_BRICK - 1);
+    if (!(f->area > 0.0f)) return;
+    const float unit = 0.5f / fabs(f->n[w]);
+    lw_polygon g, part;
+    polygon_of(f, &g);
+    if (voxel[axis] < task->corner[axis]) {
+        voxel[axis] = task->corner[axis];
+        take_below(&g, axis, (float)voxel[axis] - f->base[axis], &part);
+    }
+    for (; voxel[axis] <= last && g.count; ++voxel[axis]) {
+        if (voxel[axis] < to[axis]) {
+            take_below(&g, axis, (float)(voxel[axis] + 1) - f->base[axis], &part);
+        } else {
+            part = g;
+        }
         const int at = place_in(task, voxel);
-        if (at >= 0) words[at >> 5] |= 1u << (at & 31);
+        if (at >= 0 && part.count) add_area(polygon_area(&part, w == 0 ? 1 : 0, w == 2 ? 1 : 2) * unit, coat, sums + SURFACE_SUMS * at);
+    }
+}
+
+// Most triangles lie in a voxel each, or in a row of voxels, all of which they touch: they reach from the first one to the last.
+LW_FN void occupy_task(lw_facet* f, const lw_task* task, uint* words) {
+    int voxel[3], to[3];
+    if (facet_spans(f, voxel, to) <= 1) {
+        const int axis = axis_of_spans(voxel, to), last = min(to[axis], task->corner[axis] + LW_VOXEL_BRICK - 1);
+        for (voxel[axis] = max(voxel[axis], task->corner[axis]); voxel[axis] <= last; ++voxel[axis]) {
+            const int at = place_in(task, voxel);
+            if (at >= 0) words[at >> 5] |= 1u << (at & 31);
+        }
         return;
     }
     if (f->count == 3) orient_facet(f);
@@ -59,13 +86,16 @@ LW_FN void occupy_task(lw_facet* f, const lw_task* task, uint* words) {
 }
 
 LW_FN void fill_task(const lw_facet* f, const lw_coat* coat, const lw_task* task, long* sums) {
-    int voxel[3];
-    if (facet_voxel(f, voxel)) {
+    int voxel[3], to[3];
+    const int spans = facet_spans(f, voxel, to);
+    if (spans > 1) {
+        fill_voxels(f, coat, task->corner, task->first, task->last, sums);
+    } else if (spans == 1) {
+        fill_row(f, coat, task, voxel, to, sums);
+    } else {
         const int at = place_in(task, voxel);
         if (at >= 0) add_area(f->area, coat, sums + SURFACE_SUMS * at);
-        return;
     }
-    fill_voxels(f, coat, task->corner, task->first, task->last, sums);
 }
 
 // The sums of a task's voxels as what surfaces() holds.

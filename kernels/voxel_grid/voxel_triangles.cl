@@ -51,15 +51,35 @@ LW_FN mask spans_box(__global const float* p, int stride, float centre, float ha
     return and_(fmin(a, fmin(b, c)) <= centre + half_, fmax(a, fmax(b, c)) >= centre - half_);
 }
 
-// Of the triangles of a leaf, those whose bounds touch the box: a bit each.
-LW_FN uint touching(const lw_walk* walk, __global const float* triangles, int stride, int first, int count) {
+#define IN_VOXELS (-1)  // not in one alone
+
+// Of the triangles of a leaf, those whose bounds touch the box: a bit each; and `where`, among the task's voxels, those lie that are
+// within one (most are).
+LW_FN uint touching(const lw_walk* walk, const lw_task* task, const float4 origin, __global const float* triangles, int stride, int first, int count,
+                    int* where) {
+    const float centre[3] = {walk->centre.x, walk->centre.y, walk->centre.z}, half_[3] = {walk->half_.x, walk->half_.y, walk->half_.z},
+                from[3] = {origin.x, origin.y, origin.z};
+    const int begin[3] = {0, 0, task->first}, end[3] = {LW_VOXEL_BRICK, LW_VOXEL_BRICK, task->last + 1};
     uint bits = 0;
     for (int i = 0; i < count; i += LW_WIDTH) {
-        __global const float* p = triangles + first + i;
-        const mask touches = and_(and_(spans_box(p, stride, walk->centre.x, walk->half_.x),
-                                       spans_box(p + stride, stride, walk->centre.y, walk->half_.y)),
-                                  spans_box(p + 2 * stride, stride, walk->centre.z, walk->half_.z));
-        bits |= bits_(and_(touches, lanei_iota() + (lanei)(i) < (lanei)(count))) << i;
+        mask touches = lanei_iota() + (lanei)(i) < (lanei)(count), single = touches, inside = touches;
+        lanei at = (lanei)(0);
+        LW_UNROLL
+        for (int a = 0; a < 3; ++a) {
+            __global const float* p = triangles + first + i + a * stride;
+            const real u = load(p, 0), v = load(p, LW_TRIANGLE_B * stride), w = load(p, LW_TRIANGLE_C * stride);
+            const real low = fmin(u, fmin(v, w)), high = fmax(u, fmax(v, w));
+            touches = and_(touches, and_(low <= centre[a] + half_[a], high >= centre[a] - half_[a]));
+            const real lower = (low - from[a]) * origin.w * (1.0f - FACET_PLACE_ERROR), upper = (high - from[a]) * origin.w * (1.0f + FACET_PLACE_ERROR);
+            const lanei voxel = to_lanei(clamp(lower, (real)(0.0f), (real)(65536.0f)));
+            single = and_(single, and_(and_(lower > 0.0f, upper < 65536.0f),
+                                       and_(voxel == to_lanei(clamp(upper, (real)(0.0f), (real)(65536.0f))), to_real(voxel) != lower)));
+            const lanei local_ = voxel - (lanei)(task->corner[a]);
+            inside = and_(inside, and_(local_ >= (lanei)(begin[a]), local_ < (lanei)(end[a])));
+            at += (local_ - (lanei)(begin[a])) * (lanei)(a == 0 ? 1 : a == 1 ? LW_VOXEL_BRICK : LW_VOXEL_BRICK * LW_VOXEL_BRICK);
+        }
+        store(selecti_((lanei)(IN_VOXELS), at, single), where, i);
+        bits |= bits_(and_(touches, or_(not_(single), inside))) << i;
     }
     return bits;
 }
@@ -101,10 +121,16 @@ __kernel void voxel_triangles_occupy(__global const float* triangles, int stride
         int first, leaf = 0;
         if (count > 0 && origin.w > 0.0f) begin_walk(&walk, nodes, &task);
         while ((leaf = next_leaf(&walk, nodes, &first)) > 0) {
-            uint bits = touching(&walk, triangles, stride, first, leaf);
+            int where[LW_TRIANGLE_GROUP];
+            uint bits = touching(&walk, &task, origin, triangles, stride, first, leaf, where);
             while (bits) {
+                const int lane = take_lowest(&bits), at = where[lane];
+                if (at >= 0) {
+                    words[at >> 5] |= 1u << (at & 31);
+                    continue;
+                }
                 lw_facet f;
-                facet_of(triangles, stride, first + take_lowest(&bits), origin, &f);
+                facet_of(triangles, stride, first + lane, origin, &f);
                 occupy_task(&f, &task, words);
             }
         }
@@ -132,9 +158,10 @@ __kernel void voxel_triangles_fill(__global const float* triangles, int stride, 
         int first, leaf = 0;
         if (count > 0 && origin.w > 0.0f) begin_walk(&walk, nodes, &task);
         while ((leaf = next_leaf(&walk, nodes, &first)) > 0) {
-            uint bits = touching(&walk, triangles, stride, first, leaf);
+            int where[LW_TRIANGLE_GROUP];
+            uint bits = touching(&walk, &task, origin, triangles, stride, first, leaf, where);
             while (bits) {
-                const int t = first + take_lowest(&bits);
+                const int lane = take_lowest(&bits), t = first + lane;
                 lw_facet f;
                 lw_coat coat;
                 facet_of(triangles, stride, t, origin, &f);
@@ -146,7 +173,8 @@ __kernel void voxel_triangles_fill(__global const float* triangles, int stride, 
                     coat.emission[c] = emissionPlane >= 0 ? triangles[(emissionPlane + c) * stride + t] * perEmission : 0.0f;
                     coat.emits |= coat.emission[c] > 0.0f;
                 }
-                fill_task(&f, &coat, &task, sums);
+                if (where[lane] >= 0) add_area(f.area, &coat, sums + SURFACE_SUMS * where[lane]);
+                else fill_task(&f, &coat, &task, sums);
             }
         }
         store_sums(sums, &task, slot, slots, surfaces);

@@ -11,6 +11,7 @@ namespace {
 
 constexpr const char* kProgram = "voxel_grid/voxel_grid";
 constexpr const char* kTriangles = "voxel_grid/voxel_triangles";
+constexpr const char* kSurfels = "voxel_grid/voxel_surfels";
 constexpr std::size_t kMarkRun = 16;     // MARK_RUN of the kernels
 constexpr std::size_t kOutsideRun = 64;  // OUTSIDE_RUN
 // Work-items that share out the bricks, each every so many-th: more of them than any device runs at once, few enough that a frame
@@ -27,6 +28,12 @@ std::uint32_t bricksOf(std::uint32_t size) {
 std::uint32_t firstSlots(std::uint32_t size, bool sparse) {
     const std::uint32_t side = size / LW_VOXEL_BRICK;
     return sparse ? std::min(bricksOf(size), 6 * side * side) : bricksOf(size);
+}
+
+// Parts that a brick is shared out in: where work-items are lanes, thousands run at once; and a grid of few bricks has some that
+// hold most of the scene, which its other cores would wait for. What comes out is the same.
+Defines tasksOf(const Device& device, std::uint32_t size) {
+    return {{"FILL_TASKS", device.width() == 1 ? "8" : size <= 64 ? "4" : "1"}};
 }
 
 std::size_t chunksOf(std::size_t count) { return (count + LW_VOXEL_CHUNK - 1) / LW_VOXEL_CHUNK; }
@@ -70,9 +77,12 @@ VoxelGrid::VoxelGrid(Device& device, std::uint32_t size, bool sparse)
       scan_(device.programs().kernel(kProgram, "voxel_grid_scan")),
       listFree_(device.programs().kernel(kProgram, "voxel_grid_list_free")),
       give_(device.programs().kernel(kProgram, "voxel_grid_give")),
-      occupy_(device.programs().kernel(kTriangles, "voxel_triangles_occupy")),
-      fill_(device.programs().kernel(kTriangles, "voxel_triangles_fill")),
-      outside_(device.programs().kernel(kTriangles, "voxel_triangles_outside")),
+      occupy_(device.programs().kernel(kTriangles, "voxel_triangles_occupy", tasksOf(device, size))),
+      fill_(device.programs().kernel(kTriangles, "voxel_triangles_fill", tasksOf(device, size))),
+      outside_(device.programs().kernel(kTriangles, "voxel_triangles_outside", tasksOf(device, size))),
+      occupySurfels_(device.programs().kernel(kSurfels, "voxel_surfels_occupy", tasksOf(device, size))),
+      fillSurfels_(device.programs().kernel(kSurfels, "voxel_surfels_fill", tasksOf(device, size))),
+      bins_(device, size),
       counts_(std::make_unique<Counts>()) {}
 
 VoxelGrid::~VoxelGrid() = default;
@@ -103,14 +113,14 @@ void VoxelGrid::grow() {
     isKept_ = false;
 }
 
-void VoxelGrid::begin(Executor& executor, Source source, std::uint64_t revision, float emission, bool changesKnown,
+void VoxelGrid::begin(Executor& executor, Source source, std::uint64_t revision, Emission emission, bool changesKnown,
                       const Buffer& place) {
     grow();
     reserve(executor);
     const bool isSame = isKept_ && source == source_ && revision == revision_;
     const bool isPart = isKept_ && source == source_ && changesKnown && revision == revision_ + 1;
-    executor.run("voxel_grid.begin", begin_, {1, 1}, {1, 1}, place, cl_int(isSame ? 0 : isPart ? 1 : 2), emission, place, cl_int(-1),
-                 cl_int(slots_), state_);
+    executor.run("voxel_grid.begin", begin_, {1, 1}, {1, 1}, place, cl_int(isSame ? 0 : isPart ? 1 : 2), emission.largest,
+                 emission.found ? *emission.found : place, cl_int(emission.found ? LW_SURFEL_LARGEST : -1), cl_int(slots_), state_);
     isKept_ = false;  // until all is enqueued
     source_ = source;
     revision_ = revision;
@@ -146,7 +156,7 @@ void VoxelGrid::readCounts(Executor& executor) {
 }
 
 void VoxelGrid::record(Executor& executor, const GeometryInput& geometry, const Buffer& place) {
-    begin(executor, Source::kTriangles, geometry.revision, 0.0f, bool(geometry.changes), place);
+    begin(executor, Source::kTriangles, geometry.revision, {geometry.largestEmission, nullptr}, bool(geometry.changes), place);
     mark(executor, geometry.changes ? &geometry.changes : nullptr, place);
     const std::size_t workers = std::min<std::size_t>(kWorkers, brickCount_);
     const cl_int count = cl_int(geometry.triangleCount);
@@ -158,8 +168,24 @@ void VoxelGrid::record(Executor& executor, const GeometryInput& geometry, const 
         executor.run("voxel_grid.occupy", outside_, {(geometry.triangleCount + kOutsideRun - 1) / kOutsideRun, 1}, kListGroup, triangles,
                      stride, count, place, cl_int(size_), state_);
     giveSlots(executor);
-    executor.run("voxel_grid.fill", fill_, {workers, 1}, {1, 1}, triangles, stride, count, cl_int(-1), nodes, place, cl_int(size_),
-                 list_, bricks_, cl_int(slots_), surfaces_, state_);
+    executor.run("voxel_grid.fill", fill_, {workers, 1}, {1, 1}, triangles, stride, count,
+                 cl_int(geometry.hasEmission ? GeometryInput::kEmission : -1), nodes, place, cl_int(size_), list_, bricks_, cl_int(slots_), surfaces_, state_);
+    readCounts(executor);
+    isKept_ = true;
+}
+
+void VoxelGrid::record(Executor& executor, const SurfelSet& surfels, const Buffer& place) {
+    begin(executor, Source::kSurfels, surfels.revision, {0.0f, surfels.emission}, false, place);
+    mark(executor, nullptr, place);
+    bins_.record(executor, surfels, place, state_);
+    const std::size_t workers = std::min<std::size_t>(kWorkers, brickCount_);
+    const cl_mem planes = surfels.planes ? surfels.planes.memory : place.get();
+    const cl_int stride = cl_int(surfels.planes.planeStride);
+    executor.run("voxel_grid.occupy", occupySurfels_, {workers, 1}, {1, 1}, planes, stride, bins_.begins(), bins_.order(), place,
+                 cl_int(size_), list_, occupied_, state_);
+    giveSlots(executor);
+    executor.run("voxel_grid.fill", fillSurfels_, {workers, 1}, {1, 1}, planes, stride, cl_int(surfels.emission ? 1 : 0),
+                 bins_.begins(), bins_.order(), place, cl_int(size_), list_, bricks_, cl_int(slots_), surfaces_, state_);
     readCounts(executor);
     isKept_ = true;
 }
@@ -175,7 +201,7 @@ void VoxelGrid::report(Device& device, Report& report) const {
 
 std::uint64_t VoxelGrid::bytes() const {
     return occupied_.bytes() + bricks_.bytes() + surfaces_.bytes() + changed_.bytes() + state_.bytes() + list_.bytes() +
-           owners_.bytes() + free_.bytes() + chunks_.bytes();
+           owners_.bytes() + free_.bytes() + chunks_.bytes() + bins_.bytes();
 }
 
 std::uint64_t VoxelGrid::estimateBytes(std::uint32_t size, bool sparse, std::uint32_t slots) {

@@ -10,6 +10,7 @@
 #include "compute/report.h"
 #include "inputs/geometry_input.h"
 #include "inputs/surfel_set.h"
+#include "passes/voxel_grid_bins.h"
 #include "shared/voxel_grid_types.h"
 
 namespace lightwell {
@@ -38,7 +39,7 @@ public:
     // voxels, voxel_bricks, dropped_bricks, outside_surfaces
     void report(Device& device, Report& report) const;
     std::uint64_t bytes() const;
-    // Of `slots` bricks with surfaces; 0: as many as a new grid has.
+    // Of `slots` bricks with surfaces; 0: as many as a new grid has. Of surfels: VoxelGridBins::estimateBytes more.
     static std::uint64_t estimateBytes(std::uint32_t size, bool sparse, std::uint32_t slots = 0);
 
 private:
@@ -47,7 +48,12 @@ private:
 
     void reserve(Executor& executor);
     void grow();
-    void begin(Executor& executor, Source source, std::uint64_t revision, float emission, bool changesKnown, const Buffer& place);
+    // emission: the largest one, or where among `found` it is.
+    struct Emission {
+        float largest;
+        const Buffer* found;
+    };
+    void begin(Executor& executor, Source source, std::uint64_t revision, Emission emission, bool changesKnown, const Buffer& place);
     void mark(Executor& executor, const Buffer* boxes, const Buffer& place);
     void giveSlots(Executor& executor);
     void readCounts(Executor& executor);
@@ -55,14 +61,15 @@ private:
     Device& device_;
     std::uint32_t size_, brickCount_, slots_ = 0;
     bool sparse_;
-    Kernel &begin_, &mark_, &census_, &freeSlots_, &scan_, &listFree_, &give_, &occupy_, &fill_, &outside_;
+    Kernel &begin_, &mark_, &census_, &freeSlots_, &scan_, &listFree_, &give_, &occupy_, &fill_, &outside_, &occupySurfels_,
+        &fillSurfels_;
+    VoxelGridBins bins_;
     Buffer occupied_, bricks_, surfaces_, changed_, state_;
     Buffer list_, owners_, free_, chunks_;
     std::unique_ptr<Counts> counts_;
     bool isKept_ = false;
     Source source_ = Source::kNone;
     std::uint64_t revision_ = 0;
-    float emission_ = 0.0f;
 };
 
 }  // namespace lightwell

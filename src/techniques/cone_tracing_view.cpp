@@ -2,6 +2,7 @@
 
 #include "compute/device.h"
 #include "compute/raw_enum.h"
+#include "inputs/image_access.h"
 
 namespace lightwell {
 namespace {
@@ -131,15 +132,15 @@ void ConeTracingView::traceReduced(Executor& executor, const View& view, ConeTra
     }
     const bool dims = dims_ && light.irradiance;
     const Planes& coarsest = lights.back();
-    const Light traced{light.irradiance ? part(coarsest, 0, 3) : Planes{}, light.validity ? part(coarsest, 3, 1) : Planes{},
-                       light.open || dims ? part(coarsest, 4, 1) : Planes{}};
+    const Light traced{light.irradiance ? subPlanes(coarsest, 0, 3) : Planes{}, light.validity ? subPlanes(coarsest, 3, 1) : Planes{},
+                       light.open || dims ? subPlanes(coarsest, 4, 1) : Planes{}};
     passes.gather.recordTrace(executor, positions.back(), normals.back(), world, traced.irradiance, traced.validity, traced.open, counts_);
     if (dims) passes.recordDim(executor, traced.irradiance, traced.open);
     for (std::uint32_t l = halvings_; l > 0; --l) {
         const Planes& to = lights[l - 1];
         const Light result = l == 1 ? light
-                                    : Light{light.irradiance ? part(to, 0, 3) : Planes{}, light.validity ? part(to, 3, 1) : Planes{},
-                                            light.open ? part(to, 4, 1) : Planes{}};
+                                    : Light{light.irradiance ? subPlanes(to, 0, 3) : Planes{}, light.validity ? subPlanes(to, 3, 1) : Planes{},
+                                            light.open ? subPlanes(to, 4, 1) : Planes{}};
         if (l == 1) executor.fill("cone_gather.counts", upsampleCounts_, 0, 0, kUpsampleCountBytes);
         passes.bilateral->recordUpsampleAll(executor, positions[l - 1], normals[l - 1], positions[l], normals[l], lights[l],
                                             result.irradiance, result.validity, result.open, upsampleCounts_);

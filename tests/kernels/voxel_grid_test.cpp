@@ -113,7 +113,7 @@ std::string areaFaults(const VoxelRig& rig, std::size_t count, double tolerance,
 
 }  // namespace
 
-TEST_CASE("voxels are occupied where triangles touch them, and nowhere else, and hold their area", "[voxel_grid]") {
+TEST_CASE("voxels are occupied where triangles touch them, and nowhere else, and hold their area", "[voxel_grid][large]") {
     VoxelRig rig(GENERATE(1u, 16u), kSize);
     Random random(7);
     // How much wider a voxel may be taken for: rounding, which grows with what the triangle reaches.

@@ -69,7 +69,7 @@ struct VoxelRig : KernelRig {
     }
     void record(bool emits = false) {
         const LWGeometry g = geometry(emits);
-        input.import(executor(), &g);
+        input.import(executor(), &g, emits);
         const Guarded placed = upload(std::vector<LwLpvPlace>{place});
         pass.record(executor(), input, placed);
         device().finish();
