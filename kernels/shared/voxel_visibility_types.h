@@ -15,6 +15,9 @@
 // the empty ones have a hundredth of the weight.
 #define LW_SIGHT_SOLID_WEIGHT 6.103515625e-5f
 
+// Rows of a shell that one work-item sweeps. Less: eyes at rest cost more, a work-item each that finds nothing to do.
+#define LW_SWEEP_ROWS 4
+
 typedef struct {
     lw_float4 position;  // in voxels from the grid's corner; w: 1; 0: nothing shadows its light (not in the grid, or no light)
     lw_int4 sweep;       // x: 1 in a frame that works its voxels out anew

@@ -8,7 +8,6 @@
 #include "shared/wide.h"
 
 #if LW_WIDTH == 1
-#define LWV_BYTE(p, i) ((lanei)(p)[i])
 LW_FN lanei load_bytes(__global const uchar* p, int i) { return p[i]; }
 LW_FN void store_bytes(lanei v, __global uchar* p, int i) { p[i] = (uchar)v; }
 LW_FN lanei gather_bytes(__global const uchar* p, lanei i) { return p[i]; }
@@ -70,31 +69,57 @@ __kernel void voxel_sweep_start(__global const LwVoxelEye* eyes, int count, int 
             }
 }
 
-// The two sides of a shell across x, but for their edges. One work-item = a slice (x) of one of an eye's sides (y): lanes are
-// rows, so each is fetched for itself.
+// A shell of an eye.
+typedef struct {
+    float4 eye;
+    int x, y, z;  // the eye's voxel
+    int shell, size;
+    __global const uchar* solid;
+    __global uchar* sight;
+} lw_shell;
+
+LW_FN lw_shell shell_of(__global const LwVoxelEye* eyes, int e, int size, int shell, __global const uchar* solid,
+                        __global uchar* sights) {
+    lw_shell s;
+    s.eye = eyes[e].position;
+    s.x = (int)s.eye.x;
+    s.y = (int)s.eye.y;
+    s.z = (int)s.eye.z;
+    s.shell = shell;
+    s.size = size;
+    s.solid = solid;
+    s.sight = sights + LW_SIGHT_PAD + (long)e * size * size * size;
+    return s;
+}
+
+// Slice z of a side across x.
+LW_FN void sweep_across(const lw_shell s, int side, int x, int z) {
+    const float perVoxel = 1.0f / fabs((float)x + 0.5f - s.eye.x);
+    int nextZ;
+    const real u = (real)share_of(z, s.eye.z, s.z, perVoxel, s.shell, &nextZ);
+    const int size = s.size, near = x - side + size * size * z, far = x - side + size * size * nextZ;
+    for (int y = max(s.y - s.shell + 1, 0) / LW_WIDTH * LW_WIDTH; y <= min(s.y + s.shell - 1, size - 1); y += LW_WIDTH) {
+        const lanei row = lanei_iota() + y;
+        lanei next;
+        const real t = shares_of(row, s.eye.y, s.y, perVoxel, s.shell, &next);
+        const lanei own = row * size + (x + size * size * z);
+        const real nn = onward(gather_bytes(s.sight, row * size + near)), fn = onward(gather_bytes(s.sight, next * size + near));
+        const real nf = onward(gather_bytes(s.sight, row * size + far)), ff = onward(gather_bytes(s.sight, next * size + far));
+        scatter_bytes(sight_of(nn, fn, nf, ff, t, u, gather_bytes(s.solid, own)), s.sight, own);
+    }
+}
+
+// The two sides of a shell across x, but for their edges. One work-item = LW_SWEEP_ROWS slices (x) of one of an eye's sides (y):
+// lanes are rows, so each is fetched for itself.
 __kernel void voxel_sweep_across(__global const LwVoxelEye* eyes, int count, int size, int shell,
                                  __global const uchar* solid, __global uchar* sights) {
     const int e = (int)get_global_id(1) / 2, side = (int)get_global_id(1) % 2 * 2 - 1;
     if (e >= count || !eyes[e].sweep.x) return;
-    const float4 eye = eyes[e].position;
-    const int x = (int)eye.x + side * shell, ey = (int)eye.y, ez = (int)eye.z;
-    const int z = max(ez - shell + 1, 0) + (int)get_global_id(0);
-    if (x < 0 || x >= size || z > min(ez + shell - 1, size - 1)) return;
-    __global uchar* sight = sights + LW_SIGHT_PAD + (long)e * size * size * size;
-    const float perVoxel = 1.0f / fabs((float)x + 0.5f - eye.x);
-    int nextZ;
-    const real u = (real)share_of(z, eye.z, ez, perVoxel, shell, &nextZ);
-    const int near = x - side + size * size * z, far = x - side + size * size * nextZ;
-    for (int y = max(ey - shell + 1, 0) / LW_WIDTH * LW_WIDTH; y <= min(ey + shell - 1, size - 1); y += LW_WIDTH) {
-        const lanei row = lanei_iota() + y;
-        lanei next;
-        const real t = shares_of(row, eye.y, ey, perVoxel, shell, &next);
-        const lanei own = row * size + (x + size * size * z);
-        const lanei byte = sight_of(onward(gather_bytes(sight, row * size + near)), onward(gather_bytes(sight, next * size + near)),
-                                    onward(gather_bytes(sight, row * size + far)), onward(gather_bytes(sight, next * size + far)),
-                                    t, u, gather_bytes(solid, own));
-        scatter_bytes(byte, sight, own);
-    }
+    const lw_shell s = shell_of(eyes, e, size, shell, solid, sights);
+    const int x = s.x + side * shell;
+    if (x < 0 || x >= size) return;
+    const int first = max(s.z - shell + 1, 0) + (int)get_global_id(0) * LW_SWEEP_ROWS;
+    for (int z = first; z < min(first + LW_SWEEP_ROWS, min(s.z + shell, size)); ++z) sweep_across(s, side, x, z);
 }
 
 // What goes on from a row of voxels, and from the next ones along it.
@@ -103,35 +128,39 @@ LW_FN void load_onward(__global const uchar* sight, int first, mask isUp, real* 
     *far = onward(selecti_(load_bytes(sight, first + 1), load_bytes(sight, first - 1), isUp));
 }
 
-// The other four sides, after those: across z with all their edges, across y without those. One work-item = a row (x) of
-// one of an eye's sides (y).
+// Row `other` of a side across z or y, at `main` along that axis.
+LW_FN void sweep_along(const lw_shell s, bool isZ, int side, int main, int other) {
+    const int size = s.size, mainStep = isZ ? size * size : size, otherStep = isZ ? size : size * size;
+    const float perVoxel = 1.0f / fabs((float)main + 0.5f - (isZ ? s.eye.z : s.eye.y));
+    int nextOther;
+    const float u = share_of(other, isZ ? s.eye.y : s.eye.z, isZ ? s.y : s.z, perVoxel, s.shell, &nextOther);
+    const int own = main * mainStep + other * otherStep, before = (main - side) * mainStep;
+    // On an edge the nearer row is this shell's, and counts nothing.
+    const int near = before + (u < 1.0f ? other : nextOther) * otherStep, far = before + nextOther * otherStep;
+    for (int x = max(s.x - s.shell, 0) / LW_WIDTH * LW_WIDTH; x <= min(s.x + s.shell, size - 1); x += LW_WIDTH) {
+        const lanei column = lanei_iota() + x;
+        lanei next;
+        const real t = shares_of(column, s.eye.x, s.x, perVoxel, s.shell, &next);
+        const mask isUp = next < column;
+        real nn, fn, nf, ff;
+        load_onward(s.sight, near + x, isUp, &nn, &fn);
+        load_onward(s.sight, far + x, isUp, &nf, &ff);
+        store_bytes(sight_of(nn, fn, nf, ff, t, (real)u, load_bytes(s.solid, own + x)), s.sight, own + x);
+    }
+}
+
+// The other four sides, after those: across z with all their edges, across y without those. One work-item = LW_SWEEP_ROWS rows
+// (x) of one of an eye's sides (y).
 __kernel void voxel_sweep_along(__global const LwVoxelEye* eyes, int count, int size, int shell, __global const uchar* solid,
                                 __global uchar* sights) {
     const int e = (int)get_global_id(1) / 4, face = (int)get_global_id(1) % 4;
     if (e >= count || !eyes[e].sweep.x) return;
-    const float4 eye = eyes[e].position;
-    const int side = face % 2 * 2 - 1, ex = (int)eye.x;
+    const lw_shell s = shell_of(eyes, e, size, shell, solid, sights);
+    const int side = face % 2 * 2 - 1;
     const bool isZ = face < 2;
-    const float eyeMain = isZ ? eye.z : eye.y, eyeOther = isZ ? eye.y : eye.z;
-    const int main = (int)eyeMain + side * shell, reach = isZ ? shell : shell - 1;
-    const int other = max((int)eyeOther - reach, 0) + (int)get_global_id(0);
-    if (main < 0 || main >= size || other > min((int)eyeOther + reach, size - 1)) return;
-    __global uchar* sight = sights + LW_SIGHT_PAD + (long)e * size * size * size;
-    const float perVoxel = 1.0f / fabs((float)main + 0.5f - eyeMain);
-    int nextOther;
-    const float u = share_of(other, eyeOther, (int)eyeOther, perVoxel, shell, &nextOther);
-    const int mainStep = isZ ? size * size : size, otherStep = isZ ? size : size * size;
-    const int own = main * mainStep + other * otherStep, before = (main - side) * mainStep;
-    // On an edge the nearer row is this shell's, and counts nothing.
-    const int near = before + (u < 1.0f ? other : nextOther) * otherStep, far = before + nextOther * otherStep;
-    for (int x = max(ex - shell, 0) / LW_WIDTH * LW_WIDTH; x <= min(ex + shell, size - 1); x += LW_WIDTH) {
-        const lanei column = lanei_iota() + x;
-        lanei next;
-        const real t = shares_of(column, eye.x, ex, perVoxel, shell, &next);
-        const mask isUp = next < column;
-        real nn, fn, nf, ff;
-        load_onward(sight, near + x, isUp, &nn, &fn);
-        load_onward(sight, far + x, isUp, &nf, &ff);
-        store_bytes(sight_of(nn, fn, nf, ff, t, (real)u, load_bytes(solid, own + x)), sight, own + x);
-    }
+    const int main = (isZ ? s.z : s.y) + side * shell, middle = isZ ? s.y : s.z, reach = isZ ? shell : shell - 1;
+    if (main < 0 || main >= size) return;
+    const int first = max(middle - reach, 0) + (int)get_global_id(0) * LW_SWEEP_ROWS;
+    for (int other = first; other < min(first + LW_SWEEP_ROWS, min(middle + reach + 1, size)); ++other)
+        sweep_along(s, isZ, side, main, other);
 }

@@ -13,12 +13,14 @@ namespace {
 constexpr const char* kProgram = "voxel_visibility/voxel_visibility";
 constexpr const char* kSweep = "voxel_visibility/voxel_sweep";
 constexpr Range kListGroup{64, 1};
-constexpr Range kRowGroup{16, 1};
+constexpr Range kRowGroup{4, 4};
 
 std::uint64_t voxelsOf(std::uint32_t size) { return std::uint64_t(size) * size * size; }
 std::uint64_t sightBytes(std::uint32_t size, std::uint32_t clusters) {
     return voxelsOf(size) * std::max(clusters, 1u) + 2 * LW_SIGHT_PAD;
 }
+
+std::size_t itemsOf(std::uint32_t rows) { return (rows + LW_SWEEP_ROWS - 1) / LW_SWEEP_ROWS; }
 
 }  // namespace
 
@@ -82,7 +84,7 @@ void VoxelVisibility::recordSweep(Executor& executor, std::uint32_t clusters) {
     const cl_int count = cl_int(clusters), size = cl_int(size_);
     executor.run("voxel_visibility.sweep", start_, {clusters, 1}, kRowGroup, eyes_, count, size, solids_, sights_);
     for (std::uint32_t shell = 2; shell < size_; ++shell) {
-        const std::size_t across = std::min(2 * shell - 1, size_), along = std::min(2 * shell + 1, size_);
+        const std::size_t across = itemsOf(std::min(2 * shell - 1, size_)), along = itemsOf(std::min(2 * shell + 1, size_));
         executor.run("voxel_visibility.sweep", across_, {across, 2 * std::size_t(clusters)}, kRowGroup, eyes_, count, size,
                      cl_int(shell), solids_, sights_);
         executor.run("voxel_visibility.sweep", along_, {along, 4 * std::size_t(clusters)}, kRowGroup, eyes_, count, size,
