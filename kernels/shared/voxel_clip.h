@@ -25,6 +25,13 @@ LW_FN void polygon_of(const lw_facet* f, lw_polygon* g) {
         for (int a = 0; a < 3; ++a) g->p[i][a] = f->at[i][a];
 }
 
+// (Vertex by vertex: whole structs take longer, of what has just been written in parts.)
+LW_FN void copy_polygon(const lw_polygon* from, lw_polygon* to) {
+    to->count = from->count;
+    for (int i = 0; i < from->count; ++i)
+        for (int a = 0; a < 3; ++a) to->p[i][a] = from->p[i][a];
+}
+
 LW_FN void add_vertex(lw_polygon* to, const float* p) {
     if (to->count >= CLIP_VERTICES) return;
     for (int a = 0; a < 3; ++a) to->p[to->count][a] = p[a];
@@ -61,22 +68,23 @@ LW_FN float polygon_low(const lw_polygon* g, int axis) {
     for (int i = 1; i < g->count; ++i) low = fmin(low, g->p[i][axis]);
     return low;
 }
-LW_FN float polygon_high(const lw_polygon* g, int axis) {
-    float high = g->p[0][axis];
-    for (int i = 1; i < g->count; ++i) high = fmax(high, g->p[i][axis]);
-    return high;
-}
 
 // Takes off what lies below `at`; nothing where all lies above, all where nothing does: what lies in the plane itself is above.
 LW_FN void take_below(lw_polygon* rest, int axis, float at, lw_polygon* below) {
+    int someBelow = 0, someAbove = 0;
+    for (int i = 0; i < rest->count; ++i) {
+        someBelow |= rest->p[i][axis] < at;
+        someAbove |= rest->p[i][axis] > at;
+    }
     below->count = 0;
-    if (rest->count == 0 || polygon_low(rest, axis) >= at) return;
-    if (polygon_high(rest, axis) <= at) {
-        *below = *rest;
+    if (!someBelow) return;
+    if (!someAbove) {
+        copy_polygon(rest, below);
         rest->count = 0;
         return;
     }
-    const lw_polygon whole = *rest;
+    lw_polygon whole;
+    copy_polygon(rest, &whole);
     cut_polygon(&whole, axis, at, below, rest);
 }
 
@@ -84,7 +92,7 @@ LW_FN void keep_between(lw_polygon* g, int axis, float low, float high) {
     lw_polygon below;
     take_below(g, axis, low, &below);
     take_below(g, axis, high, &below);
-    *g = below;
+    copy_polygon(&below, g);
 }
 
 // ------------------------------------------------------------------------------------------------- sums

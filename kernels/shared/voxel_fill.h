@@ -63,7 +63,7 @@ LW_FN void fill_row(const lw_facet* f, const lw_coat* coat, const lw_task* task,
         if (voxel[axis] < to[axis]) {
             take_below(&g, axis, (float)(voxel[axis] + 1) - f->base[axis], &part);
         } else {
-            part = g;
+            copy_polygon(&g, &part);
         }
         const int at = place_in(task, voxel);
         if (at >= 0 && part.count) add_area(polygon_area(&part, w == 0 ? 1 : 0, w == 2 ? 1 : 2) * unit, coat, sums + SURFACE_SUMS * at);
@@ -103,11 +103,16 @@ LW_FN void store_sums(const long* sums, const lw_task* task, int slot, int slots
     const int plane = slots * LW_VOXEL_BRICK_VOXELS;
     __global uint* to = surfaces + slot * LW_VOXEL_BRICK_VOXELS + task->part * FILL_VOXELS;
     const float unit = 1.0f / SURFACE_WHOLE;
+    const uint empty = pack_surface_normal(0.0f, 0.0f, 0.0f);
     for (int i = 0; i < FILL_VOXELS; ++i) {
         const long* sum = sums + SURFACE_SUMS * i;
+        if (sum[3] == 0) {  // most are empty
+            for (int k = 0; k < LW_SURFACE_PLANES; ++k) to[k * plane + i] = k == LW_SURFACE_NORMAL ? empty : 0u;
+            continue;
+        }
         float s[SURFACE_SUMS];
         for (int k = 0; k < SURFACE_SUMS; ++k) s[k] = (float)sum[k] * unit;
-        const float inverse = s[3] > 0.0f ? 1.0f / s[3] : 0.0f;
+        const float inverse = 1.0f / s[3];
         for (int k = 0; k < 4; ++k) to[(LW_SURFACE_AREA_X + k) * plane + i] = as_uint(s[k]);
         to[LW_SURFACE_NORMAL * plane + i] = pack_surface_normal(s[4] * inverse, s[5] * inverse, s[6] * inverse);
         to[LW_SURFACE_ALBEDO * plane + i] = pack_surface_albedo(s[7] * inverse, s[8] * inverse, s[9] * inverse);

@@ -195,7 +195,7 @@ __kernel void voxel_triangles_outside(__global const float* triangles, int strid
         __global const float* p = triangles + t;
         const mask near = and_(and_(spans_box(p, stride, place->origin.x + half_, half_), spans_box(p + stride, stride, place->origin.y + half_, half_)),
                                spans_box(p + 2 * stride, stride, place->origin.z + half_, half_));
-        outside += count_(and_(not_(near), lanei_iota() + (lanei)(t) < (lanei)(count)));
+        outside += (int)popcount(bits_(and_(not_(near), lanei_iota() + (lanei)(t) < (lanei)(count))));
     }
     if (outside) atomic_add(&state->outside, outside);
 }

@@ -37,7 +37,7 @@ std::vector<VoxelTriangle> someScene(int count, unsigned seed) {
 
 }  // namespace
 
-TEST_CASE("the same bits at any width, in any order of the triangles", "[voxel_grid]") {
+TEST_CASE("the same bits at any width, in any order of the triangles", "[voxel_grid][large]") {
     std::vector<VoxelTriangle> triangles = someScene(150, 3);
     VoxelRig wide(16, kSize), narrow(1, kSize);
     wide.voxelise(triangles, true);
@@ -158,7 +158,7 @@ TEST_CASE("only bricks that a change touches are made anew, with the same bits a
     CHECK((rig.everything() == moved));
 }
 
-TEST_CASE("a revision that was missed, or another emission's scale, makes all anew", "[voxel_grid]") {
+TEST_CASE("a revision that was missed, or another emission's scale, makes all anew", "[voxel_grid][large]") {
     VoxelRig rig(16, kSize);
     std::vector<VoxelTriangle> triangles = someScene(20, 9);
     rig.voxelise(triangles, true);
@@ -223,7 +223,7 @@ TEST_CASE("bricks that find no slot are counted, and have one as soon as the cou
 
 TEST_CASE("without a grid, or triangles, nothing is occupied; what lies beyond is counted", "[voxel_grid]") {
     VoxelRig rig(GENERATE(1u, 16u), kSize);
-    std::vector<VoxelTriangle> triangles = someScene(20, 4);
+    std::vector<VoxelTriangle> triangles = someScene(8, 4);
     rig.voxelise(triangles);
     CHECK(rig.state().bricks > 0);
     const LwLpvPlace place = rig.place;
