@@ -8,8 +8,13 @@
 #endif
 
 #if LW_CONE_COLUMNS == 3
-#include "shared/wide.h"
+#define LW_INTERLEAVE 1  // load_dealt and store_dealt then go unused
+#else
+#define LW_INTERLEAVE LW_CONE_COLUMNS
+#endif
+#include "shared/interleave.h"
 
+#if LW_CONE_COLUMNS == 3
 // Lane l of vector j is pixel 3 l + j of the three vectors behind each other.
 #if LW_WIDTH == 1
 LW_FN void deal_three(real* v) {}
@@ -36,7 +41,7 @@ LW_FN void undeal_three(real* v) {
 }
 #endif
 
-LW_FN void load_dealt(real* v, __global const float* plane, int row, int x, int width) {
+LW_FN void load_cones(real* v, __global const float* plane, int row, int x, int width) {
     const int rowEnd = (width + 15) & ~15;
     LW_UNROLL for (int j = 0; j < 3; ++j) {
         const int at = x + j * LW_WIDTH;
@@ -48,7 +53,7 @@ LW_FN void load_dealt(real* v, __global const float* plane, int row, int x, int 
     }
     deal_three(v);
 }
-LW_FN void store_dealt(real* v, __global float* plane, int row, int x, int width) {
+LW_FN void store_cones(real* v, __global float* plane, int row, int x, int width) {
     const int rowEnd = (width + 15) & ~15;
     undeal_three(v);
     LW_UNROLL for (int j = 0; j < 3; ++j) {
@@ -57,8 +62,8 @@ LW_FN void store_dealt(real* v, __global float* plane, int row, int x, int width
     }
 }
 #else
-#define LW_INTERLEAVE LW_CONE_COLUMNS
-#include "shared/interleave.h"
+#define load_cones load_dealt
+#define store_cones store_dealt
 #endif
 
 #endif

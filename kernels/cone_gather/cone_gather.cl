@@ -45,8 +45,8 @@ LW_FN void trace_cones(cone_sums* sums, const lw_surface* s, const cone_volume* 
 //
 // Not interleaved: irradiance (3 planes, W/m^2), validity and open (1 plane each), those that are wanted by hasIrradiance ...
 // Validity: the weight of cones that begin inside the grid, 1 or near it where the grid has the surface. Elsewhere all are 0.
-// Interleaved: irradiance has 6 planes, the sums of weight times light, weight times what is open, weight of cones that begin
-// inside, and all weight, 0 without a surface.
+// Interleaved: irradiance has 5 planes, the sums of weight times light, of the weight of cones that begin inside, and of all weight, 0
+// without a surface; and with LW_CONE_OPEN a sixth, of weight times what is open.
 // counts[0]: pixels that are neither surface nor background; [1]: whose light was brought down; [2]: surfaces that the grid does not have.
 __kernel void cone_gather_trace(__global const float* position, int4 positionLayout, __global const float* normal, int4 normalLayout,
                                 int width, int height, __global const LwLpvPlace* places, LwConeGrids grids, __global const int* table,
@@ -60,8 +60,8 @@ __kernel void cone_gather_trace(__global const float* position, int4 positionLay
     const int positionRow = positionLayout.x + y * positionLayout.y, normalRow = normalLayout.x + y * normalLayout.y;
     real p[3][LW_CONE_COLUMNS], n[3][LW_CONE_COLUMNS], out[6][LW_CONE_COLUMNS];
     LW_UNROLL for (int a = 0; a < 3; ++a) {
-        load_dealt(p[a], position, positionRow + a * positionLayout.z, x, width);
-        load_dealt(n[a], normal, normalRow + a * normalLayout.z, x, width);
+        load_cones(p[a], position, positionRow + a * positionLayout.z, x, width);
+        load_cones(n[a], normal, normalRow + a * normalLayout.z, x, width);
     }
     cone_volume volumes[LW_CONE_CASCADES];
     volumes_of(volumes, grids, table, base, mips, states);
@@ -82,20 +82,20 @@ __kernel void cone_gather_trace(__global const float* position, int4 positionLay
         out[0][j] = fmin(r, most);
         out[1][j] = fmin(g, most);
         out[2][j] = fmin(b, most);
-        out[3][j] = fmin(sums.open, (real)1.0f);
-        out[4][j] = fmin(sums.inside, (real)1.0f);
-        out[5][j] = select_(none, weight, s.valid);
+        out[3][j] = fmin(sums.inside, (real)1.0f);
+        out[4][j] = select_(none, weight, s.valid);
+        out[5][j] = fmin(sums.open, (real)1.0f);
         rejected += selecti_((lanei)0, (lanei)1, s.rejected);
         missing += selecti_((lanei)0, (lanei)1, and_(s.valid, not_(has)));
         saturated += selecti_((lanei)0, (lanei)1, and_(has, not_(fmax(r, fmax(g, b)) <= most)));
     }
 #if LW_CONE_INTERLEAVED
-    for (int a = 0; a < 6; ++a) store_dealt(out[a], irradiance, irradianceLayout.x + a * irradianceLayout.z + y * irradianceLayout.y, x, width);
+    for (int a = 0; a < (LW_CONE_OPEN ? 6 : 5); ++a) store_cones(out[a], irradiance, irradianceLayout.x + a * irradianceLayout.z + y * irradianceLayout.y, x, width);
 #else
     if (hasIrradiance)
-        for (int a = 0; a < 3; ++a) store_dealt(out[a], irradiance, irradianceLayout.x + a * irradianceLayout.z + y * irradianceLayout.y, x, width);
-    if (hasOpen) store_dealt(out[3], open, openLayout.x + y * openLayout.y, x, width);
-    if (hasValidity) store_dealt(out[4], validity, validityLayout.x + y * validityLayout.y, x, width);
+        for (int a = 0; a < 3; ++a) store_cones(out[a], irradiance, irradianceLayout.x + a * irradianceLayout.z + y * irradianceLayout.y, x, width);
+    if (hasOpen) store_cones(out[5], open, openLayout.x + y * openLayout.y, x, width);
+    if (hasValidity) store_cones(out[3], validity, validityLayout.x + y * validityLayout.y, x, width);
 #endif
     if (any_(to_mask(rejected))) atomic_add(counts, sum_(rejected));
     if (any_(to_mask(saturated))) atomic_add(counts + 1, sum_(saturated));

@@ -77,6 +77,14 @@ LW_FN void add_sample(cone_light* l, const cone_sample* s, const LwConeStep* ste
     l->through -= opacity;
 }
 
+// The corner of a step's place in grid c; 0: nothing there.
+LW_FN int find_at(cone_corner* corner, const cone_volume* volumes, const cone_origin* from, int c, __global const LwConeStep* step, real dx,
+                  real dy, real dz, mask live, real out) {
+    const real d = (real)step->distance;
+    return find_corner(corner, volumes[c].table + volumes[c].grids.first[step->level], volumes[c].grids.size, step->level,
+                       fma_(dx, d, from->x[c]), fma_(dy, d, from->y[c]), fma_(dz, d, from->z[c]), and_(live, out >= d));
+}
+
 // grid: the one whose voxels the steps are counted in. reach: how far the cone reaches, in voxels of the finest. live: the lanes that
 // it is followed for.
 LW_FN void march(cone_light* l, const cone_volume* volumes, const cone_origin* from, int grid, real dx, real dy, real dz,
@@ -84,19 +92,30 @@ LW_FN void march(cone_light* l, const cone_volume* volumes, const cone_origin* f
     const int last = LW_CONE_CASCADES - 1, size = volumes[0].grids.size;
     const float most = (float)size, whole = (float)(1 << last), stretch = (float)(1 << grid);
     const real out = whole * fmin(way_out(from->x[last], dx, most), fmin(way_out(from->y[last], dy, most), way_out(from->z[last], dz, most)));
+    // Steps up to where the last lane leaves the grid are known before there is any light: a count that the processor need not guess.
+    const float end = fmin(reach, max_lane(select_((real)-1.0f, out, live)));
+#if LW_CONE_CASCADES == 1
+    // The next sample's place and brick are looked for before this one's words, so that the one search does not wait for the other.
+    cone_corner corner, next;
+    int has = count > 0 && steps[0].distance <= end && find_at(&corner, volumes, from, 0, steps, dx, dy, dz, live, out), nextHas;
+    for (int i = 0; i < count; ++i, has = nextHas, corner = next) {
+        const LwConeStep step = steps[i];
+        if (step.distance > end) break;
+        nextHas = i + 1 < count && steps[i + 1].distance <= end && find_at(&next, volumes, from, 0, steps + i + 1, dx, dy, dz, live, out);
+        if (!has) continue;
+        const mask lit = and_(corner.has, l->through > LW_CONE_LEAST);
+        if (!any_(lit)) continue;
+        cone_sample s;
+        sample_corner(&s, volumes, step.level, &corner, dx, dy, dz);
+        add_sample(l, &s, &step, step.exponent, select_((real)0.0f, l->through, lit));
+    }
+#else
     for (int i = 0; i < count; ++i) {
         const LwConeStep step = steps[i];
         const float distance = step.distance * stretch;
-        if (distance > reach) break;
+        if (distance > end) break;
         live = and_(live, and_(out >= distance, l->through > LW_CONE_LEAST));
         if (!any_(live)) break;
-        cone_sample s;
-#if LW_CONE_CASCADES == 1
-        if (!sample_voxels(&s, volumes, step.level, fma_(dx, (real)distance, from->x[0]), fma_(dy, (real)distance, from->y[0]),
-                           fma_(dz, (real)distance, from->z[0]), dx, dy, dz, live))
-            continue;
-        add_sample(l, &s, &step, step.exponent, select_((real)0.0f, l->through, live));
-#else
         // The finest grid that has all of the sample; the outermost one whatever it has.
         mask left = live;
         const int wanted = step.level + grid;
@@ -108,14 +127,16 @@ LW_FN void march(cone_light* l, const cone_volume* volumes, const cone_origin* f
             mask own = left;
             if (c < last) own = and_(left, in_grid(x, y, z, margin, most - margin));
             left = and_(left, not_(own));
-            if (!any_(own)) continue;
-            if (!sample_voxels(&s, volumes + c, level, x, y, z, dx, dy, dz, own)) continue;
+            cone_corner corner;
+            if (!any_(own) || !find_corner(&corner, volumes[c].table + volumes[c].grids.first[level], size, level, x, y, z, own)) continue;
+            cone_sample s;
+            sample_corner(&s, volumes + c, level, &corner, dx, dy, dz);
             // Of cells coarser than the cone the step is a smaller part.
             const float exponent = c > wanted ? step.exponent / (float)(1 << (c - wanted)) : step.exponent;
             add_sample(l, &s, &step, exponent, select_((real)0.0f, l->through, own));
         }
-#endif
     }
+#endif
 }
 
 #endif

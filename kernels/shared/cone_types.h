@@ -33,10 +33,9 @@ typedef struct {
     lw_int size, levels, cascades;
     lw_int table;                // ints of the table from one cascade to the next
     lw_int basePlane, mipPlane;  // words from one plane to the next
-    lw_int filtered;             // plane of the finest level that is read without sides
-    lw_int unused;
+    lw_int first[10];            // brick of each level in a cascade's table
 } LwConeGrids;
-LW_SIZE_CHECK(LwConeGrids, 32);
+LW_SIZE_CHECK(LwConeGrids, 64);
 
 // What a trace takes beside it.
 typedef struct {

@@ -157,6 +157,10 @@ LWStatus lwCreateLpv(LWDevice device, const LWLpvDesc* desc, LWTechnique* techni
     return createTechnique("lwCreateLpv", device, "lpv", desc, technique);
 }
 
+LWStatus lwCreateConeTracing(LWDevice device, const LWConeTracingDesc* desc, LWTechnique* technique) {
+    return createTechnique("lwCreateConeTracing", device, "cone_tracing", desc, technique);
+}
+
 LWStatus lwRetainTechnique(LWTechnique technique) {
     return enter("lwRetainTechnique",
                  [&](Call&) { retainHandle(HandleKind::kTechnique, technique, "technique"); });

@@ -115,7 +115,8 @@ std::vector<LwConeStep> coneSteps(double halfAngle, double cosine, const ConeSch
     const double height = schedule.apertureOffset ? std::max(cosine - std::sin(halfAngle), kLeastGap) : cosine;
     const double begin = schedule.nudge / height;
     // A whole number of samples each time the distance doubles, so that the levels come in turn and each sample takes but one.
-    const double ratio = std::exp2(1.0 / std::ceil(std::log(2.0) / std::log1p(2.0 * tangent * schedule.step) - 1e-9));
+    const auto perDoubling = [tangent](double step) { return std::ceil(std::log(2.0) / std::log1p(2.0 * tangent * step) - 1e-9); };
+    const double count = perDoubling(schedule.step), ratio = std::exp2(1.0 / count), widening = perDoubling(1.0) / count;
     const auto add = [&](std::vector<LwConeStep>& steps, double d, double cells, double light) {
         const double level = std::round(std::log2(std::max(1.0, 2.0 * tangent * d)));
         LwConeStep step{};
@@ -130,13 +131,14 @@ std::vector<LwConeStep> coneSteps(double halfAngle, double cosine, const ConeSch
     std::vector<LwConeStep> steps;
     if (schedule.near) {
         const double from = kNearHeight / cosine, length = begin - from;
-        const auto count = length > 0.0 ? std::size_t(std::ceil(length / std::min(1.0, schedule.step))) : 0;
-        for (std::size_t i = 0; i < count; ++i) add(steps, from + length * double(i) / double(count), length / double(count), 0.0);
+        const auto parts = length > 0.0 ? std::size_t(std::ceil(length / std::min(1.0, schedule.step))) : 0;
+        for (std::size_t i = 0; i < parts; ++i) add(steps, from + length * double(i) / double(parts), length / double(parts), 0.0);
     }
     for (double d = begin; steps.empty() || d <= schedule.reach;) {
         const bool widens = 2.0 * tangent * d >= 1.0;
-        // The integral of dl / cell along the step: a medium is the same however it is cut into steps.
-        add(steps, d, widens ? std::log(ratio) / (2.0 * tangent) : schedule.step, 1.0);
+        // A voxel's opacity is that of a step of one diameter, and a medium the same however it is cut into steps: a part of the
+        // doubling, or of the voxel, counts as that part of the whole step's exponent.
+        add(steps, d, widens ? widening : schedule.step, 1.0);
         d = widens ? d * ratio : d + schedule.step;
     }
     return steps;

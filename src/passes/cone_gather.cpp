@@ -5,6 +5,7 @@
 
 #include "compute/device.h"
 #include "inputs/camera.h"
+#include "shared/filter_rows.h"
 
 namespace lightwell {
 namespace {
@@ -60,6 +61,7 @@ LwConeGrids coneGrids(const VoxelVolume& volume) {
     grids.table = lw_int(volume.tableSize());
     grids.basePlane = lw_int(volume.baseSlots * LW_VOXEL_STRIDE);
     grids.mipPlane = lw_int(volume.mipSlots * LW_VOXEL_STRIDE);
+    for (lw_int level = 0; level < grids.levels; ++level) grids.first[level] = voxel_table(grids.size, level);
     return grids;
 }
 
@@ -75,9 +77,14 @@ Defines coneDefines(const ConeGatherOptions& options, bool light, bool open) {
 ConeGather::ConeGather(Device& device, const ConeGatherOptions& options)
     : device_(device), options_(options), window_(windowOf(options)) {
     traceOf(true, false);
-    if (options.interleaved)
-        filter_ = &device.programs().kernel(kFilter, "cone_gather_filter",
-                                            {{"LW_CONE_COLUMNS", std::to_string(window_.columns)}, {"LW_CONE_ROWS", std::to_string(window_.rows)}});
+    if (options.interleaved) filterOf(false);
+}
+
+Kernel& ConeGather::filterOf(bool open) {
+    return device_.programs().kernel(kFilter, "cone_gather_filter",
+                                     {{"LW_CONE_COLUMNS", std::to_string(window_.columns)},
+                                      {"LW_CONE_ROWS", std::to_string(window_.rows)},
+                                      {"LW_CONE_OPEN", open ? "1" : "0"}});
 }
 
 Kernel& ConeGather::traceOf(bool light, bool open) {
@@ -118,8 +125,10 @@ void ConeGather::recordTrace(Executor& executor, const Planes& position, const P
 void ConeGather::recordFilter(Executor& executor, const Planes& position, const Planes& normal, const Planes& gathered,
                               const Planes& irradiance, const Planes& validity, const Planes& open) {
     const auto orElse = [&](const Planes& planes) { return planes ? planes : gathered; };
-    const std::uint32_t pixels = filter_->width();
-    executor.run("cone_gather.filter", *filter_, {(position.width + pixels - 1) / pixels, position.height}, groupOf(*filter_), position, normal,
+    Kernel& filter = filterOf(bool(open));
+    const std::uint32_t pixels = filter.width();
+    const Range items{(position.width + pixels - 1) / pixels, (position.height + LW_FILTER_ROWS - 1) / LW_FILTER_ROWS};
+    executor.run("cone_gather.filter", filter, items, filter.width() == 1 ? Range{64, 1} : Range{8, 1}, position, normal,
                  cl_int(position.width), cl_int(position.height), gathered, cl_int(irradiance ? 1 : 0), cl_int(validity ? 1 : 0),
                  cl_int(open ? 1 : 0), orElse(irradiance), orElse(validity), orElse(open));
 }

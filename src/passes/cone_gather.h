@@ -41,7 +41,7 @@ public:
     // raised by the number of pixels that are neither surface nor background, of those whose light was brought down, and of surfaces
     // that the grid does not have. wantsOpen: interleaved, whether ambient occlusion is among what is gathered.
     static constexpr std::size_t kCounts = 3;
-    static constexpr std::uint32_t kGathered = 6;
+    static constexpr std::uint32_t kGathered = 6;  // the last one of ambient occlusion alone
     void recordTrace(Executor& executor, const Planes& position, const Planes& normal, const ConeWorld& world, const Planes& irradiance,
                      const Planes& validity, const Planes& open, const Buffer& counts, bool wantsOpen = false);
     // Pass "cone_gather.filter". Interleaved only. Of the results each may be empty.
@@ -55,11 +55,11 @@ public:
 private:
     void prepare(Executor& executor);
     Kernel& traceOf(bool light, bool open);
+    Kernel& filterOf(bool open);
 
     Device& device_;
     ConeGatherOptions options_;
     ConeWindow window_;
-    Kernel* filter_ = nullptr;
     Buffer cones_, steps_;
     bool isUploaded_ = false;
 };

@@ -33,7 +33,7 @@ ConeGatherOptions coneOptions(const LWConeTracingDesc& desc) {
     options.size = desc.size;
     options.cascades = desc.cascades;
     options.mode = desc.mode;
-    options.sides = desc.directionalOpacity != 0;
+    options.sides = coneSides(desc);
     options.cones = desc.cones;
     options.interleaved = isInterleaved(desc);
     options.nudge = double(desc.nudge);

@@ -13,6 +13,9 @@
 
 namespace lightwell {
 
+// Whether the finest voxels have six sides: voxels that know what faces a cone have to.
+inline bool coneSides(const LWConeTracingDesc& desc) { return desc.directionalOpacity != 0 || desc.normalAware != 0; }
+
 // Of a descriptor, for the pass.
 ConeGatherOptions coneOptions(const LWConeTracingDesc& desc);
 

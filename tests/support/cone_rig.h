@@ -57,7 +57,7 @@ inline HostVoxels hostVoxels(int size, int mode, const std::function<Rgba(int, i
                                     // Seen by a ray that goes up the axis (odd planes), the lower one comes first.
                                     const int bit = 1 << (p / 2);
                                     const bool isBehind = bool(k & bit) == bool(p & 1);
-                                    part *= 2.0 * (isBehind ? 1.0 - child(k ^ bit)[3] : 1.0) / 2.0 * 2.0;
+                                    part *= 2.0 * (isBehind ? 1.0 - child(k ^ bit)[3] : 1.0);
                                 }
                                 value[std::size_t(c)] += part / 8.0;
                             }
