@@ -26,11 +26,11 @@
 // What a work-item has of one voxel.
 typedef struct {
     int slot, voxel;
-    long sums[LW_LIGHT_PLANES];
+    long sums[LW_VOXEL_LIGHT_PLANES];
 } light_run;
 
 LW_FN void clear_run(light_run* run) {
-    for (int p = 0; p < LW_LIGHT_PLANES; ++p) run->sums[p] = 0;
+    for (int p = 0; p < LW_VOXEL_LIGHT_PLANES; ++p) run->sums[p] = 0;
     run->slot = -1;
     run->voxel = 0;
 }
@@ -190,8 +190,7 @@ __kernel void voxel_light_settle(__global const LwGridPlace* grid, LwVoxelConten
         most = largest[brick];
     }
     marks[brick] = mark;
-    __global int* to = &states[cascade].largest;
-    if (as_int(most) > *(volatile __global int*)to) atomic_max(to, as_int(most));
+    if (most > 0.0f) atomic_max(&states[cascade].largest, as_int(most));
 }
 
 // One work-item in all: what the words are in. Another unit: all words are written anew.

@@ -54,7 +54,7 @@ public:
     std::uint64_t bytes() const;
     static std::uint64_t estimateBytes(std::uint32_t size, LWVoxelMode mode, bool sides, bool hears,
                                        std::uint32_t slots);
-    // Memory for irradiance of so many slots, 0 where it is new. record() calls it.
+    // Memory for irradiance() of so many slots, 0 where it is new.
     void reserveHeard(Executor& executor, std::uint32_t slots);
 
 private:

@@ -308,3 +308,85 @@ TEST_CASE("texels beside their wall's voxel find it, those without a surface are
     for (const double v : rig.held(1)) held += v;
     CHECK(held == Approx(total).epsilon(1e-5));
 }
+
+TEST_CASE("voxels that hold surfaces hear, and throw back their albedo over pi of it", "[voxel_light]") {
+    VoxelLightRig rig(16, 32, LW_VOXEL_MODE_ISOTROPIC, false);
+    rig.hears = true;
+    std::vector<VoxelTriangle> triangles = voxelRoom(2.3, 29.6);
+    for (VoxelTriangle& t : triangles) t.albedo = {0.2f, 0.4f, 0.8f};
+    append(triangles, sheet(13.5, 8.0, 16.0, 1));
+    append(triangles, sheet(13.5, 8.0, 16.0, -1));  // both sides: it faces up x, with the first
+    rig.setTriangles(triangles);
+    rig.shine({});
+    const Planes list = rig.receivers.position();
+    const auto count =
+        std::size_t(VoxelLightRig::read<LwVoxelReceivers>(rig.receivers.state(), 1)[0].receivers);
+    CHECK(VoxelLightRig::read<LwVoxelReceivers>(rig.receivers.state(), 1)[0].missing == 0);
+    std::vector<float> points[6];
+    for (std::size_t p = 0; p < 6; ++p) {
+        const Planes planes = p < 3 ? list : rig.receivers.normal();
+        points[p].resize(std::size_t(planes.planeStride));
+        rig.executor().read("test.read", planes.memory,
+                            (std::size_t(planes.offset) + p % 3 * points[p].size()) * sizeof(float),
+                            points[p].size() * sizeof(float), points[p].data());
+    }
+    rig.device().finish();
+    // Every voxel with surfaces once, in its middle.
+    const std::vector<float> area = rig.floats(LW_SURFACE_AREA);
+    std::size_t with = 0, wrong = 0;
+    for (const float a : area) with += a > 0.0f;
+    CHECK(count == with);
+    std::vector<float> heard(points[0].size() * 3);
+    std::vector<int> times(area.size());
+    for (std::size_t i = 0; i < points[0].size(); ++i) {
+        if (i >= count) {
+            wrong += points[3][i] != 0.0f || points[4][i] != 0.0f || points[5][i] != 0.0f;
+            continue;
+        }
+        int at[3];
+        for (std::size_t a = 0; a < 3; ++a) {
+            const double place =
+                (double(points[a][i]) - double(rig.place.origin.s[a])) / VoxelLightRig::kCell;
+            at[a] = int(place);
+            wrong += std::fabs(place - at[a] - 0.5) > 1e-4;
+        }
+        ++times[rig.indexOf(at[0], at[1], at[2])];
+        wrong += std::fabs(points[3][i] * points[3][i] + points[4][i] * points[4][i] +
+                           points[5][i] * points[5][i] - 1.0f) > 1e-5f;
+        if (at[0] == 13 && at[1] > 8 && at[1] < 15 && at[2] > 8 && at[2] < 15)
+            wrong += points[3][i] != 1.0f;
+        for (std::size_t c = 0; c < 3; ++c)
+            heard[c * points[0].size() + i] = float(at[0] + 32 * at[1] + 1024 * at[2]);
+    }
+    for (std::size_t i = 0; i < area.size(); ++i) wrong += times[i] != (area[i] > 0.0f);
+    CHECK(wrong == 0);
+    const auto hear = [&] {
+        const Planes to = rig.receivers.irradiance();
+        const Buffer memory = Buffer::retained(rig.device(), to.memory);
+        rig.executor().write("test.write", memory, 0, heard.size() * sizeof(float), heard.data());
+        rig.receivers.recordHeard(rig.executor(), rig.light);
+        rig.shine({});
+    };
+    hear();
+    const LwVoxelValue wall = rig.value(0, 10, 2, 20);
+    const double irradiance = 10 + 32 * 2 + 1024 * 20;
+    CHECK(wall.opacity == 1.0f);
+    CHECK(double(wall.red) == Approx(0.2 / kPi * irradiance).epsilon(0.1));
+    CHECK(double(wall.blue) == Approx(0.8 / kPi * irradiance).epsilon(1.0 / 32));
+    // The same again is no news.
+    const std::vector<cl_uint> words = rig.words();
+    hear();
+    CHECK(rig.lit().changedBricks == 0);
+    CHECK(isSame(rig.words(), words));
+    // What comes to where a surface was is forgotten with it.
+    triangles.resize(12);
+    rig.setTriangles(triangles);
+    rig.shine({});
+    rig.setTriangles(triangles);
+    append(triangles, sheet(13.5, 8.0, 16.0, 1));
+    rig.setTriangles(triangles);
+    rig.shine({});
+    CHECK(rig.value(0, 13, 10, 10).opacity == 1.0f);
+    CHECK(rig.value(0, 13, 10, 10).red == 0.0f);
+    CHECK(rig.value(0, 10, 2, 20).red == wall.red);
+}

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "inputs/rsm_input.h"
-#include "passes/voxel_light.h"
+#include "passes/voxel_receivers.h"
 #include "support/voxel_rig.h"
 #include "support/voxel_volume_rig.h"
 
@@ -20,13 +20,15 @@ struct VoxelLightRig : VoxelRig {
     VoxelVolume volume;
     VoxelMips mips;
     VoxelLight light;
-    bool aware = false;
+    VoxelReceivers receivers;
+    bool aware = false, hears = false;
     double area = kCell * kCell;  // of a voxel's face
 
     VoxelLightRig(std::uint32_t width, int n, LWVoxelMode mode, bool sides, bool sparse = true)
         : VoxelRig(width, n, sparse),
           mips(device(), std::uint32_t(n), 0),
-          light(device(), std::uint32_t(n), 0) {
+          light(device(), std::uint32_t(n), 0),
+          receivers(device(), std::uint32_t(n)) {
         volume.size = std::uint32_t(n);
         volume.mode = mode;
         volume.sides = sides;
@@ -65,7 +67,8 @@ struct VoxelLightRig : VoxelRig {
         const Guarded placed = upload(std::vector<LwLpvPlace>{lit});
         const bool isNew = volume.reserve(executor(), 1u << 20, 1u << 20);
         mips.recordTables(executor(), pass.occupied(), pass.changed(), isNew, volume);
-        light.record(executor(), rsms, VoxelSurfaces::of(pass), placed, mips, volume, aware);
+        if (hears) receivers.record(executor(), VoxelSurfaces::of(pass), placed, mips, light);
+        light.record(executor(), rsms, VoxelSurfaces::of(pass), placed, mips, volume, aware, hears);
         mips.recordFilter(executor(), volume);
         device().finish();
     }
