@@ -8,6 +8,9 @@
 #define LW_TRIANGLE_C 6
 #define LW_TRIANGLE_ALBEDO 9
 #define LW_TRIANGLE_PLANES 12
+// Behind these where the host's triangles emit: radiance.
+#define LW_TRIANGLE_EMISSION 12
+#define LW_TRIANGLE_EMISSIVE_PLANES 15
 
 // The most triangles of a leaf of the tree, neighbours in the order: a multiple of every width.
 #define LW_TRIANGLE_GROUP 16

@@ -15,4 +15,8 @@
 // exceed float's range, and infinity times a filter's weight 0 is no number. A filter adds up to 64 of them.
 #define LW_LARGEST_IRRADIANCE 1e36f
 
+// Radiance of a surface above which it is refused as garbage: the sun's disc has 2e7 W/m^2/sr, and sums of so much over all of a
+// scene's area stay finite.
+#define LW_LARGEST_EMISSION 1e20f
+
 #endif

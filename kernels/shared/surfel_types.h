@@ -12,6 +12,9 @@
 #define LW_SURFEL_PLANES 8
 // While a host's own are unpacked: area instead of radius, three planes of albedo.
 #define LW_SURFEL_RAW_PLANES 10
+// Behind these where they emit: radiance.
+#define LW_SURFEL_EMISSION 10
+#define LW_SURFEL_EMISSIVE_PLANES 13
 
 // Surfels that a word of candidates speaks of, a bit each: a multiple of every width.
 #define LW_SURFEL_BLOCK 32
@@ -23,7 +26,8 @@
 #define LW_SURFEL_REJECTED 0
 #define LW_SURFEL_LOWER 1  // x, y, z
 #define LW_SURFEL_UPPER 4
-#define LW_SURFEL_COUNTERS 7
+#define LW_SURFEL_LARGEST 7  // bits of the largest emission of a colour
+#define LW_SURFEL_COUNTERS 8
 
 // What a light sends towards its RSM's texels.
 typedef struct {

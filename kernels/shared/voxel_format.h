@@ -30,9 +30,9 @@
 #define LW_VOXEL_RED_STEP 1.220703125e-4f  // 2^-13
 #define LW_VOXEL_GREEN_STEP 7.8125e-3f     // 2^-6 / 2
 #define LW_VOXEL_BLUE_STEP 1.0f
-#define LW_VOXEL_OPACITY_STEP 7.4797755e-9f  // 2^-19 / 255
-#define LW_VOXEL_EXPONENT_SHIFT 4            // from the word's place to a float's
-#define LW_VOXEL_EXPONENT_MASK 0x0f800000u   // of the shifted word
+#define LW_VOXEL_OPACITY_STEP 7.47979856e-9f  // 2^-19 / 255
+#define LW_VOXEL_EXPONENT_SHIFT 4             // from the word's place to a float's
+#define LW_VOXEL_EXPONENT_MASK 0x0f800000u    // of the shifted word
 // u is one of every so many powers of two, so that it hardly ever changes, and then by far. Smaller: all
 // voxels are packed anew more often as lights change. Larger: fewer of the 32 exponents are left below
 // the brightest voxel: 24 at least with 8.
@@ -102,7 +102,7 @@ LW_FN lw_uint voxel_dither(lw_int x, lw_int y, lw_int z, lw_int level, lw_int pl
 // Of the dither's colours, each a quarter on: in (0, 1), of 15 bits so that its sum with a mantissa is
 // exact.
 LW_FN lw_float voxel_threshold(lw_uint dither, lw_uint quarter) {
-    return (lw_float)((dither + (quarter << 30)) >> 17) * 3.0517578125e-5f + 1.52587890625e-5f;
+    return (lw_float)((dither + (quarter << 30)) >> 20) * 2.44140625e-4f + 1.220703125e-4f;
 }
 
 LW_FN lw_uint voxel_round(lw_float value, lw_float threshold, lw_uint most) {

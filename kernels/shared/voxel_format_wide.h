@@ -33,6 +33,47 @@ LW_FN void voxel_scale(real* sum) {
     sum[3] *= LW_VOXEL_OPACITY_STEP;
 }
 
+// voxel_threshold and voxel_pack of lanes, to the bit.
+LW_FN real voxel_thresholds(laneu dither, uint quarter) {
+    return to_real(as_lanei_((dither + (laneu)(quarter << 30)) >> (laneu)20)) * 2.44140625e-4f +
+           1.220703125e-4f;
+}
+LW_FN laneu voxel_rounded(real value, real threshold, int most) {
+    return as_laneu_(min(to_lanei(value + threshold), (lanei)(most)));
+}
+LW_FN laneu voxel_packed(real red, real green, real blue, real opacity, float perUnit, laneu dither) {
+    const real largest = fmax(fmax(red, green), blue) * perUnit, most = (real)(127.0f);
+    const lanei exponent = clamp((as_lanei_(largest * (64.0f / 63.0f)) >> (lanei)(23)) - (lanei)(132),
+                                 (lanei)(0), (lanei)(31));
+    const real toMantissa = as_real_((lanei)((lanei)(127) - exponent) << (lanei)(23));
+    const real r = red * perUnit * toMantissa, g = green * perUnit * toMantissa * 2.0f,
+               b = blue * perUnit * toMantissa;
+    return as_laneu_(exponent) << (laneu)27 |
+           voxel_rounded(opacity * 255.0f, voxel_thresholds(dither, 3u), 255) << (laneu)19 |
+           voxel_rounded(fmin(r, most), voxel_thresholds(dither, 0u), 63) << (laneu)13 |
+           voxel_rounded(fmin(g, most), voxel_thresholds(dither, 1u), 127) << (laneu)6 |
+           voxel_rounded(fmin(b, most), voxel_thresholds(dither, 2u), 63);
+}
+LW_FN laneu voxel_harmonics(real share, real threshold) {
+    const real one = (real)(1.0f);
+    return voxel_rounded((clamp(share, -one, one) + 1.0f) * (float)LW_VOXEL_HARMONIC_ZERO, threshold,
+                         2 * LW_VOXEL_HARMONIC_ZERO);
+}
+LW_FN laneu voxel_packed_harmonics(real c0, real x, real y, real z, laneu dither) {
+    const real bound = c0 * LW_VOXEL_SQRT3, none = (real)(0.0f);
+    const mask some = bound > 0.0f;
+    const real inverse = select_(none, 1.0f / select_((real)(1.0f), bound, some), some);
+    const real per = select_(none, inverse, inverse < 3e38f);
+    return voxel_harmonics(x * per, voxel_thresholds(dither, 0u)) |
+           voxel_harmonics(y * per, voxel_thresholds(dither, 1u)) << (laneu)10 |
+           voxel_harmonics(z * per, voxel_thresholds(dither, 2u)) << (laneu)20;
+}
+// voxel_dither of lanes.
+LW_FN laneu voxel_dithers(lanei x, lanei y, int z, int level, int plane) {
+    return as_laneu_(x) * (laneu)3518319155u + as_laneu_(y) * (laneu)2882110345u +
+           (laneu)voxel_dither(0, 0, z, level, plane);
+}
+
 // Adds four words of SH2: sum[0..3] as voxel_add's, of c0; sum[4 + 3 c + axis] of colour c's c1.
 LW_FN void voxel_add_harmonics(laneu word, laneu red, laneu green, laneu blue, int unit, real weight,
                                real* sum) {

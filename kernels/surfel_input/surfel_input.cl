@@ -31,7 +31,7 @@ LW_FN mask is_share(real v) { return and_(v >= 0.0f, v <= 1.0f); }
 
 // One work-item = LW_WIDTH of a host's surfels, in place: area and albedo, as unpacked, become radius and word. Those beyond
 // `count` become none.
-__kernel void surfel_input_finish(__global float* surfels, int stride, int count, int hasAlbedo,
+__kernel void surfel_input_finish(__global float* surfels, int stride, int count, int hasAlbedo, int hasEmission,
                                   volatile __global uint* counters) {
     const int at = (int)get_global_id(0) * LW_WIDTH;
     if (at >= stride) return;
@@ -50,9 +50,24 @@ __kernel void surfel_input_finish(__global float* surfels, int stride, int count
     // No larger than the space that positions lie in.
     const mask sized = and_(area > 0.0f, area <= LW_LARGEST_DISTANCE * LW_LARGEST_DISTANCE);
     const mask coloured = and_(is_share(r), and_(is_share(g), is_share(b)));
-    const mask valid = and_(and_(inside, s.valid), and_(sized, coloured));
-    const mask rejected = and_(inside, or_(s.rejected, and_(s.valid, not_(valid))));
     const real zero = 0.0f;
+    mask emits = splat_mask(1);
+    if (hasEmission)
+        for (int c = 0; c < 3; ++c) {
+            const real v = load(surfels, at + (LW_SURFEL_EMISSION + c) * stride);
+            emits = and_(emits, and_(v >= 0.0f, v <= LW_LARGEST_EMISSION));
+        }
+    const mask valid = and_(and_(and_(inside, s.valid), and_(sized, coloured)), emits);
+    const mask rejected = and_(inside, or_(s.rejected, and_(s.valid, not_(valid))));
+    if (hasEmission)
+        for (int c = 0; c < 3; ++c) {
+            const int plane = at + (LW_SURFEL_EMISSION + c) * stride;
+            const real v = select_(zero, load(surfels, plane), valid);
+            store(v, surfels, plane);
+            // Of floats that are not below 0 the bits are ordered as the numbers are.
+            const float most = max_lane(v);
+            if (most > 0.0f) atomic_max(counters + LW_SURFEL_LARGEST, as_uint(most));
+        }
     store_surfels(s, radius_of(area, valid),
                   pack_albedo(select_(zero, r, valid), select_(zero, g, valid), select_(zero, b, valid)), surfels, stride, at);
     if (any_(rejected)) atomic_add(counters + LW_SURFEL_REJECTED, (uint)count_(rejected));

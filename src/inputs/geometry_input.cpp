@@ -19,7 +19,7 @@ namespace lightwell {
 namespace {
 
 // Indices of floats in the planes are 32-bit in kernels.
-constexpr std::uint32_t kMaxTriangles = 0x7fffffffu / LW_TRIANGLE_PLANES / 256 * 256;
+constexpr std::uint32_t kMaxTriangles = 0x7fffffffu / LW_TRIANGLE_EMISSIVE_PLANES / 256 * 256;
 constexpr float kDefaultAlbedo = 0.5f;
 
 using Triangle = HostTriangle;
@@ -28,13 +28,15 @@ std::uint32_t vertexOf(const LWGeometry& g, std::size_t corner) {
     return g.indices ? g.indices[corner] : std::uint32_t(corner);
 }
 
-Triangle readTriangle(const LWGeometry& g, std::uint32_t t) {
+Triangle readTriangle(const LWGeometry& g, std::uint32_t t, bool withEmission) {
     Triangle triangle{t, {}};
     for (std::size_t corner = 0; corner < 3; ++corner)
         for (std::size_t c = 0; c < 3; ++c)
             triangle.values[3 * corner + c] = g.vertices[3 * std::size_t(vertexOf(g, 3 * std::size_t(t) + corner)) + c];
     const float* albedo = g.triangleAlbedo ? g.triangleAlbedo + 3 * std::size_t(t) : nullptr;
     for (std::size_t c = 0; c < 3; ++c) triangle.values[LW_TRIANGLE_ALBEDO + c] = albedo ? albedo[c] : kDefaultAlbedo;
+    const float* emission = withEmission && g.triangleEmission ? g.triangleEmission + 3 * std::size_t(t) : nullptr;
+    for (std::size_t c = 0; c < 3; ++c) triangle.values[LW_TRIANGLE_EMISSION + c] = emission ? emission[c] : 0.0f;
     return triangle;
 }
 
@@ -101,7 +103,7 @@ TriangleTree growTree(const std::vector<Triangle>& drawn) {
     });
 }
 
-void checkArrays(const LWGeometry& g) {
+void checkArrays(const LWGeometry& g, bool withEmission) {
     constexpr const char* kName = "frame.geometry";
     if (g.triangleCount > kMaxTriangles)
         fail(LW_ERROR_INVALID_ARGUMENT, kName, ".triangleCount: expected at most ", kMaxTriangles, ", got ",
@@ -122,14 +124,19 @@ void checkArrays(const LWGeometry& g) {
             if (!(g.triangleAlbedo[i] >= 0.0f && g.triangleAlbedo[i] <= 1.0f))
                 fail(LW_ERROR_INVALID_ARGUMENT, kName, ".triangleAlbedo[", i, "]: expected 0 .. 1, got ",
                      g.triangleAlbedo[i]);
+    if (withEmission && g.triangleEmission)
+        for (std::size_t i = 0; i < 3 * std::size_t(g.triangleCount); ++i)
+            if (!(g.triangleEmission[i] >= 0.0f && g.triangleEmission[i] <= LW_LARGEST_EMISSION))
+                fail(LW_ERROR_INVALID_ARGUMENT, kName, ".triangleEmission[", i, "]: expected 0 .. ", LW_LARGEST_EMISSION, ", got ",
+                     g.triangleEmission[i]);
 }
 
 // The triangles that cover anything.
-std::vector<Triangle> drawnTriangles(const LWGeometry& g, Bounds& bounds, std::uint32_t& rejected) {
+std::vector<Triangle> drawnTriangles(const LWGeometry& g, bool withEmission, Bounds& bounds, std::uint32_t& rejected) {
     std::vector<Triangle> triangles;
     triangles.reserve(g.triangleCount);
     for (std::uint32_t t = 0; t < g.triangleCount; ++t) {
-        const Triangle triangle = readTriangle(g, t);
+        const Triangle triangle = readTriangle(g, t, withEmission);
         if (!isWithinReach(triangle)) {
             ++rejected;
         } else if (areaOf(triangle) > 0.0) {
@@ -160,16 +167,17 @@ std::uint32_t paddedTo16(std::uint64_t count) { return std::uint32_t((count + 15
 
 bool GeometryInput::Key::operator==(const Key& other) const {
     return vertices == other.vertices && indices == other.indices && albedo == other.albedo &&
-           vertexCount == other.vertexCount && triangleCount == other.triangleCount && version == other.version;
+           emission == other.emission && vertexCount == other.vertexCount && triangleCount == other.triangleCount && version == other.version;
 }
 
-GeometryInput::Key GeometryInput::keyOf(const LWGeometry* g) {
+GeometryInput::Key GeometryInput::keyOf(const LWGeometry* g, bool withEmission) {
     if (!g || g->triangleCount == 0) return Key{};
-    return {g->vertices, g->indices, g->triangleAlbedo, g->vertexCount, g->triangleCount, g->version};
+    return {g->vertices,    g->indices,       g->triangleAlbedo, withEmission ? g->triangleEmission : nullptr,
+            g->vertexCount, g->triangleCount, g->version};
 }
 
-void GeometryInput::check(const LWGeometry* geometry) const {
-    if (geometry && geometry->triangleCount && !(keyOf(geometry) == key_)) checkArrays(*geometry);
+void GeometryInput::check(const LWGeometry* geometry, bool withEmission) const {
+    if (geometry && geometry->triangleCount && !(keyOf(geometry, withEmission) == key_)) checkArrays(*geometry, withEmission);
 }
 
 void GeometryInput::forget() {
@@ -177,20 +185,24 @@ void GeometryInput::forget() {
     isForgotten_ = true;
 }
 
-void GeometryInput::import(Executor& executor, const LWGeometry* geometry) {
-    const Key key = keyOf(geometry);
+void GeometryInput::import(Executor& executor, const LWGeometry* geometry, bool withEmission) {
+    const Key key = keyOf(geometry, withEmission);
     if (key == key_ && !isForgotten_) return;
-    check(geometry);
+    check(geometry, withEmission);
     Bounds bounds;
     std::uint32_t rejected = 0;
     std::vector<Triangle> drawn;
-    if (key.triangleCount) drawn = drawnTriangles(*geometry, bounds, rejected);
+    if (key.triangleCount) drawn = drawnTriangles(*geometry, withEmission, bounds, rejected);
     const std::vector<TriangleBox> changed = changedBoxes(drawn_, drawn);
     if (!changed.empty() || isForgotten_) {
         const TriangleTree tree = growTree(drawn);
         // Where about all is new, boxes around it cost the host a quarter of what the tree does, and would be everywhere.
         const bool isKnown = !isForgotten_ && changed.size() <= drawn.size();
-        upload(executor, drawn, tree.order, tree.nodes, isKnown ? boxesAround(changed) : std::vector<float>());
+        float largest = 0.0f;
+        for (const Triangle& t : drawn)
+            for (std::size_t c = 0; c < 3; ++c) largest = std::max(largest, t.values[LW_TRIANGLE_EMISSION + c]);
+        upload(executor, drawn, tree.order, tree.nodes, isKnown ? boxesAround(changed) : std::vector<float>(), key.emission != nullptr);
+        largestEmission = largest;
         triangleCount = std::uint32_t(drawn.size());
         diagonal = drawn.empty() ? 0.0f : float(bounds.diagonal());
         revision += isKnown ? 1 : 2;
@@ -205,13 +217,14 @@ void GeometryInput::import(Executor& executor, const LWGeometry* geometry) {
 }
 
 void GeometryInput::upload(Executor& executor, const std::vector<Triangle>& drawn, const std::vector<std::uint32_t>& order,
-                           const std::vector<float>& treeNodes, const std::vector<float>& changed) {
+                           const std::vector<float>& treeNodes, const std::vector<float>& changed, bool withEmission) {
     const std::uint32_t padded = paddedTo16(drawn.size());
-    std::vector<float> planes(std::size_t(padded) * kPlaneCount);
+    const std::size_t planeCount = withEmission ? LW_TRIANGLE_EMISSIVE_PLANES : kPlaneCount;
+    std::vector<float> planes(padded * planeCount);
     // Padding repeats the last triangle's first vertex: no area.
     for (std::size_t t = 0; t < padded; ++t) {
         const Triangle& from = drawn[order[std::min(t, drawn.size() - 1)]];
-        for (std::size_t p = 0; p < kPlaneCount; ++p)
+        for (std::size_t p = 0; p < planeCount; ++p)
             planes[p * padded + t] = from.values[t < drawn.size() || p >= kAlbedo ? p : p % 3];
     }
     // All or none: where one fails, the last geometry stays whole.
@@ -228,6 +241,7 @@ void GeometryInput::upload(Executor& executor, const std::vector<Triangle>& draw
     if (!changed.empty())
         executor.writeCopy("geometry_input.upload", changes, 0, changed.size() * sizeof(float), changed.data());
     triangles = Planes{};
+    hasEmission = withEmission && !drawn.empty();
     if (drawn.empty()) return;
     executor.writeCopy("geometry_input.upload", memory_, 0, planes.size() * sizeof(float), planes.data());
     executor.writeCopy("geometry_input.upload", nodes, 0, treeNodes.size() * sizeof(float), treeNodes.data());
@@ -235,7 +249,7 @@ void GeometryInput::upload(Executor& executor, const std::vector<Triangle>& draw
     triangles.rowStride = triangles.planeStride = padded;
     triangles.width = padded;
     triangles.height = 1;
-    triangles.count = kPlaneCount;
+    triangles.count = std::uint32_t(planeCount);
 }
 
 void GeometryInput::report(Report& report) const {
@@ -243,11 +257,11 @@ void GeometryInput::report(Report& report) const {
     report.counts.push_back({"rejected_triangles", rejected_});
 }
 
-std::uint64_t GeometryInput::estimateBytes(std::uint32_t triangleCount) {
+std::uint64_t GeometryInput::estimateBytes(std::uint32_t triangleCount, bool withEmission) {
     if (triangleCount > kMaxTriangles)
         fail(LW_ERROR_INVALID_ARGUMENT, "frame.geometry.triangleCount: expected at most ", kMaxTriangles, ", got ",
              triangleCount);
-    const std::uint64_t planes = std::uint64_t(paddedTo16(triangleCount)) * kPlaneCount;
+    const std::uint64_t planes = std::uint64_t(paddedTo16(triangleCount)) * (withEmission ? LW_TRIANGLE_EMISSIVE_PLANES : kPlaneCount);
     const std::uint64_t nodes = triangleCount ? mostTreeNodes(triangleCount) + 1 : 0;  // and one of what changed
     return (planes + nodes * LW_TREE_NODE) * sizeof(float);
 }

@@ -16,7 +16,7 @@ namespace lightwell {
 // As the host gave it.
 struct HostTriangle {
     std::uint32_t host;  // its number among the host's
-    std::array<float, LW_TRIANGLE_PLANES> values;
+    std::array<float, LW_TRIANGLE_EMISSIVE_PLANES> values;  // emission 0 where it is not asked for
 };
 
 class GeometryInput {
@@ -27,21 +27,24 @@ public:
         kVertexB = LW_TRIANGLE_B,
         kVertexC = LW_TRIANGLE_C,
         kAlbedo = LW_TRIANGLE_ALBEDO,
-        kPlaneCount = LW_TRIANGLE_PLANES
+        kPlaneCount = LW_TRIANGLE_PLANES,
+        kEmission = LW_TRIANGLE_EMISSION
     };
 
     // Throws what import() would say of this geometry (null: none). Of what is in force already nothing is read.
-    void check(const LWGeometry* geometry) const;
+    void check(const LWGeometry* geometry, bool withEmission = false) const;
 
     // Brings the geometry to the device (pass "geometry_input.upload") when its version, a pointer or a count
     // differs from the last and some triangle does; host memory is read during the call only. Triangles are ordered by
     // place, by their own values alone: their order in the host's arrays does not matter. Those with a vertex that is not
     // finite or beyond LW_LARGEST_DISTANCE are left out and counted, those without area left out. Refused
-    // geometry leaves the last one in force.
-    void import(Executor& executor, const LWGeometry* geometry);
+    // geometry leaves the last one in force. withEmission: what the host's triangles emit too, if it says so.
+    void import(Executor& executor, const LWGeometry* geometry, bool withEmission = false);
     void forget();  // the next import() brings all again, whatever its key
 
     Planes triangles;  // kPlaneCount planes, height 1, width = triangles padded; none without triangles
+    bool hasEmission = false;      // then three more from kEmission on
+    float largestEmission = 0.0f;  // of a colour of a triangle, W/(sr m^2)
     Buffer nodes;      // of the tree of boxes over the triangles, see geometry_types.h
     Buffer changes;    // a node of boxes around all that the last revision changed: triangles that came, and that went
     std::uint32_t triangleCount = 0;  // drawn
@@ -55,18 +58,18 @@ public:
     void report(Report& report) const;  // triangles, rejected_triangles
     std::uint64_t bytes() const { return memory_.bytes() + nodes.bytes() + changes.bytes(); }
     // The most that bytes() becomes for so many triangles, and the refusal of more than kernels can index.
-    static std::uint64_t estimateBytes(std::uint32_t triangleCount);
+    static std::uint64_t estimateBytes(std::uint32_t triangleCount, bool withEmission = false);
 
 private:
     struct Key {
-        const void *vertices = nullptr, *indices = nullptr, *albedo = nullptr;
+        const void *vertices = nullptr, *indices = nullptr, *albedo = nullptr, *emission = nullptr;
         std::uint32_t vertexCount = 0, triangleCount = 0;
         std::uint64_t version = 0;
         bool operator==(const Key& other) const;
     };
-    static Key keyOf(const LWGeometry* geometry);
+    static Key keyOf(const LWGeometry* geometry, bool withEmission);
     void upload(Executor& executor, const std::vector<HostTriangle>& drawn, const std::vector<std::uint32_t>& order,
-                const std::vector<float>& treeNodes, const std::vector<float>& changed);
+                const std::vector<float>& treeNodes, const std::vector<float>& changed, bool withEmission);
 
     Buffer memory_;
     std::vector<HostTriangle> drawn_;  // in the host's order, to tell what a new version changes

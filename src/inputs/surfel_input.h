@@ -14,32 +14,33 @@ namespace lightwell {
 class SurfelInput {
 public:
     // Throws what import() would say of this geometry (null: none) when it is new.
-    static void check(Device& device, const LWGeometry* geometry);
+    static void check(Device& device, const LWGeometry* geometry, bool withEmission = false);
 
     // Brings the surfels to the device (passes "surfel_input.*") when the geometry's version, an image or the count
     // differs from the last. Surfels without a normal are none; those with a position out of reach, a normal that cannot be
-    // normalised, an area that is not above 0 or an albedo beyond 0 .. 1 are left out and counted.
-    void import(Executor& executor, const LWGeometry* geometry);
+    // normalised, an area that is not above 0 or an albedo beyond 0 .. 1 are left out and counted. withEmission: what they
+    // emit too, if the host says so; those whose emission is below 0, above LW_LARGEST_EMISSION or no number are left out.
+    void import(Executor& executor, const LWGeometry* geometry, bool withEmission = false);
     void forget() { key_ = Key{}; }  // the next import() brings all again, whatever its key
 
     SurfelSet surfels() const { return memory_.set(); }
     void report(Report& report) const;  // surfels, rejected_surfels
     std::uint64_t bytes() const;
-    static std::uint64_t estimateBytes(std::uint32_t surfelCount, bool uploads);
+    static std::uint64_t estimateBytes(std::uint32_t surfelCount, bool uploads, bool withEmission = false);
 
 private:
     struct Key {
-        std::array<const void*, 4> images{};
+        std::array<const void*, 5> images{};
         std::uint32_t count = 0;
         std::uint64_t version = 0;
         bool operator==(const Key& other) const {
             return images == other.images && count == other.count && version == other.version;
         }
     };
-    static Key keyOf(const LWGeometry* geometry);
+    static Key keyOf(const LWGeometry* geometry, bool withEmission);
 
     SurfelMemory memory_;
-    std::array<Buffer, 4> staging_;  // uploads
+    std::array<Buffer, 5> staging_;  // uploads
     Key key_;
     Device* device_ = nullptr;  // of the last import that had surfels
 };

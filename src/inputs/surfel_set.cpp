@@ -32,9 +32,11 @@ void SurfelMemory::reset(Executor& executor, std::uint32_t count, std::uint32_t 
     diagonal_.reserve(device, sizeof(float), "the surfels' extent");
     constexpr std::size_t kBounds = 3 * sizeof(cl_int);
     executor.fill("surfel_input.clear", counters_, 0, 0, sizeof(cl_int));
+    executor.fill("surfel_input.clear", counters_, 0, LW_SURFEL_LARGEST * sizeof(cl_int), sizeof(cl_int));
     executor.fill("surfel_input.clear", counters_, 0x7fffffffu, LW_SURFEL_LOWER * sizeof(cl_int), kBounds);
     executor.fill("surfel_input.clear", counters_, 0x80000000u, LW_SURFEL_UPPER * sizeof(cl_int), kBounds);
     count_ = count;
+    emits_ = false;
     planes_ = Planes{};
     if (count == 0) return;
     planes_.memory = memory_.get();

@@ -15,6 +15,8 @@ struct SurfelSet {
     std::uint32_t count = 0;           // slots, of which some may hold none
     const Buffer* diagonal = nullptr;  // of the bounding box of the centres, a float, m; what is not there has none
     std::uint64_t revision = 0;        // differs whenever the surfels do
+    // Where they emit: their LW_SURFEL_COUNTERS, and three more planes from LW_SURFEL_EMISSION on.
+    const Buffer* emission = nullptr;
 };
 
 // Their memory.
@@ -26,11 +28,12 @@ public:
     void measure(Executor& executor);
     void setDiagonal(Executor& executor, float diagonal);
     void noteChange() { ++revision_; }
+    void setEmits(bool emits) { emits_ = emits; }
 
     const Planes& planes() const { return planes_; }
     const Buffer& memory() const { return memory_; }
     const Buffer& counters() const { return counters_; }  // see surfel_types.h
-    SurfelSet set() const { return {planes_, count_, &diagonal_, revision_}; }
+    SurfelSet set() const { return {planes_, count_, &diagonal_, revision_, emits_ ? &counters_ : nullptr}; }
     std::uint64_t bytes() const { return memory_.bytes() + counters_.bytes() + diagonal_.bytes(); }
     static std::uint64_t estimateBytes(std::uint64_t count, std::uint32_t planeCount);
 
@@ -38,6 +41,7 @@ private:
     Buffer memory_, counters_, diagonal_;
     Planes planes_;
     std::uint32_t count_ = 0;
+    bool emits_ = false;
     std::uint64_t revision_ = 0;
 };
 

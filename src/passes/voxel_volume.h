@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "compute/buffer.h"
+#include "compute/executor.h"
 #include "lightwell/lightwell.h"
 #include "shared/voxel_format.h"
 
@@ -21,6 +22,7 @@ struct VoxelVolume {
     std::uint32_t size = 0;  // voxels a side of each grid
     std::uint32_t cascades = 1;
     LWVoxelMode mode = LW_VOXEL_MODE_ISOTROPIC;
+    bool sparse = true;  // false: every brick has a slot
     bool sides = false;  // the finest level has six sides, of what faces each; whatever the mode
 
     std::uint32_t baseSlots = 0, mipSlots = 0;  // of all cascades together
@@ -37,6 +39,9 @@ struct VoxelVolume {
     std::uint32_t tableSize() const {
         return std::uint32_t(voxel_table_size(cl_int(size)));
     }  // of one cascade
+    // Memory for so many slots of each grid, no more than there are bricks. True: some of it is new, and
+    // what it holds anything.
+    bool reserve(Executor& executor, std::uint32_t baseSlotsEach, std::uint32_t mipSlotsEach);
     std::uint64_t bytes() const { return table.bytes() + base.bytes() + mips.bytes() + state.bytes(); }
 };
 
