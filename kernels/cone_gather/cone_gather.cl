@@ -49,7 +49,7 @@ LW_FN void trace_cones(cone_sums* sums, const lw_surface* s, const cone_volume* 
 // without a surface; and with LW_CONE_OPEN a sixth, of weight times what is open.
 // counts[0]: pixels that are neither surface nor background; [1]: whose light was brought down; [2]: surfaces that the grid does not have.
 __kernel void cone_gather_trace(__global const float* position, int4 positionLayout, __global const float* normal, int4 normalLayout,
-                                int width, int height, __global const LwLpvPlace* places, LwConeGrids grids, __global const int* table,
+                                int width, int height, __global const LwGridPlace* places, LwConeGrids grids, __global const int* table,
                                 __global const uint* base, __global const uint* mips, __global const LwVoxelState* states,
                                 __global const LwCone* cones, int perPixel, __global const LwConeStep* steps, LwConeView view,
                                 int hasIrradiance, int hasValidity, int hasOpen, __global float* irradiance, int4 irradianceLayout,

@@ -7,7 +7,7 @@
 // One work-item = LW_WIDTH points of a row. cones: `count`, their weights adding up to 1. harmonics: as store_bands; validity: weight of
 // cones that begin inside the grid. counts[1]: points whose light was brought down; [2]: points that the grid does not have.
 __kernel void cone_gather_harmonics(__global const float* position, int4 positionLayout, __global const float* normal, int4 normalLayout,
-                                    int hasNormals, int width, int height, __global const LwLpvPlace* places, LwConeGrids grids,
+                                    int hasNormals, int width, int height, __global const LwGridPlace* places, LwConeGrids grids,
                                     __global const int* table, __global const uint* base, __global const uint* mips,
                                     __global const LwVoxelState* states, __global const LwCone* cones, int count,
                                     __global const LwConeStep* steps, LwConeView view, int hasHarmonics, int hasValidity,

@@ -5,7 +5,7 @@
 #define LW_CONE_MARCH_H
 
 #include "cone_volume.h"
-#include "shared/lpv_types.h"
+#include "shared/grid_types.h"
 
 #ifndef LW_CONE_CASCADES
 #define LW_CONE_CASCADES 1

@@ -87,7 +87,7 @@ LW_FN real roughness_of(__global const float* roughness, int4 layout, int hasRou
 // from behind the surface. counts: as cone_gather_trace's.
 __kernel void cone_gather_rays(__global const float* position, int4 positionLayout, __global const float* normal, int4 normalLayout,
                                __global const float* roughness, int4 roughnessLayout, int hasRoughness, int refracts, int width, int height,
-                               __global const LwLpvPlace* places, LwConeGrids grids, __global const int* table, __global const uint* base,
+                               __global const LwGridPlace* places, LwConeGrids grids, __global const int* table, __global const uint* base,
                                __global const uint* mips, __global const LwVoxelState* states, __global const LwCone* cones,
                                __global const LwConeStep* steps, LwConeView view, __global float* radiance, int4 radianceLayout,
                                __global int* counts) {
@@ -130,7 +130,7 @@ __kernel void cone_gather_rays(__global const float* position, int4 positionLayo
 // One work-item = LW_WIDTH pixels. shadow: share of a light that arrives, by one cone towards it; 0 where the surface faces away, 1 where the
 // grid has no surface that could know. Opacity alone.
 __kernel void cone_gather_shadow(__global const float* position, int4 positionLayout, __global const float* normal, int4 normalLayout,
-                                 int width, int height, __global const LwLpvPlace* places, LwConeGrids grids, __global const int* table,
+                                 int width, int height, __global const LwGridPlace* places, LwConeGrids grids, __global const int* table,
                                  __global const uint* base, __global const uint* mips, __global const LwVoxelState* states,
                                  __global const LwCone* cones, __global const LwConeStep* steps, LwConeView view, __global float* shadow,
                                  int4 shadowLayout) {

@@ -28,7 +28,7 @@ struct ConeGatherOptions {
 // What cones are traced in.
 struct ConeWorld {
     const VoxelVolume& volume;
-    const Buffer& places;      // LwLpvPlace of each cascade, finest first
+    const Buffer& places;      // LwGridPlace of each cascade, finest first
     const float* environment;  // radiance of three colours, of what nothing stops
 };
 

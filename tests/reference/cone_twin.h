@@ -86,7 +86,7 @@ struct ConeTwin {
     }
 
     Vec placed(Vec world, int cascade) const {
-        const LwLpvPlace& place = voxels.place[std::size_t(cascade)];
+        const LwGridPlace& place = voxels.place[std::size_t(cascade)];
         const double inverse = double(place.origin.s[3]);
         return (world - Vec{double(place.origin.s[0]), double(place.origin.s[1]), double(place.origin.s[2])}) * inverse;
     }
