@@ -99,7 +99,7 @@ TEST_CASE("a voxel's light is its texels' flux over pi and its surfaces' area, a
     }
 }
 
-TEST_CASE("the same words in any order of texels and at any width", "[voxel_light]") {
+TEST_CASE("the same words in any order of texels and at any width", "[voxel_light][large]") {
     const auto mode = GENERATE(LW_VOXEL_MODE_ISOTROPIC, LW_VOXEL_MODE_ANISOTROPIC, LW_VOXEL_MODE_SH2);
     const bool sides = mode == LW_VOXEL_MODE_ANISOTROPIC;
     VoxelLightRig wide(16, 32, mode, sides), narrow(1, 32, mode, sides);
@@ -175,7 +175,7 @@ TEST_CASE("words lose less than half a percent of the mean irradiance, at contra
 }
 
 TEST_CASE("bricks whose light and surfaces stay are not made again, and come out as if they were",
-          "[voxel_light]") {
+          "[voxel_light][large]") {
     const auto mode = GENERATE(LW_VOXEL_MODE_ISOTROPIC, LW_VOXEL_MODE_ANISOTROPIC);
     VoxelLightRig rig(16, 32, mode, false), anew(16, 32, mode, false);
     Lit scene(90);
