@@ -29,7 +29,7 @@ LW_FN void trace_cones(cone_sums* sums, const lw_surface* s, const cone_volume* 
             cone_light l;
             l.r = l.g = l.b = l.occluded = (real)0.0f;
             l.through = (real)1.0f;
-            march(&l, volumes, o, grid, dx, dy, dz, steps + cone.first, cone.count, view->environment.w, begun);
+            march(&l, volumes, o, grid, dx, dy, dz, steps + cone.first, cone.count, view->environment.w, (real)INFINITY, begun);
             const real share = ones_(begun) * cone.direction.w, rest = share * l.through;
             sums->r = fma_(share, l.r, fma_(rest, (real)view->environment.x, sums->r));
             sums->g = fma_(share, l.g, fma_(rest, (real)view->environment.y, sums->g));
@@ -49,7 +49,7 @@ LW_FN void trace_cones(cone_sums* sums, const lw_surface* s, const cone_volume* 
 // without a surface; and with LW_CONE_OPEN a sixth, of weight times what is open.
 // counts[0]: pixels that are neither surface nor background; [1]: whose light was brought down; [2]: surfaces that the grid does not have.
 __kernel void cone_gather_trace(__global const float* position, int4 positionLayout, __global const float* normal, int4 normalLayout,
-                                int width, int height, __global const LwLpvPlace* places, LwConeGrids grids, __global const int* table,
+                                int width, int height, __global const LwGridPlace* places, LwConeGrids grids, __global const int* table,
                                 __global const uint* base, __global const uint* mips, __global const LwVoxelState* states,
                                 __global const LwCone* cones, int perPixel, __global const LwConeStep* steps, LwConeView view,
                                 int hasIrradiance, int hasValidity, int hasOpen, __global float* irradiance, int4 irradianceLayout,

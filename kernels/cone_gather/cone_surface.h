@@ -37,7 +37,7 @@ LW_FN void volumes_of(cone_volume* v, const LwConeGrids grids, __global const in
 }
 
 // Places of surfaces in each grid. true lanes: the outermost grid has them.
-LW_FN mask origins_of(cone_origin* o, const lw_surface* s, __global const LwLpvPlace* places, int size) {
+LW_FN mask origins_of(cone_origin* o, const lw_surface* s, __global const LwGridPlace* places, int size) {
     mask has = s->valid;
     for (int c = 0; c < LW_CONE_CASCADES; ++c) {
         const float4 at = places[c].origin;

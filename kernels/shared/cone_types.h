@@ -8,6 +8,10 @@
 // What still gets through is taken for nothing below this: 0.1 % of what a cone meets.
 #define LW_CONE_LEAST 1e-3f
 
+// Apertures of glossy cones are one of so many, each as wide as the one before by the same factor, so that the lanes of a class have one
+// schedule. Fewer: blur changes in steps of more than a tenth; more: more classes in a picture of all roughnesses, each a trace.
+#define LW_CONE_APERTURES 48
+
 typedef struct {
     // xyz: of a set about a normal, in the frame of two tangents and the normal; of a set over the sphere, in the world. w: share
     // of the set, all together 1.
@@ -24,7 +28,8 @@ typedef struct {
     lw_float light;     // share of the radiance that counts
     lw_float dimming;   // what of the opacity ambient occlusion counts
     lw_int level;       // cells of 2^level voxels
-    lw_int unused[3];
+    lw_float begins;    // how far the grid has to reach for it to count: half a cell less than the distance
+    lw_int unused[2];
 } LwConeStep;
 LW_SIZE_CHECK(LwConeStep, 32);
 

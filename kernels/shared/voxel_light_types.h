@@ -9,7 +9,7 @@
 #define LW_LIGHT_FLUX 0  // of three colours
 #define LW_LIGHT_DIRECTION \
     3  // three: sum over texels of the colours' flux times the normal; where a volume tells sides apart
-#define LW_LIGHT_PLANES 6
+#define LW_VOXEL_LIGHT_PLANES 6
 
 // How words are made of surfaces and light.
 typedef struct {
@@ -20,7 +20,7 @@ typedef struct {
     lw_int size;
     lw_int slots;       // of surfaces
     lw_int planeWords;  // of the finest level's words
-    lw_int planes;      // of sums: LW_LIGHT_PLANES, or 3 without directions
+    lw_int planes;      // of sums: LW_VOXEL_LIGHT_PLANES, or 3 without directions
 } LwVoxelContents;
 LW_SIZE_CHECK(LwVoxelContents, 32);
 

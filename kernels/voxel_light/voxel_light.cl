@@ -26,11 +26,11 @@
 // What a work-item has of one voxel.
 typedef struct {
     int slot, voxel;
-    long sums[LW_LIGHT_PLANES];
+    long sums[LW_VOXEL_LIGHT_PLANES];
 } light_run;
 
 LW_FN void clear_run(light_run* run) {
-    for (int p = 0; p < LW_LIGHT_PLANES; ++p) run->sums[p] = 0;
+    for (int p = 0; p < LW_VOXEL_LIGHT_PLANES; ++p) run->sums[p] = 0;
     run->slot = -1;
     run->voxel = 0;
 }

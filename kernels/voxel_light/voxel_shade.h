@@ -86,22 +86,22 @@ LW_FN void shade_mean(const lw_voxels* v, real* value) {
     value[3] = opacity;
 }
 
-// The same for rays that go down the axis (sign 1: they see what faces up) or up (-1).
+// The same for rays that go down the axis (sign 1: they see what faces up) or up (-1). aware: of what faces the ray alone, light and
+// opacity. With the opacity of what faces away, rays that leave a lit wall were dimmed by it, which cost a closed box half of its light.
 LW_FN void shade_side(const lw_voxels* v, int axis, float sign, int aware, real* value) {
-    const real covered = larger_side(v, axis), opacity = fmin(covered, (real)(1.0f));
     if (!aware) {
-        const real perArea = voxel_over(opacity, v->area);
+        const real opacity = fmin(larger_side(v, axis), (real)(1.0f)), perArea = voxel_over(opacity, v->area);
         for (int c = 0; c < 3; ++c) value[c] = fma_(v->flux[c], perArea, opacity * v->own[c]);
-    } else {
-        // Of the surfaces, and of the light that they throw back, the share that faces the ray: half of
-        // (|n.a| + n.a), whose means are known; light has the surfaces' own mean of the first.
-        const real most = voxel_over(v->axes[axis], v->area);
-        const real facing = 0.5f * (v->axes[axis] + sign * (v->area * v->normal[axis]));
-        const real sent = 0.5f * (most + sign * clamp(v->towards[axis], -most, most));
-        const real kept = voxel_over(opacity, covered);
-        for (int c = 0; c < 3; ++c)
-            value[c] = kept * fma_(v->flux[c], sent, fmax(facing, (real)(0.0f)) * v->own[c]);
+        value[3] = opacity;
+        return;
     }
+    // Of the surfaces, and of the light that they throw back, the share that faces the ray: half of (|n.a| + n.a), whose means
+    // are known; light has the surfaces' own mean of the first.
+    const real most = voxel_over(v->axes[axis], v->area);
+    const real facing = fmax(0.5f * (v->axes[axis] + sign * (v->area * v->normal[axis])), (real)(0.0f));
+    const real sent = 0.5f * (most + sign * clamp(v->towards[axis], -most, most));
+    const real opacity = fmin(facing, (real)(1.0f)), kept = voxel_over(opacity, facing);
+    for (int c = 0; c < 3; ++c) value[c] = kept * fma_(v->flux[c], sent, facing * v->own[c]);
     value[3] = opacity;
 }
 

@@ -32,16 +32,29 @@ std::array<double, 2> onDisc(double u, double v) {
 // Half the aperture of a cone of this solid angle.
 double angleOf(double solid) { return std::acos(std::max(0.0, 1.0 - solid / (2.0 * kPi))); }
 
-// A cell of the square holds 1 / n^2 of the cosine; its solid angle is the integral of 1 / cos over its part of the disc.
+// A cell of the square holds 1 / n^2 of the cosine. Its solid angle is the integral of 1 / cos over its part of the disc; where |u| > |v|,
+// r = |u| and dphi = pi/4 dv / |u|, so that of |u| from a to b and |v| as far it is pi/4 (b - a) (asin b - asin a). A cell on the
+// diagonal has twice what lies on one side of it.
 double solidAngle(std::uint32_t i, std::uint32_t j, std::uint32_t n) {
-    constexpr std::uint32_t kParts = 64;
-    double sum = 0.0;
+    const double cell = 2.0 / n, u = std::abs((i + 0.5) * cell - 1.0) - 0.5 * cell, v = std::abs((j + 0.5) * cell - 1.0) - 0.5 * cell;
+    const double low = std::max(u, v), high = std::min(1.0, low + cell), turned = std::asin(high) - std::asin(low);
+    if (std::abs(u - v) > 0.5 * cell) return kPi / 4.0 * cell * turned;
+    return kPi / 2.0 * (std::sqrt(1.0 - low * low) - std::sqrt(1.0 - high * high) - low * turned);
+}
+
+// The mean of a cell's directions by their cosines: with the cell's middle instead, 16 cones bring 7 % too much of light from straight above.
+std::array<double, 3> meanDirection(std::uint32_t i, std::uint32_t j, std::uint32_t n) {
+    constexpr std::uint32_t kParts = 32;
+    std::array<double, 3> sum{0.0, 0.0, 0.0};
     for (std::uint32_t b = 0; b < kParts; ++b)
         for (std::uint32_t a = 0; a < kParts; ++a) {
             const auto p = onDisc(2.0 * (i + (a + 0.5) / kParts) / n - 1.0, 2.0 * (j + (b + 0.5) / kParts) / n - 1.0);
-            sum += 1.0 / std::sqrt(1.0 - p[0] * p[0] - p[1] * p[1]);
+            sum[0] += p[0];
+            sum[1] += p[1];
+            sum[2] += std::sqrt(1.0 - p[0] * p[0] - p[1] * p[1]);
         }
-    return kPi / (n * n) * sum / (kParts * kParts);
+    const double length = std::sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
+    return {sum[0] / length, sum[1] / length, sum[2] / length};
 }
 
 std::uint32_t sideOf(std::uint32_t count) { return std::uint32_t(std::lround(std::sqrt(double(count)))); }
@@ -69,11 +82,7 @@ std::vector<ConeDirection> coneHemisphere(std::uint32_t count) {
     }
     const std::uint32_t n = sideOf(count);
     for (std::uint32_t j = 0; j < n; ++j)
-        for (std::uint32_t i = 0; i < n; ++i) {
-            const auto p = onDisc(2.0 * (i + 0.5) / n - 1.0, 2.0 * (j + 0.5) / n - 1.0);
-            const double z = std::sqrt(1.0 - p[0] * p[0] - p[1] * p[1]);
-            set.push_back({{p[0], p[1], z}, 1.0 / count, angleOf(solidAngle(i, j, n))});
-        }
+        for (std::uint32_t i = 0; i < n; ++i) set.push_back({meanDirection(i, j, n), 1.0 / count, angleOf(solidAngle(i, j, n))});
     return set;
 }
 
@@ -126,6 +135,7 @@ std::vector<LwConeStep> coneSteps(double halfAngle, double cosine, const ConeSch
         // 1 / (1 + lambda d), lambda so that a fifth is left at the reach.
         step.dimming = d <= schedule.openReach ? lw_float(1.0 / (1.0 + 4.0 * d / schedule.openReach)) : 0.0f;
         step.level = lw_int(std::min(level, double(schedule.levels - 1)));
+        step.begins = lw_float(d - 0.5 * std::exp2(double(step.level)));
         steps.push_back(step);
     };
     std::vector<LwConeStep> steps;

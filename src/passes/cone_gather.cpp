@@ -11,6 +11,7 @@ namespace lightwell {
 namespace {
 
 constexpr const char* kTrace = "cone_gather/cone_gather";
+constexpr const char* kHarmonics = "cone_gather/cone_harmonics";
 constexpr const char* kFilter = "cone_gather/cone_filter";
 
 Range groupOf(const Kernel& kernel) { return kernel.width() == 1 ? Range{64, 1} : Range{4, 1}; }
@@ -22,7 +23,34 @@ ConeWindow windowOf(const ConeGatherOptions& options) {
 // Sides of the largest grid in voxels of the finest.
 double sideOf(const ConeGatherOptions& options) { return std::ldexp(double(options.size), int(options.cascades) - 1); }
 
-ConeSchedule scheduleOf(const ConeGatherOptions& options) {
+// Cones pixel by pixel of the window, `perPixel` of each: those of one pixel lie apart.
+ConeTable tableOf(const ConeGatherOptions& options) {
+    const ConeWindow window = windowOf(options);
+    const std::vector<ConeDirection> set = coneHemisphere(options.cones);
+    const ConeSchedule schedule = coneSchedule(options);
+    const std::size_t pixels = window.columns * window.rows;
+    ConeTable table;
+    for (std::size_t pixel = 0; pixel < pixels; ++pixel)
+        for (std::size_t k = 0; k < window.perPixel; ++k) {
+            const ConeDirection& cone = set[pixel + k * pixels];
+            table.add(cone, cone.d[2], schedule);
+        }
+    return table;
+}
+
+// Of a point, which has no surface that a cone could lie too near to.
+ConeTable sphereOf(const ConeGatherOptions& options) {
+    ConeSchedule schedule = coneSchedule(options);
+    schedule.nudge = 0.0;
+    schedule.apertureOffset = schedule.near = false;
+    ConeTable table;
+    for (const ConeDirection& cone : coneSphere(options.cones)) table.add(cone, 1.0, schedule);
+    return table;
+}
+
+}  // namespace
+
+ConeSchedule coneSchedule(const ConeGatherOptions& options) {
     ConeSchedule schedule;
     schedule.nudge = options.nudge;
     schedule.step = options.step;
@@ -36,22 +64,20 @@ ConeSchedule scheduleOf(const ConeGatherOptions& options) {
     return schedule;
 }
 
-// Cones pixel by pixel of the window, `perPixel` of each: those of one pixel lie apart.
-ConeTable tableOf(const ConeGatherOptions& options) {
-    const ConeWindow window = windowOf(options);
-    const std::vector<ConeDirection> set = coneHemisphere(options.cones);
-    const ConeSchedule schedule = scheduleOf(options);
-    const std::size_t pixels = window.columns * window.rows;
-    ConeTable table;
-    for (std::size_t pixel = 0; pixel < pixels; ++pixel)
-        for (std::size_t k = 0; k < window.perPixel; ++k) {
-            const ConeDirection& cone = set[pixel + k * pixels];
-            table.add(cone, cone.d[2], schedule);
-        }
-    return table;
+LwConeView coneView(const ConeWorld& world, const ConeGatherOptions& options) {
+    LwConeView view{};
+    view.environment = float4(double(world.environment[0]), double(world.environment[1]), double(world.environment[2]), coneSchedule(options).reach);
+    view.rough = float4(0.0, 1.0, options.nudge, 0.0);
+    return view;
 }
 
-}  // namespace
+void uploadCones(Executor& executor, const ConeTable& table, Buffer& cones, Buffer& steps) {
+    const std::size_t coneBytes = table.cones.size() * sizeof table.cones[0], stepBytes = table.steps.size() * sizeof table.steps[0];
+    cones.reserve(executor.device(), coneBytes, "cones");
+    steps.reserve(executor.device(), stepBytes, "steps of cones");
+    executor.writeCopy("cone_gather.upload", cones, 0, coneBytes, table.cones.data());
+    executor.writeCopy("cone_gather.upload", steps, 0, stepBytes, table.steps.data());
+}
 
 LwConeGrids coneGrids(const VoxelVolume& volume) {
     LwConeGrids grids{};
@@ -96,12 +122,7 @@ Kernel& ConeGather::traceOf(bool light, bool open) {
 
 void ConeGather::prepare(Executor& executor) {
     if (isUploaded_) return;
-    const ConeTable table = tableOf(options_);
-    const std::size_t coneBytes = table.cones.size() * sizeof table.cones[0], stepBytes = table.steps.size() * sizeof table.steps[0];
-    cones_.reserve(device_, coneBytes, "cones");
-    steps_.reserve(device_, stepBytes, "steps of cones");
-    executor.writeCopy("cone_gather.upload", cones_, 0, coneBytes, table.cones.data());
-    executor.writeCopy("cone_gather.upload", steps_, 0, stepBytes, table.steps.data());
+    uploadCones(executor, tableOf(options_), cones_, steps_);
     isUploaded_ = true;
 }
 
@@ -110,8 +131,7 @@ void ConeGather::recordTrace(Executor& executor, const Planes& position, const P
     prepare(executor);
     const bool light = bool(irradiance), ambient = bool(open) || wantsOpen;
     Kernel& trace = traceOf(light, ambient);
-    LwConeView view{};
-    view.environment = float4(double(world.environment[0]), double(world.environment[1]), double(world.environment[2]), scheduleOf(options_).reach);
+    const LwConeView view = coneView(world, options_);
     // A kernel's argument must be some memory, also where it is not touched.
     const auto orElse = [&](const Planes& planes) { return planes ? planes : position; };
     const std::uint32_t pixels = trace.width() * window_.columns;
@@ -133,9 +153,25 @@ void ConeGather::recordFilter(Executor& executor, const Planes& position, const 
                  cl_int(open ? 1 : 0), orElse(irradiance), orElse(validity), orElse(open));
 }
 
+void ConeGather::recordHarmonics(Executor& executor, const Planes& position, const Planes& normal, const ConeWorld& world,
+                                 const Harmonics& harmonics, const Planes& validity, const Buffer& counts) {
+    if (sphereCount_ == 0) {
+        const ConeTable table = sphereOf(options_);
+        uploadCones(executor, table, sphereCones_, sphereSteps_);
+        sphereCount_ = lw_int(table.cones.size());
+    }
+    Kernel& kernel = device_.programs().kernel(kHarmonics, "cone_gather_harmonics", coneDefines(options_, true, false));
+    const auto orElse = [&](const Planes& planes) { return planes ? planes : position; };
+    executor.run("cone_gather.harmonics", kernel, {(position.width + kernel.width() - 1) / kernel.width(), position.height}, groupOf(kernel),
+                 position, orElse(normal), cl_int(normal ? 1 : 0), cl_int(position.width), cl_int(position.height), world.places,
+                 coneGrids(world.volume), world.volume.table, world.volume.base, world.volume.mips, world.volume.state, sphereCones_,
+                 cl_int(sphereCount_), sphereSteps_, coneView(world, options_), cl_int(harmonics ? 1 : 0), cl_int(validity ? 1 : 0),
+                 orElse(harmonics.first), harmonics.band, orElse(validity), counts);
+}
+
 std::uint64_t ConeGather::estimateBytes(const ConeGatherOptions& options) {
-    const ConeTable table = tableOf(options);
-    return table.cones.size() * sizeof table.cones[0] + table.steps.size() * sizeof table.steps[0];
+    const ConeTable table = tableOf(options), sphere = sphereOf(options);
+    return (table.cones.size() + sphere.cones.size()) * sizeof table.cones[0] + (table.steps.size() + sphere.steps.size()) * sizeof table.steps[0];
 }
 
 }  // namespace lightwell

@@ -28,7 +28,7 @@ struct ConeGatherOptions {
 // What cones are traced in.
 struct ConeWorld {
     const VoxelVolume& volume;
-    const Buffer& places;      // LwLpvPlace of each cascade, finest first
+    const Buffer& places;      // LwGridPlace of each cascade, finest first
     const float* environment;  // radiance of three colours, of what nothing stops
 };
 
@@ -48,8 +48,14 @@ public:
     void recordFilter(Executor& executor, const Planes& position, const Planes& normal, const Planes& gathered, const Planes& irradiance,
                       const Planes& validity, const Planes& open);
 
+    // Pass "cone_gather.harmonics": the light that arrives at points, in two bands of spherical harmonics, from cones over the sphere.
+    // `normal` may be empty; points with one begin off their surface. harmonics, validity: none where not wanted. counts: the second and
+    // third of those.
+    void recordHarmonics(Executor& executor, const Planes& position, const Planes& normal, const ConeWorld& world, const Harmonics& harmonics,
+                         const Planes& validity, const Buffer& counts);
+
     const ConeGatherOptions& options() const { return options_; }
-    std::uint64_t bytes() const { return cones_.bytes() + steps_.bytes(); }
+    std::uint64_t bytes() const { return cones_.bytes() + steps_.bytes() + sphereCones_.bytes() + sphereSteps_.bytes(); }
     static std::uint64_t estimateBytes(const ConeGatherOptions& options);
 
 private:
@@ -60,9 +66,16 @@ private:
     Device& device_;
     ConeGatherOptions options_;
     ConeWindow window_;
-    Buffer cones_, steps_;
+    Buffer cones_, steps_, sphereCones_, sphereSteps_;
+    lw_int sphereCount_ = 0;
     bool isUploaded_ = false;
 };
+
+// A table of cones on the device, and where their steps end.
+void uploadCones(Executor& executor, const ConeTable& table, Buffer& cones, Buffer& steps);
+ConeSchedule coneSchedule(const ConeGatherOptions& options);
+// What all kernels of the pass take of a frame; reach in voxels.
+LwConeView coneView(const ConeWorld& world, const ConeGatherOptions& options);
 
 // Kernels' view of a volume, and the options that its programs are built with.
 LwConeGrids coneGrids(const VoxelVolume& volume);

@@ -24,7 +24,7 @@ std::size_t planeBytes(std::uint32_t slots) {
 
 // Directions matter where words tell sides apart by what faces them.
 cl_int planesOf(LWVoxelMode mode, bool sides) {
-    return mode == LW_VOXEL_MODE_SH2 || sides ? LW_LIGHT_PLANES : LW_LIGHT_DIRECTION;
+    return mode == LW_VOXEL_MODE_SH2 || sides ? LW_VOXEL_LIGHT_PLANES : LW_LIGHT_DIRECTION;
 }
 
 }  // namespace

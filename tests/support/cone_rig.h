@@ -9,7 +9,7 @@
 #include "inputs/camera.h"
 #include "passes/cone_gather.h"
 #include "reference/surfaces.h"
-#include "shared/lpv_types.h"
+#include "shared/grid_types.h"
 #include "support/kernel_rig.h"
 
 namespace lightwell::test {
@@ -74,11 +74,11 @@ struct DeviceVoxels {
     int unit = 0;
     std::vector<cl_int> table;
     std::vector<cl_uint> base, mips;
-    std::vector<LwLpvPlace> place;
+    std::vector<LwGridPlace> place;
 };
 
-inline LwLpvPlace conePlace(double voxel, reference::Vec origin) {
-    LwLpvPlace place{};
+inline LwGridPlace conePlace(double voxel, reference::Vec origin) {
+    LwGridPlace place{};
     place.origin = float4(origin.x, origin.y, origin.z, 1.0 / voxel);
     place.cell = float4(voxel, 1.0, 1.0, 0.0);
     return place;
