@@ -3,26 +3,32 @@
 #define LW_CLUSTERED_VISIBILITY_H
 
 #ifndef LW_VISIBILITY
-#define LW_VISIBILITY 1  // 0: none, 1: hard, 2: soft (percentage-closer)
+#define LW_VISIBILITY 1  // 0: none, 1: hard, 2: soft (percentage-closer), 3: through voxels
 #endif
 #include "shared/paraboloid.h"
 #include "shared/surface.h"
+#include "voxel_sight.h"
 
 // What the gather knows of the maps: those of the first bounce's clusters, and from cluster number `seconds` on those
-// of the second's.
+// of the second's; of voxels, what all clusters see, both bounces' in one row.
 typedef struct {
     __global const lw_paraboloid* frames;
     __global const float* records;
     __global const lw_paraboloid* secondFrames;
     __global const float* secondRecords;
     int seconds, size;
+    __global const uchar* sights;
+    __global const LwVoxelEye* eyes;
+    __global const LwVoxelSight* sight;
 } lw_maps;
 
-// 1 where the cluster's map sees the surface, or the share of it that does. Cluster -1 is seen everywhere.
+// 1 where the cluster's map sees the surface, or the share of it that does; of voxels, of its light that arrives. Cluster -1 is seen everywhere.
 LW_FN real cluster_visibility(lw_maps maps, int cluster, const lw_surface s) {
     if (cluster < 0) return (real)1.0f;
 #if LW_VISIBILITY == 0
     return (real)1.0f;
+#elif LW_VISIBILITY == 3
+    return voxel_sight(maps.sights, maps.eyes, maps.sight, cluster, s);
 #else
     const bool isSecond = cluster >= maps.seconds;
     const int map = isSecond ? cluster - maps.seconds : cluster, first = map * maps.size * maps.size;

@@ -6,6 +6,7 @@
 #ifndef LW_LPV_TYPES_H
 #define LW_LPV_TYPES_H
 
+#include "grid_types.h"
 #include "portable.h"
 
 #define LW_LPV_COLOURS 3
@@ -35,13 +36,7 @@ LW_FN lw_int lpv_cell(lw_int size, lw_int x, lw_int y, lw_int z) {
     return LW_LPV_PAD + x + (y + 1) * lpv_row(size) + (z + 1) * lpv_slice(size);
 }
 
-typedef struct {
-    lw_float4 origin;  // xyz: lower corner of cell (0, 0, 0); w: cells to a unit of length; 0: there is no grid
-    // x: a cell's side. y, z: powers of two whose product takes W/sr to whole numbers, two of them so that neither leaves
-    // float's range.
-    lw_float4 cell;
-} LwLpvPlace;
-LW_SIZE_CHECK(LwLpvPlace, 32);
+typedef LwGridPlace LwLpvPlace;
 
 // Of the volume that blocks: what gets through the faces between cells, planes laid out as those of light. Light of one cell that
 // reaches a neighbour along axis a leaves it through five far faces, and has five ways through the face between the two: straight
@@ -76,22 +71,6 @@ typedef struct {
 } LwLpvProgress;
 LW_SIZE_CHECK(LwLpvProgress, 16);
 
-// How a frame wants its grid placed.
-typedef struct {
-    lw_float4 centre;        // xyz; w: length of the grid's sides; 0: fitted to what the RSMs see, the VPLs and the box below
-    lw_float4 low, high;     // xyz: a box to fit to as well; low.w: 1 where there is one
-    lw_int refit;            // 1: whatever the last frame's grid was
-    lw_int bits;             // of the largest whole number that one texel's light may make
-    lw_int size;
-    lw_int snaps;            // 1: with an extent, the grid begins at whole cells of the world
-} LwLpvFit;
-LW_SIZE_CHECK(LwLpvFit, 64);
-
-// What is known of a frame's light before the grid is placed; the bounds as keys that order as the numbers do.
-#define LW_LPV_LOW 0      // three: of the negated coordinates
-#define LW_LPV_HIGH 3     // three
-#define LW_LPV_LARGEST 6  // bits of the largest flux of a colour
-#define LW_LPV_OUTSIDE 7  // texels and VPLs with flux that no cell takes
-#define LW_LPV_STATE 8
+#define LW_LPV_OUTSIDE LW_GRID_OUTSIDE  // of a grid's state: texels and VPLs with flux that no cell takes
 
 #endif

@@ -42,7 +42,7 @@ std::unique_ptr<IndirectRenderer> makeRenderer(const Parameters& parameters, con
         if (options.quantity != Quantity::Irradiance)
             throw UsageError(
                 "technique " + parameters.technique() +
-                ": makes no ambient occlusion or specular radiance; expected one of the library");
+                ": makes irradiance alone; expected one of the library with --quantity");
         if (!inputs.lwSources().empty())
             throw UsageError("--source-view: technique " + parameters.technique() +
                              " looks at none; expected one of the library");

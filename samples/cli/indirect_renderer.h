@@ -17,6 +17,7 @@
 
 #include "lightwell/lightwell.hpp"
 #include "parameters.h"
+#include "quantity.h"
 #include "render_inputs.h"
 
 namespace cli {
@@ -68,16 +69,14 @@ public:
     virtual DebugPlanes readDebugView(const std::string& name) const = 0;
 };
 
-enum class Quantity { Irradiance, AmbientOcclusion, SpecularRadiance };
-
 struct DeviceOptions {
     std::string device;       // as openDevice takes it; "": by LIGHTWELL_DEVICE, else the best
     std::uint32_t width = 0;  // lanes per work-item; 0: by probe
-    // What is asked of the technique. Specular radiance stands in irradiance(); ambient occlusion (1 =
-    // open) stands in all three planes of irradiance(), so that whatever looks at a picture looks at it
-    // likewise; validity is not asked for.
+    // What is asked of the technique. Radiance of other kinds stands in irradiance(); ambient occlusion and
+    // shadow (1 = open) stand in all three planes of irradiance(), so that whatever looks at a picture looks
+    // at it likewise; validity is not asked for.
     Quantity quantity = Quantity::Irradiance;
-    float roughness = 0.5f;  // of all pixels, for specular radiance
+    float roughness = 0.5f;  // of all pixels, where the quantity depends on it
 };
 
 // The renderer of `parameters.technique()`, for inputs of at most the size of `inputs`; everything is

@@ -16,7 +16,8 @@ void addLayer(studio::Image& image, const std::string& prefix, const studio::Pla
 
 studio::Image shownRadiance(const studio::Image& image) {
     const auto layer = image.metadata.find("layer");
-    if (layer == image.metadata.end() || layer->second != "specular") return studio::composite(image);
+    if (layer == image.metadata.end() || (layer->second != "specular" && layer->second != "refracted"))
+        return studio::composite(image);
     studio::Image shown(image.width, image.height);
     for (const char* channel : {"R", "G", "B"}) shown.plane(channel) = image.plane(channel);
     return shown;

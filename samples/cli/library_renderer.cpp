@@ -50,7 +50,7 @@ LibraryRenderer::LibraryRenderer(const lightwell::Device& device, const Paramete
       quantity_(quantity),
       irradiance_(inputs.gbuffer().width, inputs.gbuffer().height, 3),
       validity_(inputs.gbuffer().width, inputs.gbuffer().height, 1),
-      ambient_(inputs.gbuffer().width, inputs.gbuffer().height, 1),
+      share_(inputs.gbuffer().width, inputs.gbuffer().height, 1),
       roughnessOfAll_(roughness),
       estimatedBytes_(device.estimateMemory(
           parameters.technique().c_str(), descriptor_.get(), std::uint32_t(inputs.gbuffer().width),
@@ -74,7 +74,7 @@ void LibraryRenderer::fitSize(int width, int height) {
     for (lightwell::View& source : sources_) source.setSize(std::uint32_t(width), std::uint32_t(height));
     irradiance_ = studio::PlanarBuffer(width, height, 3);
     validity_ = studio::PlanarBuffer(width, height, 1);
-    ambient_ = studio::PlanarBuffer(width, height, 1);
+    share_ = studio::PlanarBuffer(width, height, 1);
     fillRoughness(width, height);
 }
 
@@ -85,19 +85,14 @@ void LibraryRenderer::fillRoughness(int width, int height) {
 
 LWOutput LibraryRenderer::describeOutput() {
     LWOutput output = lightwell::make<LWOutput>();
-    if (quantity_ == Quantity::AmbientOcclusion) {
-        output.ambientOcclusion = describePlanes(ambient_);
-    } else if (quantity_ == Quantity::SpecularRadiance) {
-        output.specularRadiance = describePlanes(irradiance_);
-    } else {
-        output.irradiance = describePlanes(irradiance_);
-        output.validity = describePlanes(validity_);
-    }
+    const QuantityEntry& entry = entryOf(quantity_);
+    output.*entry.output = describePlanes(entry.isShare ? share_ : irradiance_);
+    if (quantity_ == Quantity::Irradiance) output.validity = describePlanes(validity_);
     return output;
 }
 
 void LibraryRenderer::render(LWGBuffer gbuffer) {
-    if (quantity_ == Quantity::SpecularRadiance) gbuffer.roughness = describePlanes(roughness_);
+    if (entryOf(quantity_).hasRoughness) gbuffer.roughness = describePlanes(roughness_);
     const LWOutput output = describeOutput();
     try {
         technique_.render(view_, gbuffer, output);
@@ -108,10 +103,10 @@ void LibraryRenderer::render(LWGBuffer gbuffer) {
     }
 }
 
-void LibraryRenderer::spreadAmbient() {
+void LibraryRenderer::spreadShare() {
     for (int plane = 0; plane < 3; ++plane)
-        for (int y = 0; y < ambient_.height(); ++y)
-            std::copy_n(ambient_.row(0, y), ambient_.width(), irradiance_.row(plane, y));
+        for (int y = 0; y < share_.height(); ++y)
+            std::copy_n(share_.row(0, y), share_.width(), irradiance_.row(plane, y));
 }
 
 FrameSample LibraryRenderer::renderFrame(const RenderInputs& inputs, bool reset) {
@@ -134,7 +129,7 @@ FrameSample LibraryRenderer::renderFrame(const RenderInputs& inputs, bool reset)
     render(inputs.lwGBuffer());
     device_.finish();
     const std::chrono::duration<double, std::milli> wall = std::chrono::steady_clock::now() - start;
-    if (quantity_ == Quantity::AmbientOcclusion) spreadAmbient();
+    if (entryOf(quantity_).isShare) spreadShare();
     return describeFrame(technique_.stats(), wall.count());
 }
 

@@ -29,7 +29,7 @@ private:
     LWOutput describeOutput();
     void fillRoughness(int width, int height);
     void render(LWGBuffer gbuffer);
-    void spreadAmbient();
+    void spreadShare();
 
     lightwell::Device device_;
     LWDeviceInfo info_{};
@@ -38,7 +38,7 @@ private:
     Descriptor descriptor_;
     lightwell::Technique technique_;
     Quantity quantity_;
-    studio::PlanarBuffer irradiance_, validity_, ambient_, roughness_;
+    studio::PlanarBuffer irradiance_, validity_, share_, roughness_;
     float roughnessOfAll_;
     std::uint64_t estimatedBytes_ = 0, frameIndex_ = 0;
 };

@@ -30,11 +30,10 @@ struct RenderOptions {
     int frames = 9, warmup = 3, width = 0, rsmSize = 512, cascades = 1;
     bool asJson = false, printsHash = false;
     CLI::Option* roughnessGiven = nullptr;
-    bool isAmbient() const { return quantity == "ambient-occlusion"; }
-    bool isSpecular() const { return quantity == "specular-radiance"; }
-    Quantity asked() const {
-        if (isSpecular()) return Quantity::SpecularRadiance;
-        return isAmbient() ? Quantity::AmbientOcclusion : Quantity::Irradiance;
+    const QuantityEntry& asked() const {
+        for (const QuantityEntry& entry : quantityEntries())
+            if (quantity == entry.name) return entry;
+        throw UsageError("--quantity '" + quantity + "': expected one of " + joinNames(quantityNames()));
     }
 };
 
@@ -67,17 +66,16 @@ void checkOptions(const RenderOptions& options) {
     if (options.technique.empty())
         throw UsageError("--technique is required; valid: " + joinNames(techniques));
     requireOneOf("technique", options.technique, techniques);
-    requireOneOf("--quantity", options.quantity,
-                 {"irradiance", "ambient-occlusion", "specular-radiance"});
-    if (!options.isSpecular() && options.roughnessGiven->count() > 0)
-        throw UsageError("--roughness: expected --quantity specular-radiance with it");
+    requireOneOf("--quantity", options.quantity, quantityNames());
+    if (!options.asked().hasRoughness && options.roughnessGiven->count() > 0)
+        throw UsageError("--roughness: expected --quantity specular-radiance or refracted-radiance with it");
     parseRoughness(options.roughness);
     if (options.width != 0)
         requireOneOf("--width", std::to_string(options.width), {"1", "4", "8", "16"});
     for (const std::string& assignment : options.assignments) splitAssignment("--set", assignment);
     if (!options.exposure.empty()) parsePositive("--exposure", options.exposure);
-    if (!options.exposure.empty() && options.isAmbient())
-        throw UsageError("--exposure: ambient occlusion is drawn as it is, 1 = white; leave it out");
+    if (!options.exposure.empty() && options.asked().isShare)
+        throw UsageError("--exposure: " + options.quantity + " is drawn as it is, 1 = white; leave it out");
     parsePositive("--scale", options.scale);
     parseFocus("--focus", options.focus);
     const double step = parseNumber("--step", options.step);
@@ -97,10 +95,10 @@ void checkOptions(const RenderOptions& options) {
     if (!hasResult) throw UsageError("--out is required: a file name ending in .exr or .png");
     if (options.technique == kNoTechnique) {
         if (!options.vplsOut.empty() || !options.debugView.empty() || !options.assignments.empty() ||
-            !options.sourceViews.empty() || options.asked() != Quantity::Irradiance)
+            !options.sourceViews.empty() || options.asked().quantity != Quantity::Irradiance)
             throw UsageError(
-                "--technique none has no VPLs, debug views, parameters, source views, ambient "
-                "occlusion or specular radiance");
+                "--technique none has no VPLs, debug views, parameters, source views or quantities "
+                "but irradiance");
     }
 }
 
@@ -120,7 +118,7 @@ void writeOutputs(const RenderOptions& options, const studio::Image& image, Rend
     for (const std::string& out : options.outs) {
         if (hasExtension(out, ".exr")) {
             studio::writeExr(out, image);
-        } else if (options.isAmbient()) {
+        } else if (options.asked().isShare) {
             studio::writePng(out, image);  // already in [0,1]
         } else {
             const studio::Image lit = shownRadiance(image);
@@ -140,7 +138,7 @@ studio::Image renderWithTechnique(const RenderOptions& options, Sequence& sequen
     const Parameters parameters = parseParameters(options);
     const auto renderer =
         makeRenderer(parameters, sequence.at(0),
-                     DeviceOptions{options.device, std::uint32_t(options.width), options.asked(),
+                     DeviceOptions{options.device, std::uint32_t(options.width), options.asked().quantity,
                                    parseRoughness(options.roughness)});
     report.parameters = parameters.resolved();
     report.figures = measure(
@@ -158,7 +156,7 @@ studio::Image renderWithTechnique(const RenderOptions& options, Sequence& sequen
     }
     if (!options.debugView.empty()) writeDebugView(*renderer, options.debugView);
     return assemblePicture(sequence.last(), renderer->irradiance(), renderer->validity(),
-                           options.asked(), report);
+                           options.asked().quantity, report);
 }
 
 studio::Image renderDirectOnly(const RenderInputs& inputs, RenderReport& report) {
@@ -277,11 +275,12 @@ void addRender(CLI::App& app) {
                         "Required: a technique (below), or none: direct light only");
     command
         ->add_option("--quantity", options->quantity,
-                     "irradiance, or of techniques that make it ambient-occlusion (1 = open) or "
-                     "specular-radiance (along glossy lobes, W/(sr m^2))")
+                     "irradiance, or of techniques that make it ambient-occlusion (1 = open), specular-radiance "
+                     "(along glossy lobes, W/(sr m^2)), refracted-radiance (along the refracted view) or shadow "
+                     "(of one light; 1 = lit)")
         ->capture_default_str();
     options->roughnessGiven = command->add_option("--roughness", options->roughness,
-                                                  "Of all pixels, 0..1, of specular-radiance; default 0.5");
+                                                  "Of all pixels, 0..1, of specular-radiance and refracted-radiance; default 0.5");
     command->add_option("--set", options->assignments,
                         "key=value, one or several: parameters of the technique (below)");
     command->add_option("--frames", options->frames, "Frames measured; times are medians")

@@ -39,9 +39,7 @@ studio::Image assemblePicture(const RenderInputs& inputs, const studio::PlanarBu
     addLayer(image, "", irradiance);
     if (quantity == Quantity::Irradiance) addLayer(image, "validity", validity);
     addViewLayers(image, inputs.gbuffer());
-    image.metadata = {{"layer", quantity == Quantity::AmbientOcclusion   ? "ambient"
-                                : quantity == Quantity::SpecularRadiance ? "specular"
-                                                                         : "irradiance"},
+    image.metadata = {{"layer", entryOf(quantity).layer},
                       {"scene", report.scene},
                       {"camera", report.camera},
                       {"technique", report.technique}};

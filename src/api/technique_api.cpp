@@ -42,7 +42,7 @@ bool refusedUnchanged(LWStatus status) {
 
 void checkOutput(const LWOutput& output) {
     for (const LWImage* image : {&output.irradiance, &output.validity, &output.ambientOcclusion,
-                                 &output.specularRadiance, &output.shadow})
+                                 &output.specularRadiance, &output.refractedRadiance, &output.shadow})
         if (rawEnum(image->format) != LW_FORMAT_NONE || image->host || image->clMem) return;
     fail(LW_ERROR_INVALID_ARGUMENT, "output: expected at least one image, got none");
 }
@@ -155,6 +155,10 @@ LWStatus lwCreateAo(LWDevice device, const LWAoDesc* desc, LWTechnique* techniqu
 
 LWStatus lwCreateLpv(LWDevice device, const LWLpvDesc* desc, LWTechnique* technique) {
     return createTechnique("lwCreateLpv", device, "lpv", desc, technique);
+}
+
+LWStatus lwCreateConeTracing(LWDevice device, const LWConeTracingDesc* desc, LWTechnique* technique) {
+    return createTechnique("lwCreateConeTracing", device, "cone_tracing", desc, technique);
 }
 
 LWStatus lwRetainTechnique(LWTechnique technique) {

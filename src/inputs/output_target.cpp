@@ -1,8 +1,8 @@
 #include "inputs/output_target.h"
 
 #include <string>
-#include <tuple>
 #include <utility>
+#include <vector>
 
 #include "compute/device.h"
 #include "compute/error.h"
@@ -162,20 +162,36 @@ std::uint64_t OutputTarget::estimateBytes(const LWViewDesc& view, std::uint32_t 
            (uploads ? packed * view.maxWidth * view.maxHeight : 0);
 }
 
-void checkLightOutputs(Device& device, const View& view, const LWOutput& output, const char* technique, bool makesSpecular) {
-    const auto isGiven = [](const LWImage& image) { return rawEnum(image.format) != LW_FORMAT_NONE; };
-    const std::tuple<const LWImage*, const char*, bool> unsupported[] = {{&output.ambientOcclusion, "ambientOcclusion", true},
-                                                                         {&output.specularRadiance, "specularRadiance", !makesSpecular},
-                                                                         {&output.shadow, "shadow", true}};
-    for (const auto& [image, name, isRefused] : unsupported)
-        if (isRefused && isGiven(*image))
-            fail(LW_ERROR_UNSUPPORTED, "output.", name, ": technique ", technique, " makes irradiance",
-                 makesSpecular ? ", validity and specularRadiance only" : " and validity only");
-    if (!isGiven(output.irradiance) && !isGiven(output.validity) && !isGiven(output.specularRadiance))
-        fail(LW_ERROR_INVALID_ARGUMENT, "output: expected irradiance", makesSpecular ? ", validity or specularRadiance, got none" : " or validity, got neither");
-    OutputTarget::check(device, view, output.irradiance, 3, "output.irradiance");
-    OutputTarget::check(device, view, output.validity, 1, "output.validity");
-    if (makesSpecular) OutputTarget::check(device, view, output.specularRadiance, 3, "output.specularRadiance");
+void checkLightOutputs(Device& device, const View& view, const LWOutput& output, const char* technique, std::uint32_t kinds) {
+    constexpr std::uint32_t kAlways = 1u << 31;
+    struct Entry {
+        const LWImage* image;
+        const char* name;
+        std::uint32_t planes, kind;
+    };
+    const Entry entries[] = {{&output.irradiance, "irradiance", 3, kAlways},
+                             {&output.validity, "validity", 1, kAlways},
+                             {&output.ambientOcclusion, "ambientOcclusion", 1, kMakesAmbient},
+                             {&output.specularRadiance, "specularRadiance", 3, kMakesSpecular},
+                             {&output.refractedRadiance, "refractedRadiance", 3, kMakesRefracted},
+                             {&output.shadow, "shadow", 1, kMakesShadow}};
+    std::vector<const char*> made;
+    bool isAny = false;
+    for (const Entry& entry : entries) {
+        if (entry.kind & (kinds | kAlways)) made.push_back(entry.name);
+        isAny = isAny || rawEnum(entry.image->format) != LW_FORMAT_NONE;
+    }
+    const auto listed = [&](const char* last) {
+        std::string list = made.front();
+        for (std::size_t i = 1; i < made.size(); ++i) list += (i + 1 < made.size() ? ", " : last) + std::string(made[i]);
+        return list;
+    };
+    for (const Entry& entry : entries)
+        if (!(entry.kind & (kinds | kAlways)) && rawEnum(entry.image->format) != LW_FORMAT_NONE)
+            fail(LW_ERROR_UNSUPPORTED, "output.", entry.name, ": technique ", technique, " makes ", listed(" and "), " only");
+    if (!isAny) fail(LW_ERROR_INVALID_ARGUMENT, "output: expected ", listed(" or "), ", got none");
+    for (const Entry& entry : entries)
+        OutputTarget::check(device, view, *entry.image, entry.planes, ("output." + std::string(entry.name)).c_str());
 }
 
 }  // namespace lightwell

@@ -1,6 +1,7 @@
 // Where a technique's result planes go: the host's image in place, or packed into its format.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 
 #include "compute/buffer.h"
@@ -40,8 +41,10 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-// Of a technique that makes irradiance and validity, and radiance along glossy lobes where makesSpecular: throws what lwRender says
-// of other outputs, of none, and of bad ones.
-void checkLightOutputs(Device& device, const View& view, const LWOutput& output, const char* technique, bool makesSpecular = false);
+// Images of LWOutput that not every technique makes.
+enum OutputKinds : std::uint32_t { kMakesAmbient = 1, kMakesSpecular = 2, kMakesRefracted = 4, kMakesShadow = 8 };
+
+// Of a technique that makes irradiance, validity and `kinds`: throws what lwRender says of other outputs, of none, and of bad ones.
+void checkLightOutputs(Device& device, const View& view, const LWOutput& output, const char* technique, std::uint32_t kinds = 0);
 
 }  // namespace lightwell

@@ -23,6 +23,9 @@ std::uint64_t listBytes(const lw_subset_order& order) {
     return std::uint64_t(order.subsets) * std::uint64_t(order.capacity) * sizeof(lw_vpl);
 }
 
+// A kernel's argument must be some memory, also where it is not read.
+VoxelSights voxelsOf(const ClusterMaps& maps) { return maps.voxels ? *maps.voxels : VoxelSights{maps.records, maps.records, maps.records}; }
+
 std::uint64_t sortedBytes(std::uint32_t count) { return (std::uint64_t(count) + 1) * sizeof(cl_int); }
 
 }  // namespace
@@ -97,10 +100,11 @@ void ClusteredGather::recordGather(Executor& executor, const Planes& position, c
                                    const Buffer& masks, const lw_vpl_tiles& tiles, const ClusterMaps& maps,
                                    const Planes& irradiance, const Buffer& counts) {
     const std::uint32_t pixels = gather_.width() * interleave_;
+    const VoxelSights voxels = voxelsOf(maps);
     executor.run("clustered_gather.gather", gather_, {(position.width + pixels - 1) / pixels, position.height},
                  groupOf(gather_), position, normal, cl_int(position.width), cl_int(position.height), vpls_, order_, masks,
                  tiles, maps.frames, maps.records, maps.secondFrames, maps.secondRecords, cl_int(maps.seconds),
-                 cl_int(maps.size), shadowed_, irradiance, counts);
+                 cl_int(maps.size), voxels.sights, voxels.eyes, voxels.sight, shadowed_, irradiance, counts);
 }
 
 Planes ClusteredGather::visibilityShape(const Planes& position, std::uint32_t clusterCount) {
@@ -119,10 +123,12 @@ void ClusteredGather::recordVisibility(Executor& executor, const Planes& positio
     if (planes.planeStride > std::numeric_limits<std::int32_t>::max())
         fail(LW_ERROR_UNSUPPORTED, "debug view visibility: ", clusterCount, " clusters at ", position.width, "x", position.height,
              " pixels exceed the 32-bit indices of the kernels");
+    const VoxelSights voxels = voxelsOf(maps);
     executor.run("clustered_gather.visibility", visibility_,
                  {(position.width + visibility_.width() - 1) / visibility_.width(), planes.height}, groupOf(visibility_),
                  position, normal, cl_int(position.width), cl_int(position.height), cl_int(clusterCount), maps.frames,
-                 maps.records, maps.secondFrames, maps.secondRecords, cl_int(maps.seconds), cl_int(maps.size), planes.memory, cl_int(planes.rowStride));
+                 maps.records, maps.secondFrames, maps.secondRecords, cl_int(maps.seconds), cl_int(maps.size), voxels.sights, voxels.eyes, voxels.sight,
+                 planes.memory, cl_int(planes.rowStride));
 }
 
 Planes ClusteredGather::clustersShape() const {
@@ -145,12 +151,13 @@ ClusteredHarmonics::ClusteredHarmonics(Device& device, ClusterVisibility visibil
 
 void ClusteredHarmonics::record(Executor& executor, const Planes& position, const Planes& normal, const ClusteredGather& gather,
                                 const ClusterMaps& maps, const Harmonics& harmonics, const Buffer& counts) {
+    const VoxelSights voxels = voxelsOf(maps);
     // A kernel's argument must be some memory, also where it is not read.
     executor.run("clustered_gather.harmonics", harmonics_,
                  {(position.width + harmonics_.width() - 1) / harmonics_.width(), position.height}, groupOf(harmonics_), position,
                  normal ? normal : position, cl_int(normal ? 1 : 0), cl_int(position.width), cl_int(position.height), gather.vpls(),
                  gather.order(), maps.frames, maps.records, maps.secondFrames, maps.secondRecords, cl_int(maps.seconds),
-                 cl_int(maps.size), harmonics.first, harmonics.band, counts);
+                 cl_int(maps.size), voxels.sights, voxels.eyes, voxels.sight, harmonics.first, harmonics.band, counts);
 }
 
 }  // namespace lightwell

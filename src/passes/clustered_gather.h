@@ -9,12 +9,13 @@
 #include "compute/buffer.h"
 #include "compute/executor.h"
 #include "passes/harmonics.h"
+#include "passes/voxel_visibility.h"
 #include "shared/subset_order.h"
 #include "shared/vpl_tiles.h"
 
 namespace lightwell {
 
-enum class ClusterVisibility { none, hard, soft };
+enum class ClusterVisibility { none, hard, soft, voxel };
 
 // A list of VPLs by index.
 struct VplList {
@@ -30,13 +31,14 @@ struct GatheredList {
 };
 
 // The clusters' maps, as ParaboloidMap leaves them: of the first list that has clusters, which are numbers 0 to seconds - 1,
-// and of the second.
+// and of the second. Voxels: what all of them see, one list after the other; with visibility through voxels, read instead.
 struct ClusterMaps {
     const Buffer& frames;
     const Buffer& records;
     const Buffer& secondFrames;
     const Buffer& secondRecords;
     std::uint32_t seconds, size;
+    const VoxelSights* voxels = nullptr;
 };
 
 class ClusteredGather {

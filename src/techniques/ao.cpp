@@ -81,7 +81,7 @@ public:
         LWAoDesc desc = desc_;
         desc.method = LW_AO_SSDO;  // whose kernels are those of both
         AoTechnique twin(device_, desc);
-        exerciseTechnique(executor, twin, true);
+        exerciseTechnique(executor, twin, kMakesAmbient);
     }
 
     Report report() override {

@@ -92,7 +92,7 @@ public:
 
     void prewarm(Executor& executor, const std::shared_ptr<View>&) override {
         HorizonTechnique twin(device_, desc_);
-        exerciseTechnique(executor, twin, true);
+        exerciseTechnique(executor, twin, kMakesAmbient);
     }
 
     Report report() override {

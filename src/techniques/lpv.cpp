@@ -79,7 +79,7 @@ public:
         if (!imageAbsent(output.specularRadiance) && !volume_->hasSpecular())
             fail(LW_ERROR_UNSUPPORTED, "output.specularRadiance: technique lpv makes it with cascades=1 only, got cascades=",
                  desc_.cascades);
-        checkLightOutputs(device_, *view, output, "lpv", true);
+        checkLightOutputs(device_, *view, output, "lpv", kMakesSpecular);
         const std::optional<LwSpecularRays> rays = LpvSpecularView::rays(*view, gbuffer, output, environment_);
         LpvView& state = states_.get(view, [&] { return std::make_unique<LpvView>(device_, *view, isHalf(desc_)); });
         state.render(executor, *view, gbuffer, output, bilateral_ ? &*bilateral_ : nullptr, *volume_, rays);
@@ -129,7 +129,7 @@ private:
             if (desc_.geometryVolume == LW_GEOMETRY_VOLUME_AUTO) desc.geometryVolume = LWGeometryVolume(source);
             else if (source != LW_GEOMETRY_VOLUME_TRIANGLES) break;
             LpvTechnique twin(device_, desc);
-            exerciseTechnique(executor, twin, false, twin.volume_->hasSpecular());
+            exerciseTechnique(executor, twin, twin.volume_->hasSpecular() ? kMakesSpecular : 0u);
             exercisePoints(executor, twin);
         }
         desc.geometryVolume = LW_GEOMETRY_VOLUME_OFF;
@@ -143,7 +143,7 @@ private:
         for (int hidden = 0; hidden < kLpvBlockerKinds; ++hidden) {
             LpvTechnique twin(device_, desc, hidden);
             twin.prewarmVpls(executor);
-            exerciseTechnique(executor, twin, false, twin.volume_->hasSpecular());
+            exerciseTechnique(executor, twin, twin.volume_->hasSpecular() ? kMakesSpecular : 0u);
             exercisePoints(executor, twin);
         }
     }

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "compute/device.h"
+#include "inputs/output_target.h"
 
 namespace lightwell {
 namespace {
@@ -20,7 +21,8 @@ LWImage imageOf(Pixels& pixels, LWFormat format) {
 
 // A floor under a camera that looks down on it, as interleaved images: everything has to be unpacked.
 struct Inputs {
-    Pixels position{}, normal{}, flux{}, radiance{}, depth{}, receiveMask{}, irradiance{}, validity{}, ambient{}, specular{};
+    Pixels position{}, normal{}, flux{}, radiance{}, depth{}, receiveMask{}, irradiance{}, validity{}, ambient{}, specular{}, refracted{},
+        shadow{};
     LWCamera camera{};
     // One triangle that fills a map, and slivers: kernels may tell large ones from small ones.
     std::array<float, 27> vertices{{-9, 1, -9, 9, 1, -9, 0, 1, 9, 0, 0.5f, 0, 0.001f, 0.5f, 0, 0, 0.5f, 0.001f,
@@ -59,7 +61,7 @@ struct IdleAtEnd {
 
 }  // namespace
 
-void exerciseTechnique(Executor& executor, Technique& technique, bool makesAmbient, bool makesSpecular) {
+void exerciseTechnique(Executor& executor, Technique& technique, std::uint32_t kinds) {
     Inputs inputs;
     const IdleAtEnd idle{executor.device()};
     const auto view = std::make_shared<View>(kSize, kSize);
@@ -74,7 +76,7 @@ void exerciseTechnique(Executor& executor, Technique& technique, bool makesAmbie
         gbuffer.normal = imageOf(inputs.normal, LW_FORMAT_FLOAT3);
         gbuffer.directRadiance = imageOf(inputs.radiance, LW_FORMAT_FLOAT3);
         gbuffer.receiveMask = imageOf(inputs.receiveMask, byDepth ? LW_FORMAT_UINT8 : LW_FORMAT_FLOAT1);
-        if (makesSpecular) gbuffer.roughness = imageOf(inputs.radiance, LW_FORMAT_FLOAT1);
+        if (kinds & (kMakesSpecular | kMakesRefracted)) gbuffer.roughness = imageOf(inputs.radiance, LW_FORMAT_FLOAT1);
         gbuffer.camera = inputs.camera;
         if (byDepth) {
             rsm.depth = gbuffer.depth = imageOf(inputs.depth, LW_FORMAT_FLOAT1);
@@ -112,8 +114,10 @@ void exerciseTechnique(Executor& executor, Technique& technique, bool makesAmbie
         output.structSize = sizeof output;
         output.irradiance = imageOf(inputs.irradiance, LW_FORMAT_FLOAT3);
         output.validity = imageOf(inputs.validity, LW_FORMAT_FLOAT1);
-        if (makesAmbient) output.ambientOcclusion = imageOf(inputs.ambient, LW_FORMAT_FLOAT1);
-        if (makesSpecular) output.specularRadiance = imageOf(inputs.specular, LW_FORMAT_FLOAT3);
+        if (kinds & kMakesAmbient) output.ambientOcclusion = imageOf(inputs.ambient, LW_FORMAT_FLOAT1);
+        if (kinds & kMakesSpecular) output.specularRadiance = imageOf(inputs.specular, LW_FORMAT_FLOAT3);
+        if (kinds & kMakesRefracted) output.refractedRadiance = imageOf(inputs.refracted, LW_FORMAT_FLOAT3);
+        if (kinds & kMakesShadow) output.shadow = imageOf(inputs.shadow, LW_FORMAT_FLOAT1);
         technique.update(executor, frame);
         technique.render(executor, view, gbuffer, output);
         for (const DebugView& debug : technique.debugViews(view.get()))
@@ -130,8 +134,9 @@ void exerciseTechnique(Executor& executor, Technique& technique, bool makesAmbie
         dark.structSize = sizeof dark;
         dark.geometry = &geometry;
         technique.update(executor, dark);
+        output.shadow = LWImage{};  // of which light?
         technique.render(executor, view, gbuffer, output);
-        if (makesAmbient || makesSpecular) {
+        if (kinds) {
             output.irradiance = output.validity = LWImage{};
             technique.render(executor, view, gbuffer, output);
         }

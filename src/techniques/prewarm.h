@@ -6,9 +6,9 @@
 
 namespace lightwell {
 
-// Blocks until the device has finished. The technique's state is that of the last made-up frame. makesAmbient: of
-// one that makes ambient occlusion too, beside the other outputs and alone; makesSpecular: the same of radiance along glossy lobes.
-void exerciseTechnique(Executor& executor, Technique& technique, bool makesAmbient = false, bool makesSpecular = false);
+// Blocks until the device has finished. The technique's state is that of the last made-up frame. kinds: OutputKinds that it makes too,
+// beside the other outputs and alone.
+void exerciseTechnique(Executor& executor, Technique& technique, std::uint32_t kinds = 0);
 // The same for its light at points, after that. Of one that has none at them: not to be called.
 void exercisePoints(Executor& executor, Technique& technique);
 

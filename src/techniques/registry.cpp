@@ -1,5 +1,6 @@
 // One line per technique.
 #include "techniques/ao.h"
+#include "techniques/cone_tracing.h"
 #include "techniques/fallback.h"
 #include "techniques/horizon.h"
 #include "techniques/lpv.h"
@@ -18,6 +19,7 @@ const std::vector<TechniqueEntry>& techniqueEntries() {
         horizonEntry(),
         aoEntry(),
         lpvEntry(),
+        coneTracingEntry(),
         fallbackEntry(),
     };
     return entries;

@@ -12,16 +12,20 @@
 #include "techniques/prewarm.h"
 #include "techniques/rsm_parameters.h"
 #include "techniques/rsm_points.h"
+#include "techniques/rsm_shadows.h"
 #include "techniques/technique_entry.h"
 
 namespace lightwell {
 namespace {
 
+bool isShadowed(const LWRsmDesc& desc) { return desc.visibility == LW_RSM_VISIBILITY_VOXEL; }
+
 VplSamplingOptions samplingOptions(const LWRsmDesc& desc) {
     VplSamplingOptions options;
     options.count = desc.vpls;
     options.uniform = desc.sampling == LW_SAMPLING_UNIFORM;
-    options.subsets = desc.interleave * desc.interleave;
+    // Shadowed ones in their own order: clusters are dealt out, not this list.
+    options.subsets = isShadowed(desc) ? 1 : desc.interleave * desc.interleave;
     options.seed = desc.seed;
     return options;
 }
@@ -34,11 +38,12 @@ InterleavedOptions interleavedOptions(const LWRsmDesc& desc) {
 }
 
 // What the host gave and this technique does not read: said in the stats, so that nobody waits for its light.
-std::vector<LWChoice> unusedInputs(const LWFrame& frame) {
+std::vector<LWChoice> inputChoices(const LWFrame& frame, const RsmShadows* shadows) {
     constexpr const char* kReason = "not used: technique rsm takes light from RSMs and authored VPLs only";
     std::vector<LWChoice> unused;
-    if (frame.sourceViewCount) unused.push_back({"frame.sourceViews", kReason});
-    if (frame.geometry) unused.push_back({"frame.geometry", kReason});
+    if (shadows) unused = shadows->choices(frame);
+    else if (frame.sourceViewCount) unused.push_back({"frame.sourceViews", kReason});
+    if (frame.geometry && !shadows) unused.push_back({"frame.geometry", kReason});
     if (frame.blockerCount) unused.push_back({"frame.blockers", kReason});
     if (frame.environment[0] > 0.0f || frame.environment[1] > 0.0f || frame.environment[2] > 0.0f)
         unused.push_back({"frame.environment", kReason});
@@ -52,19 +57,22 @@ std::vector<LWChoice> unusedInputs(const LWFrame& frame) {
 
 class RsmTechnique final : public Technique {
 public:
-    RsmTechnique(Device& device, const LWRsmDesc& desc)
+    RsmTechnique(Device& device, const LWRsmDesc& desc, RsmShadows::Source source = RsmShadows::Source::best)
         : device_(device), desc_(desc), sampling_(device, samplingOptions(desc)), gather_(device, desc.interleave) {
         // A program built for nothing is also never cached.
         if (interleavedOptions(desc).half) bilateral_.emplace(device);
         if (desc.history) history_.emplace(device, interleavedOptions(desc).history);
+        if (isShadowed(desc)) shadows_.emplace(device, desc, source);
     }
 
     void update(Executor& executor, const LWFrame& frame) override {
+        if (shadows_) shadows_->check(frame);
         rsms_.import(executor, frame);
-        const bool forget = continuity_.beginLost() || frame.reset != 0;
+        const bool lost = continuity_.beginLost(), forget = lost || frame.reset != 0;
         if (history_) sampling_.turn(forget ? turns_ = 0 : ++turns_);
         sampling_.record(executor, rsms_, frame.vpls, frame.vplCount);
-        unused_ = unusedInputs(frame);
+        if (shadows_) shadows_->update(executor, frame, rsms_, {sampling_.vpls(), sampling_.vplCount()}, forget, lost);
+        choices_ = inputChoices(frame, shadows_ ? &*shadows_ : nullptr);
         states_.purge();
         states_.each([&](InterleavedView& state) { state.startFrame(forget); });
         if (points_) points_->startFrame();
@@ -75,17 +83,20 @@ public:
         checkLightOutputs(device_, *view, output, "rsm");
         InterleavedView& state = states_.get(
             view, [&] { return std::make_unique<InterleavedView>(device_, interleavedOptions(desc_), *view); });
-        const Buffer& vpls = sampling_.vpls();
-        const lw_subset_order order = sampling_.order();
+        const Buffer& vpls = this->vpls();
+        const lw_subset_order order = this->order();
         state.render(executor, *view, gbuffer, output, {gather_, bilateral_ ? &*bilateral_ : nullptr, history()},
                      [&](const Planes& position, const Planes& normal, const Planes& irradiance) {
                          const Buffer& masks = state.cull(executor, gather_, position, normal, vpls, order);
+                         if (shadows_)
+                             return shadows_->recordGather(executor, position, normal, masks, irradiance, state.counts());
                          gather_.recordGather(executor, position, normal, vpls, order, masks, irradiance, state.counts());
                      });
     }
 
     void renderPoints(Executor& executor, const Points& points) override {
         checkPoints(device_, points);
+        if (shadows_) return shadows_->renderPoints(executor, points);
         if (!points_) points_.emplace(device_);
         points_->render(executor, points, sampling_.vpls(), sampling_.order());
     }
@@ -96,9 +107,13 @@ public:
         // A twin, so that this technique's frame stays as it is; kernels belong to the device.
         LWRsmDesc desc = desc_;
         desc.vpls = std::min(desc.vpls, kPrewarmVpls);
-        RsmTechnique twin(device_, desc);
-        exerciseTechnique(executor, twin);
-        exercisePoints(executor, twin);
+        using Source = RsmShadows::Source;
+        for (const Source source : {Source::triangles, Source::surfels, Source::screen}) {  // each that a frame may bring
+            RsmTechnique twin(device_, desc, source);
+            exerciseTechnique(executor, twin);
+            exercisePoints(executor, twin);
+            if (!shadows_) break;
+        }
     }
 
     Report report() override;
@@ -107,6 +122,9 @@ public:
 
 private:
     TemporalHistory* history() { return history_ ? &*history_ : nullptr; }
+    // As the gather walks them.
+    const Buffer& vpls() const { return shadows_ ? shadows_->vpls() : sampling_.vpls(); }
+    lw_subset_order order() const { return shadows_ ? shadows_->order() : sampling_.order(); }
 
     Device& device_;
     LWRsmDesc desc_;
@@ -116,10 +134,11 @@ private:
     VplSampling sampling_;
     InterleavedGather gather_;
     std::optional<JointBilateral> bilateral_;  // half resolution only
+    std::optional<RsmShadows> shadows_;        // with visibility only
     std::optional<TemporalHistory> history_;
     PerView<InterleavedView> states_;
     std::optional<RsmPoints> points_;  // from the first lwRenderPoints on
-    std::vector<LWChoice> unused_;  // of the last update
+    std::vector<LWChoice> choices_;  // of the last update
 };
 
 Report RsmTechnique::report() {
@@ -128,30 +147,31 @@ Report RsmTechnique::report() {
     // With every texel a VPL, the list also holds the dark padding of the maps' rows.
     const std::uint32_t padding = desc_.vpls == 0 ? rsms_.texels.width - rsms_.texelCount : 0;
     report.counts.push_back({"vpls", sampling_.vplCount() - padding});
-    for (const LWChoice& choice : unused_) report.choose(choice.name, choice.reason);
+    for (const LWChoice& choice : choices_) report.choose(choice.name, choice.reason);
     report.counts.push_back({"rejected_pixels", 0});
     report.counts.push_back({"upsample_fallbacks", 0});
     report.counts.push_back({"saturated_pixels", 0});
     if (history_) report.counts.push_back({"history_new", 0});
-    states_.each([&](const InterleavedView& state) { state.report(device_, report, sampling_.order()); });
+    states_.each([&](const InterleavedView& state) { state.report(device_, report, order()); });
+    if (shadows_) shadows_->report(report);
     if (points_) points_->report(report);
     return report;
 }
 
 std::vector<DebugView> RsmTechnique::debugViews(const View* view) {
     std::vector<DebugView> views;
-    if (sampling_.vpls())
+    if (vpls())
         views.push_back({"vpls", "one column per slot: position xyz (m), unit normal xyz, flux rgb (W), area (m^2)",
-                         VplSampling::debugShape(sampling_.order()),
+                         VplSampling::debugShape(order()),
                          [this](Executor& executor, const Planes& planes) {
-                             sampling_.recordPlanes(executor, sampling_.vpls(), planes);
+                             sampling_.recordPlanes(executor, vpls(), planes);
                          }});
     if (const InterleavedView* state = states_.find(view)) state->addDebugViews(views, history());
     return views;
 }
 
 std::uint64_t RsmTechnique::bytes() const {
-    std::uint64_t total = rsms_.bytes() + sampling_.bytes() + (points_ ? points_->bytes() : 0);
+    std::uint64_t total = rsms_.bytes() + sampling_.bytes() + (points_ ? points_->bytes() : 0) + (shadows_ ? shadows_->bytes() : 0);
     states_.each([&](const InterleavedView& state) { total += state.bytes(); });
     return total;
 }
@@ -160,16 +180,21 @@ std::uint64_t RsmTechnique::bytes() const {
 
 std::uint64_t estimateBytes(const void* desc, const LWViewDesc& view, const FrameShape& shape) {
     const LWRsmDesc& rsm = *static_cast<const LWRsmDesc*>(desc);
-    return RsmInput::estimateBytes(shape) + VplSampling::estimateBytes(samplingOptions(rsm), shape) +
-           InterleavedView::estimateBytes(interleavedOptions(rsm), view, shape.uploads,
-                                          VplSampling::orderOf(samplingOptions(rsm), shape));
+    lw_subset_order order = VplSampling::orderOf(samplingOptions(rsm), shape);
+    std::uint64_t total = RsmInput::estimateBytes(shape) + VplSampling::estimateBytes(samplingOptions(rsm), shape);
+    if (isShadowed(rsm)) {
+        const std::uint32_t count = std::uint32_t(order.count);
+        total += RsmShadows::estimateBytes(rsm, count, shape);
+        order = RsmShadows::orderOf(rsm, count);
+    }
+    return total + InterleavedView::estimateBytes(interleavedOptions(rsm), view, shape.uploads, order);
 }
 
 }  // namespace
 
 const TechniqueEntry& rsmEntry() {
     static const TechniqueEntry entry = techniqueEntry<RsmTechnique, LWRsmDesc, lwDefaultRsm>(
-        "rsm", "virtual point lights from reflective shadow maps, gathered without visibility", 1, rsmParameters(),
+        "rsm", "virtual point lights from reflective shadow maps, gathered without visibility or with that of voxels", 1, rsmParameters(),
         rsmSettings(), estimateBytes);
     return entry;
 }

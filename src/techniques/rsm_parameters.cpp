@@ -11,11 +11,14 @@ namespace {
 
 constexpr const char* kSamplingNames[] = {"flux", "uniform", nullptr};
 constexpr const char* kResolutionNames[] = {"full", "half", nullptr};
+constexpr const char* kVisibilityNames[] = {"none", "voxel", nullptr};
+constexpr double kVoxelsValues[] = {32, 64, 128, 256};
 constexpr double kInterleaveValues[] = {1, 2, 4, 8};
 constexpr double kInterleaveSweep[] = {1, 4};
 constexpr double kVplSweep[] = {64, 256, 1024, 4096};
 constexpr double kSamplingSweep[] = {LW_SAMPLING_FLUX, LW_SAMPLING_UNIFORM};
 constexpr double kResolutionSweep[] = {LW_RESOLUTION_FULL, LW_RESOLUTION_HALF};
+constexpr double kVisibilitySweep[] = {LW_RSM_VISIBILITY_NONE, LW_RSM_VISIBILITY_VOXEL};
 
 }  // namespace
 
@@ -41,7 +44,14 @@ const std::vector<LWParameter>& rsmParameters() {
         parameter("seed", "shift of the sample set; 0: unshifted", LW_PARAMETER_UINT, offsetof(LWRsmDesc, seed), 0,
                   4294967295.0, 0),
         historyParameter(offsetof(LWRsmDesc, history)),
-        historyClampParameter(offsetof(LWRsmDesc, historyClamp))};
+        historyClampParameter(offsetof(LWRsmDesc, historyClamp)),
+        swept(choosing(parameter("visibility", "of VPLs: none, or past the voxels that the scene occupies, shared by clusters of VPLs",
+                                 LW_PARAMETER_ENUM, offsetof(LWRsmDesc, visibility), 0, 1, LW_RSM_VISIBILITY_NONE),
+                       kVisibilityNames),
+              kVisibilitySweep),
+        allowing(parameter("voxels", "a side of the grid that visibility=voxel looks through: finer occluders; memory and drawing time with its cube",
+                           LW_PARAMETER_UINT, offsetof(LWRsmDesc, voxels), 32, 256, 64),
+                 kVoxelsValues)};
     return table;
 }
 
@@ -64,4 +74,6 @@ extern "C" void lwDefaultRsm(LWRsmDesc* desc) {
     desc->filter = 1;
     desc->resolution = LW_RESOLUTION_FULL;
     desc->historyClamp = lightwell::TemporalHistoryOptions{}.clamp;
+    desc->visibility = LW_RSM_VISIBILITY_NONE;
+    desc->voxels = 64;
 }

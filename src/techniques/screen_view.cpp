@@ -57,13 +57,7 @@ ScreenView::ScreenView(Device& device, const ScreenOptions& options)
       upsampleCounts_(device, kCountBytes, "counts of a view") {}
 
 void ScreenView::check(Device& device, const View& view, const LWOutput& output, const char* technique) {
-    for (const auto& [image, name] : {std::pair{&output.specularRadiance, "specularRadiance"}, {&output.shadow, "shadow"}})
-        if (isAsked(*image))
-            fail(LW_ERROR_UNSUPPORTED, "output.", name, ": technique ", technique,
-                 " makes irradiance, validity and ambientOcclusion only");
-    OutputTarget::check(device, view, output.irradiance, 3, "output.irradiance");
-    OutputTarget::check(device, view, output.validity, 1, "output.validity");
-    OutputTarget::check(device, view, output.ambientOcclusion, 1, "output.ambientOcclusion");
+    checkLightOutputs(device, view, output, technique, kMakesAmbient);
 }
 
 // Memory of what this frame needs, for the view's largest size.

@@ -58,6 +58,7 @@ public:
         if (interleavedOptions(desc).half) bilateral_.emplace(device);
         if (desc.history) history_.emplace(device, interleavedOptions(desc).history);
         if (desc.autoError > 0.0f) plan_.emplace(device, planOptions(desc));
+        if (desc.visibility == LW_VISIBILITY_VOXEL) shadows_.emplace(device, desc.voxels);
         if (desc.compensation > 0) compensation_.emplace(device, compensationOptions(desc));
     }
 
@@ -88,6 +89,7 @@ public:
             // All stages, also in the dark: what is left of a lit frame would be shown, counted and warm the next clusters.
             if (i + 1 < desc_.bounces) lists.push_back({recordNext(executor, i)});
         }
+        if (shadows_) recordShadows(executor, frame, restart);
         gather_.recordOrder(executor, lists);
         lists_ = std::move(lists);
 
@@ -102,7 +104,8 @@ public:
         checkLightOutputs(device_, *view, output, "ssvp");
         InterleavedView& state = states_.get(
             view, [&] { return std::make_unique<InterleavedView>(device_, interleavedOptions(desc_), *view); });
-        const ClusterMaps maps = mapsRead();
+        const std::optional<VoxelSights> sights = sightsRead();
+        const ClusterMaps maps = mapsRead(sights);
         state.render(executor, *view, gbuffer, output, {passes_, bilateral_ ? &*bilateral_ : nullptr, history()},
                      [&](const Planes& position, const Planes& normal, const Planes& irradiance) {
                          const Buffer& masks = state.cull(executor, passes_, position, normal, gather_.vpls(), gather_.order());
@@ -117,7 +120,8 @@ public:
     void renderPoints(Executor& executor, const Points& points) override {
         checkPoints(device_, points);
         if (!points_) points_.emplace(device_, visibilityOf(desc_));
-        points_->render(executor, points, lists_, mapsRead());
+        const std::optional<VoxelSights> sights = sightsRead();
+        points_->render(executor, points, lists_, mapsRead(sights));
     }
 
     void lose() override { continuity_.lose(); }
@@ -159,11 +163,23 @@ private:
         if (plan_) plan_->recordBounce(executor, index, stage.clusters, stage.next);
         return {stage.next.vpls(), stage.next.vplCount()};
     }
+    // What the clusters of all shadowed bounces see past voxels.
+    void recordShadows(Executor& executor, const LWFrame& frame, bool restart) {
+        shadows_->recordVoxels(executor, frame, rsms_, maps_.surfaces(), restart);
+        std::vector<VoxelVisibility::Clusters> lists;
+        for (std::size_t i = 0; i < shadowedOf(desc_); ++i)
+            lists.push_back({stages_[i].clusters.clusters(), stages_[i].clusters.clusterCount()});
+        shadows_->recordSights(executor, lists);
+    }
+    std::optional<VoxelSights> sightsRead() const {
+        if (!shadows_) return std::nullopt;
+        return shadows_->sights();
+    }
     // Of what is shadowed.
-    ClusterMaps mapsRead() const {
+    ClusterMaps mapsRead(const std::optional<VoxelSights>& sights) const {
         const ParaboloidMap &first = maps_.maps(0), &second = maps_.maps(shadowedOf(desc_) > 1 ? 1 : 0);
         return {first.frames(), first.records(), second.frames(), second.records(), stages_[0].clusters.clusterCount(),
-                first.size()};
+                first.size(), sights ? &*sights : nullptr};
     }
     std::uint32_t shadowingClusters() const {
         std::uint32_t count = 0;
@@ -187,6 +203,7 @@ private:
     ClusteredGather gather_;
     std::optional<JointBilateral> bilateral_;  // half resolution only
     std::optional<TemporalHistory> history_;
+    std::optional<VoxelShadows> shadows_;  // with visibility through voxels only
     std::optional<BoundingCompensation> compensation_;
     PerView<InterleavedView> states_;
     std::optional<SsvpPoints> points_;  // from the first lwRenderPoints on
@@ -197,6 +214,7 @@ Report SsvpTechnique::report() {
     Report report;
     rsms_.report(report);
     maps_.report(report);
+    if (shadows_) shadows_->report(report);
     report.counts.push_back({"vpls", sampling_.vplCount()});
     report.counts.push_back({"clusters", stages_[0].clusters.clusterCount()});
     constexpr const char* kLater[] = {"second_vpls", "third_vpls", "fourth_vpls"};
@@ -243,14 +261,15 @@ std::vector<DebugView> SsvpTechnique::debugViews(const View* view) {
         views.push_back({"visibility", "clusters one below the other: the share of its light that each pixel is taken to see",
                          ClusteredGather::visibilityShape(position, shadowingClusters()),
                          [this, position, normal = state->normal()](Executor& executor, const Planes& planes) {
-                             gather_.recordVisibility(executor, position, normal, mapsRead(), shadowingClusters(), planes);
+                             const std::optional<VoxelSights> sights = sightsRead();
+                             gather_.recordVisibility(executor, position, normal, mapsRead(sights), shadowingClusters(), planes);
                          }});
     return views;
 }
 
 std::uint64_t SsvpTechnique::bytes() const {
     std::uint64_t total = rsms_.bytes() + sampling_.bytes() + maps_.bytes() + gather_.bytes() +
-                          (plan_ ? plan_->bytes() : 0) + (compensation_ ? compensation_->bytes() : 0) +
+                          (plan_ ? plan_->bytes() : 0) + (shadows_ ? shadows_->bytes() : 0) + (compensation_ ? compensation_->bytes() : 0) +
                           (points_ ? points_->bytes() : 0);
     for (const Stage& stage : stages_) total += stage.clusters.bytes() + stage.next.bytes();
     states_.each([&](const InterleavedView& state) { total += state.bytes(); });
@@ -261,7 +280,7 @@ std::uint64_t SsvpTechnique::bytes() const {
 
 const TechniqueEntry& ssvpEntry() {
     static const TechniqueEntry entry = techniqueEntry<SsvpTechnique, LWSsvpDesc, lwDefaultSsvp>(
-        "ssvp", "clustered virtual point lights with visibility from paraboloid maps, and a second bounce", 2, ssvpParameters(),
+        "ssvp", "clustered virtual point lights with visibility from paraboloid maps or voxels, and a second bounce", 2, ssvpParameters(),
         ssvpSettings(), estimateSsvpBytes);
     return entry;
 }

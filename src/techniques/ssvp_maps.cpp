@@ -10,11 +10,17 @@ namespace {
 
 using Source = SsvpMaps::Source;
 
-// Maps serve the visibility and the second bounce.
-bool needsMaps(const LWSsvpDesc& desc) { return desc.visibility != LW_VISIBILITY_NONE || desc.bounces > 1; }
+// Occluders serve the visibility and further bounces.
+bool needsOccluders(const LWSsvpDesc& desc) { return desc.visibility != LW_VISIBILITY_NONE || desc.bounces > 1; }
+
+// Maps of a stage's clusters serve the visibility, but that through voxels, and the bounce after it.
+bool drawsMaps(const LWSsvpDesc& desc, std::size_t stage) {
+    const bool looks = desc.visibility == LW_VISIBILITY_HARD || desc.visibility == LW_VISIBILITY_SOFT;
+    return looks || stage + 1 < desc.bounces;
+}
 
 Source chosenSource(const LWSsvpDesc& desc, std::uint32_t triangles, std::uint32_t surfels) {
-    if (!needsMaps(desc)) return Source::none;
+    if (!needsOccluders(desc)) return Source::none;
     const Source sampled = surfels ? Source::surfels : Source::sampledTriangles;
     switch (desc.occluders) {
         case LW_OCCLUDERS_TRIANGLES:
@@ -46,6 +52,18 @@ const char* describe(Source source) {
             return "RSM texels and source views, splatted anew in every frame";
         default:
             return "none: one bounce without visibility asks for no maps";
+    }
+}
+
+// With visibility through voxels; what further bounces are drawn from is the same.
+const char* describeVoxels(Source source) {
+    switch (source) {
+        case Source::surfels:
+            return "the host's surfels: every voxel that they touch";
+        case Source::screen:
+            return "voxels of RSM texels and source views, anew in every frame";
+        default:
+            return "triangles: every voxel that they touch";
     }
 }
 
@@ -86,7 +104,8 @@ void SsvpMaps::forget() {
 
 void SsvpMaps::import(Executor& executor, const LWFrame& frame, const RsmInput& rsms) {
     const Source source = sourceOf(frame);
-    if (source != source_)  // revisions count within a source
+    isOther_ = source != source_;  // revisions count within a source
+    if (isOther_)
         for (Stage& stage : stages_) stage.maps.redrawAll();
     source_ = source;
     switch (source) {
@@ -106,6 +125,15 @@ void SsvpMaps::import(Executor& executor, const LWFrame& frame, const RsmInput& 
     if (source != Source::screen) screen_.clear();
 }
 
+VoxelSurfaces SsvpMaps::surfaces() const {
+    VoxelSurfaces surfaces;
+    const bool isTriangles = source_ == Source::triangles || source_ == Source::sampledTriangles;
+    if (isTriangles) surfaces.triangles = &triangles_;
+    else surfaces.surfels = surfels();
+    surfaces.isOther = isOther_;
+    return surfaces;
+}
+
 SurfelSet SsvpMaps::surfels() const {
     return source_ == Source::surfels ? hostSurfels_.surfels()
            : source_ == Source::screen ? screen_.surfels()
@@ -114,8 +142,9 @@ SurfelSet SsvpMaps::surfels() const {
 
 void SsvpMaps::record(Executor& executor, std::size_t index, const Buffer& clusters, std::uint32_t clusterCount) {
     Stage& stage = stages_[index];
-    if (source_ == Source::none) clusterCount = 0;
-    if (source_ == Source::none || source_ == Source::triangles) {
+    const bool draws = source_ != Source::none && drawsMaps(desc_, index);
+    if (!draws) clusterCount = 0;
+    if (!draws || source_ == Source::triangles) {
         stage.maps.record(executor, clusters, clusterCount, triangles_);
         return;
     }
@@ -129,7 +158,7 @@ void SsvpMaps::record(Executor& executor, std::size_t index, const Buffer& clust
 }
 
 std::vector<LWChoice> SsvpMaps::choices(const LWFrame& frame) const {
-    std::vector<LWChoice> choices = {{"occluders", describe(source_)}};
+    std::vector<LWChoice> choices = {{"occluders", desc_.visibility == LW_VISIBILITY_VOXEL ? describeVoxels(source_) : describe(source_)}};
     const bool isScreen = source_ == Source::screen;
     if (isScreen && !hasRsm(frame) && frame.sourceViewCount == 0)
         choices.push_back({"frame.geometry", "neither triangles, surfels, RSMs nor source views: nothing blocks, and there is "
@@ -149,9 +178,9 @@ void SsvpMaps::report(Report& report) const {
     else if (source_ == Source::screen) screen_.report(report);
     else triangles_.report(report);
     if (source_ == Source::sampledTriangles) report.counts.push_back({"surfels", sampling_.surfels().count});
-    for (const Stage& stage : stages_) {
-        stage.maps.report(report);
-        if (source_ != Source::none && source_ != Source::triangles) stage.holes.report(report);
+    for (std::size_t i = 0; i < stages_.size(); ++i) {
+        stages_[i].maps.report(report);
+        if (source_ != Source::none && source_ != Source::triangles && drawsMaps(desc_, i)) stages_[i].holes.report(report);
     }
 }
 
@@ -168,9 +197,8 @@ std::uint64_t SsvpMaps::estimateBytes(const LWSsvpDesc& desc, const std::vector<
     std::uint64_t total = 0;
     if (source == Source::triangles || source == Source::sampledTriangles) total += GeometryInput::estimateBytes(shape.triangles);
     if (source == Source::none || source == Source::triangles) {
-        const bool draws = source == Source::triangles;
-        for (const std::uint32_t clusters : clusterCounts)
-            total += ParaboloidMap::estimateBytes(desc.mapSize, draws ? clusters : 0);
+        for (std::size_t i = 0; i < clusterCounts.size(); ++i)
+            total += ParaboloidMap::estimateBytes(desc.mapSize, source == Source::triangles && drawsMaps(desc, i) ? clusterCounts[i] : 0);
         return total;
     }
     std::uint64_t surfels = 0;
@@ -184,9 +212,13 @@ std::uint64_t SsvpMaps::estimateBytes(const LWSsvpDesc& desc, const std::vector<
         surfels = sampled;
         total += SurfelSampling::estimateBytes(shape.triangles, sampled);
     }
-    for (const std::uint32_t clusters : clusterCounts)
-        total += ParaboloidMap::estimatePlacesBytes(desc.mapSize, clusters) + SurfelSplat::estimateBytes(surfels, clusters) +
-                 PullPush::estimateBytes(desc.mapSize, clusters);
+    for (std::size_t i = 0; i < clusterCounts.size(); ++i) {
+        const std::uint32_t clusters = clusterCounts[i];
+        total += !drawsMaps(desc, i) ? ParaboloidMap::estimateBytes(desc.mapSize, 0)
+                                     : ParaboloidMap::estimatePlacesBytes(desc.mapSize, clusters) +
+                                           SurfelSplat::estimateBytes(surfels, clusters) +
+                                           PullPush::estimateBytes(desc.mapSize, clusters);
+    }
     return total;
 }
 

@@ -1,4 +1,4 @@
-// Technique ssvp's maps: what occludes, from which of the host's inputs, and the passes that draw it.
+// Technique ssvp's occluders, from which of the host's inputs, and the passes that draw maps of them.
 #pragma once
 
 #include <cstdint>
@@ -14,6 +14,7 @@
 #include "passes/surfel_sampling.h"
 #include "passes/surfel_splat.h"
 #include "techniques/technique.h"
+#include "techniques/voxel_shadows.h"
 
 namespace lightwell {
 
@@ -33,6 +34,9 @@ public:
     // The maps of a stage's clusters (lw_cluster each); drawn anew only where a medoid or what is drawn has moved. What the
     // screen shows moves with every frame.
     void record(Executor& executor, std::size_t stage, const Buffer& clusters, std::uint32_t clusterCount);
+
+    // What voxels are made of, of the last import().
+    VoxelSurfaces surfaces() const;
 
     const ParaboloidMap& maps(std::size_t stage) const { return stages_[stage].maps; }
     ParaboloidMap& maps(std::size_t stage) { return stages_[stage].maps; }
@@ -59,6 +63,7 @@ private:
     Device& device_;
     LWSsvpDesc desc_;
     Source source_ = Source::none;
+    bool isOther_ = false;  // than in the import before
     GeometryInput triangles_;
     SurfelInput hostSurfels_;
     ScreenSurfels screen_;

@@ -50,6 +50,8 @@ ClusterVisibility visibilityOf(const LWSsvpDesc& desc) {
             return ClusterVisibility::none;
         case LW_VISIBILITY_SOFT:
             return ClusterVisibility::soft;
+        case LW_VISIBILITY_VOXEL:
+            return ClusterVisibility::voxel;
         default:
             return ClusterVisibility::hard;
     }
@@ -88,16 +90,19 @@ std::uint64_t estimateSsvpBytes(const void* desc, const LWViewDesc& view, const 
         std::uint32_t(VplSampling::orderOf(samplingOptions(ssvp), shape).count)},
         clusterCounts;
     std::uint64_t total = 0;
+    std::uint32_t shadowing = 0;  // clusters
     for (std::size_t i = 0; i < stagesOf(ssvp); ++i) {
         const KMeansOptions options = clusterOptions(ssvp, i);
         clusterCounts.push_back(options.clusters ? options.clusters : counts[i]);
         total += KMeans::estimateBytes(options, counts[i]);
+        if (i < shadowedOf(ssvp)) shadowing += clusterCounts[i];
         if (i + 1 >= ssvp.bounces) break;
         counts.push_back(clusterCounts[i] * ssvp.secondVpls);
         total += SecondBounce::estimateBytes(nextOptions(ssvp, i), clusterCounts[i]);
     }
     if (ssvp.autoError > 0.0f)
         total += SsvpPlan::estimateBytes(planOptions(ssvp), shape.texels ? shape.rows : 0);
+    if (ssvp.visibility == LW_VISIBILITY_VOXEL) total += VoxelShadows::estimateBytes(ssvp.voxels, shadowing, shape);
     if (ssvp.compensation > 0) total += BoundingCompensation::estimateBytes(compensationOptions(ssvp));
     return total + RsmInput::estimateBytes(shape) +
            VplSampling::estimateBytes(samplingOptions(ssvp), shape) +

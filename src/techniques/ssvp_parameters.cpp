@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* kSamplingNames[] = {"flux", "uniform", nullptr};
 constexpr const char* kResolutionNames[] = {"full", "half", nullptr};
-constexpr const char* kVisibilityNames[] = {"none", "hard", "soft", nullptr};
+constexpr const char* kVisibilityNames[] = {"none", "hard", "soft", "voxel", nullptr};
 constexpr const char* kOccludersNames[] = {"auto", "triangles", "surfels", "screen", nullptr};
 constexpr const char* kDirectionsNames[] = {"cosine", "disc", "square", nullptr};
 constexpr double kInterleaveValues[] = {1, 2, 4, 8};
@@ -19,7 +19,8 @@ constexpr double kGroupValues[] = {1, 2, 4, 8, 16, 32, 64};
 constexpr double kMapSizeValues[] = {64, 96, 128, 192, 256, 384, 512};
 constexpr double kVplSweep[] = {256, 1024};
 constexpr double kClusterSweep[] = {4, 8, 16, 32};
-constexpr double kVisibilitySweep[] = {LW_VISIBILITY_HARD, LW_VISIBILITY_SOFT};
+constexpr double kVisibilitySweep[] = {LW_VISIBILITY_HARD, LW_VISIBILITY_SOFT, LW_VISIBILITY_VOXEL};
+constexpr double kVoxelsValues[] = {32, 64, 128, 256};
 constexpr double kBouncesSweep[] = {1, 2};
 constexpr double kResolutionSweep[] = {LW_RESOLUTION_FULL, LW_RESOLUTION_HALF};
 
@@ -47,8 +48,8 @@ std::vector<LWParameter> makeTable() {
         allowing(uint("map_size", "texels a side of a cluster's map: finer occluders, memory and drawing time with its square",
                       offsetof(LWSsvpDesc, mapSize), 64, 512, 128),
                  kMapSizeValues),
-        swept(oneOf("visibility", "of VPLs: none, the map's nearest texel, or its four nearest",
-                    offsetof(LWSsvpDesc, visibility), kVisibilityNames, 2, LW_VISIBILITY_HARD),
+        swept(oneOf("visibility", "of VPLs: none, the map's nearest texel, its four nearest, or, instead of maps, past the voxels that occluders touch",
+                    offsetof(LWSsvpDesc, visibility), kVisibilityNames, 3, LW_VISIBILITY_HARD),
               kVisibilitySweep),
         swept(uint("bounces", "indirect bounces; those after the first with VPLs drawn from the maps of the bounce before", offsetof(LWSsvpDesc, bounces), 1, 4, 2),
               kBouncesSweep),
@@ -77,7 +78,10 @@ std::vector<LWParameter> makeTable() {
         historyParameter(offsetof(LWSsvpDesc, history)),
         historyClampParameter(offsetof(LWSsvpDesc, historyClamp)),
         uint("compensation", "samples a pixel of the surfaces around it, for near light that VPLs of some size lack: corners brighten, time grows; 0: none",
-             offsetof(LWSsvpDesc, compensation), 0, 64, 0)};
+             offsetof(LWSsvpDesc, compensation), 0, 64, 0),
+        allowing(uint("voxels", "a side of the grid that visibility=voxel looks through: finer occluders; memory and drawing time with its cube",
+                      offsetof(LWSsvpDesc, voxels), 32, 256, 64),
+                 kVoxelsValues)};
 }
 
 }  // namespace
@@ -115,4 +119,5 @@ extern "C" void lwDefaultSsvp(LWSsvpDesc* desc) {
     desc->filter = 1;
     desc->resolution = LW_RESOLUTION_FULL;
     desc->historyClamp = lightwell::TemporalHistoryOptions{}.clamp;
+    desc->voxels = 64;
 }

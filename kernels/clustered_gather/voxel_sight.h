@@ -1,0 +1,58 @@
+// How far an eye's light reaches surfaces past the voxels that things lie in, as voxel_visibility swept it.
+#ifndef LW_VOXEL_SIGHT_H
+#define LW_VOXEL_SIGHT_H
+
+#include "shared/surface.h"
+#include "shared/voxel_visibility_types.h"
+
+#if LW_WIDTH == 1
+LW_FN lanei gather_bytes(__global const uchar* p, lanei i) { return p[i]; }
+#else
+#define LW_SIGHT_LANE(l) p[i.s##l]
+LW_FN lanei gather_bytes(__global const uchar* p, lanei i) { return (lanei)LW_LANES(LW_SIGHT_LANE); }
+#endif
+
+// Of a coordinate in voxels' centres: the lower of the two voxels that it lies between, and how far it is on to the upper one.
+LW_FN lanei sight_cell(real at, int size, real* onward) {
+    const real within = clamp(at, (real)0.0f, (real)((float)size - 1.0f));
+    const lanei cell = min(to_lanei(within), (lanei)(size - 2));
+    *onward = within - to_real(cell);
+    return cell;
+}
+
+// Adds a voxel's weight, and as much of it as the eye's light does not reach it.
+LW_FN void add_sight(real* sum, real* missing, real weight, lanei byte) {
+    const mask isSolid = byte >= LW_SIGHT_SOLID;
+    const real w = weight * select_((real)1.0f, (real)LW_SIGHT_SOLID_WEIGHT, isSolid);
+    *sum += w;
+    *missing = fma_(w, to_real(LW_SIGHT_FULL - (byte & LW_SIGHT_FULL)), *missing);
+}
+
+LW_FN mask outside_(real at, float size) { return or_(at < (real)0.0f, at > (real)size); }
+
+// The share of the light of eye number `eye` that reaches the surfaces: of the eight voxels about the place one clearance off the
+// surface, those that hold nothing count. 1 exactly where all of these are lit fully, and outside the grid.
+LW_FN real voxel_sight(__global const uchar* sights, __global const LwVoxelEye* eyes, __global const LwVoxelSight* grid, int eye,
+                       const lw_surface s) {
+    if (eyes[eye].position.w == 0.0f) return (real)1.0f;
+    const int size = grid->size;
+    const float4 origin = grid->origin;
+    const real off = fabs(s.nx) + fabs(s.ny) + fabs(s.nz);
+    const real px = (s.px - origin.x) * origin.w, py = (s.py - origin.y) * origin.w, pz = (s.pz - origin.z) * origin.w;
+    const mask outside = or_(or_(outside_(px, (float)size), outside_(py, (float)size)), outside_(pz, (float)size));
+    real tx, ty, tz;
+    const lanei x = sight_cell(fma_(s.nx, off, px) - 0.5f, size, &tx), y = sight_cell(fma_(s.ny, off, py) - 0.5f, size, &ty),
+                z = sight_cell(fma_(s.nz, off, pz) - 0.5f, size, &tz);
+    __global const uchar* sight = sights + LW_SIGHT_PAD + (long)eye * size * size * size;
+    const lanei first = x + size * (y + size * z);
+    real sum = (real)0.0f, missing = (real)0.0f;
+    LW_UNROLL for (int i = 0; i < 4; ++i) {
+        const real w = ((i & 1) ? ty : 1.0f - ty) * ((i & 2) ? tz : 1.0f - tz);
+        const lanei at = first + ((i & 1) * size + (i >> 1) * size * size);
+        add_sight(&sum, &missing, w * (1.0f - tx), gather_bytes(sight, at));
+        add_sight(&sum, &missing, w * tx, gather_bytes(sight, at + 1));
+    }
+    return select_(1.0f - missing / ((float)LW_SIGHT_FULL * sum), (real)1.0f, outside);
+}
+
+#endif

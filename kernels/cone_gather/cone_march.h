@@ -1,0 +1,142 @@
+// One cone through nested grids of voxels, front to back (Crassin et al. 2011): acc += (1 - acc.a) sample, premultiplied.
+//
+// LW_CONE_CASCADES: how many grids. LW_CONE_CORRECT 1: opacity follows the length of steps. LW_CONE_OPEN 1: ambient occlusion as well.
+#ifndef LW_CONE_MARCH_H
+#define LW_CONE_MARCH_H
+
+#include "cone_volume.h"
+#include "shared/lpv_types.h"
+
+#ifndef LW_CONE_CASCADES
+#define LW_CONE_CASCADES 1
+#endif
+#ifndef LW_CONE_CORRECT
+#define LW_CONE_CORRECT 1
+#endif
+#ifndef LW_CONE_OPEN
+#define LW_CONE_OPEN 0
+#endif
+
+typedef struct {
+    real r, g, b;   // W/(sr m^2)
+    real through;   // what still gets through
+    real occluded;  // by the steps' dimming
+} cone_light;
+
+// Where rays begin, in voxels from each grid's corner.
+typedef struct {
+    real x[LW_CONE_CASCADES], y[LW_CONE_CASCADES], z[LW_CONE_CASCADES];
+} cone_origin;
+
+LW_FN mask in_grid(real x, real y, real z, float low, float high) {
+    const real nearest = fmin(x, fmin(y, z)), farthest = fmax(x, fmax(y, z));
+    return and_(nearest >= low, farthest <= high);
+}
+
+// How far along d the grid reaches, in its voxels.
+LW_FN real way_out(real at, real d, float size) {
+    const real slow = (real)1e-20f, pace = select_(d, slow, fabs(d) < slow), inverse = 1.0f / pace;
+    return fmax(-at * inverse, (size - at) * inverse);
+}
+
+// Of a = 1 - t: 1 - t^e over a, for e > 0. log2 by 2 atanh(y) / ln 2, y = -a / (2 - a) after t's exponent is taken out, so that
+// small opacities, most of them, keep their digits; powers of two by a polynomial. Both off by 2e-6 at most.
+LW_FN real corrected(real a, float e) {
+    const real t = 1.0f - a;
+    const lanei bits = as_lanei_(t), exponent = (bits - 0x3f3504f3) >> 23;
+    const real m = as_real_(bits - (exponent << 23)), y = (m - 1.0f) / (m + 1.0f), y2 = y * y;
+    const real series = fma_(fma_(fma_(y2, (real)0.4121985f, (real)0.5770780f), y2, (real)0.9617967f), y2, (real)2.8853901f);
+    const real power = e * fma_(y, series, to_real(exponent));
+    // 2^power = 2^n (1 + f q), |f| <= 1/2.
+    const real bounded = fmax(power, (real)-126.0f);
+    const lanei n = to_lanei(bounded - 0.5f);
+    const real f = bounded - to_real(n);
+    const real q = fma_(fma_(fma_(fma_(fma_((real)1.5353362e-4f, f, (real)1.3398874e-3f), f, (real)9.6184373e-3f), f, (real)5.5503324e-2f), f,
+                             (real)2.4022648e-1f), f, (real)6.9314718e-1f);
+    const real whole = as_real_((n + 127) << 23), taken = (1.0f - whole) - whole * (f * q);
+    const real ratio = select_(taken / a, (real)e, a < 1e-6f);
+    return select_(ratio, (real)1.0f, t <= 0.0f);
+}
+
+// What one sample adds: `through` of the lanes that it counts for, 0 of the others.
+LW_FN void add_sample(cone_light* l, const cone_sample* s, const LwConeStep* step, float exponent, real through) {
+    real weight = through;
+#if LW_CONE_CORRECT
+    if (exponent != 1.0f) weight *= corrected(s->a, exponent);
+#endif
+    const real opacity = weight * s->a;
+#if LW_CONE_LIGHT
+    weight *= step->light;
+    l->r = fma_(weight, s->r, l->r);
+    l->g = fma_(weight, s->g, l->g);
+    l->b = fma_(weight, s->b, l->b);
+#endif
+#if LW_CONE_OPEN
+    l->occluded = fma_((real)step->dimming, opacity, l->occluded);
+#endif
+    l->through -= opacity;
+}
+
+// The corner of a step's place in grid c; 0: nothing there.
+LW_FN int find_at(cone_corner* corner, const cone_volume* volumes, const cone_origin* from, int c, __global const LwConeStep* step, real dx,
+                  real dy, real dz, mask live, real out) {
+    const real d = (real)step->distance;
+    return find_corner(corner, volumes[c].table + volumes[c].grids.first[step->level], volumes[c].grids.size, step->level,
+                       fma_(dx, d, from->x[c]), fma_(dy, d, from->y[c]), fma_(dz, d, from->z[c]), and_(live, out >= d));
+}
+
+// grid: the one whose voxels the steps are counted in. reach: how far the cone reaches, in voxels of the finest. live: the lanes that
+// it is followed for.
+LW_FN void march(cone_light* l, const cone_volume* volumes, const cone_origin* from, int grid, real dx, real dy, real dz,
+                 __global const LwConeStep* steps, int count, float reach, mask live) {
+    const int last = LW_CONE_CASCADES - 1, size = volumes[0].grids.size;
+    const float most = (float)size, whole = (float)(1 << last), stretch = (float)(1 << grid);
+    const real out = whole * fmin(way_out(from->x[last], dx, most), fmin(way_out(from->y[last], dy, most), way_out(from->z[last], dz, most)));
+    // Steps up to where the last lane leaves the grid are known before there is any light: a count that the processor need not guess.
+    const float end = fmin(reach, max_lane(select_((real)-1.0f, out, live)));
+#if LW_CONE_CASCADES == 1
+    // The next sample's place and brick are looked for before this one's words, so that the one search does not wait for the other.
+    cone_corner corner, next;
+    int has = count > 0 && steps[0].distance <= end && find_at(&corner, volumes, from, 0, steps, dx, dy, dz, live, out), nextHas;
+    for (int i = 0; i < count; ++i, has = nextHas, corner = next) {
+        const LwConeStep step = steps[i];
+        if (step.distance > end) break;
+        nextHas = i + 1 < count && steps[i + 1].distance <= end && find_at(&next, volumes, from, 0, steps + i + 1, dx, dy, dz, live, out);
+        if (!has) continue;
+        const mask lit = and_(corner.has, l->through > LW_CONE_LEAST);
+        if (!any_(lit)) continue;
+        cone_sample s;
+        sample_corner(&s, volumes, step.level, &corner, dx, dy, dz);
+        add_sample(l, &s, &step, step.exponent, select_((real)0.0f, l->through, lit));
+    }
+#else
+    for (int i = 0; i < count; ++i) {
+        const LwConeStep step = steps[i];
+        const float distance = step.distance * stretch;
+        if (distance > end) break;
+        live = and_(live, and_(out >= distance, l->through > LW_CONE_LEAST));
+        if (!any_(live)) break;
+        // The finest grid that has all of the sample; the outermost one whatever it has.
+        mask left = live;
+        const int wanted = step.level + grid;
+        LW_UNROLL for (int c = 0; c < LW_CONE_CASCADES; ++c) {
+            const int level = min(max(wanted - c, 0), volumes[c].grids.levels - 1);
+            const float margin = 0.5f * (float)(1 << level);
+            const real d = (real)(distance / (float)(1 << c));
+            const real x = fma_(dx, d, from->x[c]), y = fma_(dy, d, from->y[c]), z = fma_(dz, d, from->z[c]);
+            mask own = left;
+            if (c < last) own = and_(left, in_grid(x, y, z, margin, most - margin));
+            left = and_(left, not_(own));
+            cone_corner corner;
+            if (!any_(own) || !find_corner(&corner, volumes[c].table + volumes[c].grids.first[level], size, level, x, y, z, own)) continue;
+            cone_sample s;
+            sample_corner(&s, volumes + c, level, &corner, dx, dy, dz);
+            // Of cells coarser than the cone the step is a smaller part.
+            const float exponent = c > wanted ? step.exponent / (float)(1 << (c - wanted)) : step.exponent;
+            add_sample(l, &s, &step, exponent, select_((real)0.0f, l->through, own));
+        }
+    }
+#endif
+}
+
+#endif

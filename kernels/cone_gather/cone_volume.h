@@ -1,0 +1,197 @@
+// Samples of a volume of voxels at LW_WIDTH places: one level, interpolated between eight voxels.
+//
+// LW_CONE_MODE: 0 isotropic, 1 anisotropic, 2 two bands of harmonics. LW_CONE_SIDES 1: the finest level has six sides. LW_CONE_LIGHT
+// 0: opacity alone.
+#ifndef LW_CONE_VOLUME_H
+#define LW_CONE_VOLUME_H
+
+#include "shared/cone_types.h"
+#include "shared/voxel_format.h"
+#include "shared/wide.h"
+
+#ifndef LW_CONE_MODE
+#define LW_CONE_MODE 0
+#endif
+#ifndef LW_CONE_SIDES
+#define LW_CONE_SIDES 0
+#endif
+#ifndef LW_CONE_LIGHT
+#define LW_CONE_LIGHT 1
+#endif
+
+// Of one cascade.
+typedef struct {
+    LwConeGrids grids;
+    __global const int* table;
+    __global const uint* base;
+    __global const uint* mips;
+    int unit;
+} cone_volume;
+
+typedef struct { real r, g, b, a; } cone_sample;  // premultiplied
+
+// The lower of the eight voxels around a place as a word of its plane, and the upper ones' shares.
+typedef struct {
+    lanei at;
+    real x, y, z;
+    mask has;
+} cone_corner;
+
+// at[l] and the word behind it: two voxels along x.
+#if LW_WIDTH == 1
+LW_FN void gather_pairs(__global const uint* words, lanei at, laneu* low, laneu* high) {
+    *low = words[at];
+    *high = words[at + 1];
+}
+#elif LW_WIDTH == 16 && defined(__AVX512F__) && defined(POCL_DEVICE_ADDRESS_BITS)
+typedef long cone_long8 __attribute__((__vector_size__(64)));
+typedef int cone_int8 __attribute__((__vector_size__(32)));
+LW_FN void gather_pairs(__global const uint* words, lanei at, laneu* low, laneu* high) {
+    const cone_long8 none = {0, 0, 0, 0, 0, 0, 0, 0};
+    const void* from = (const void*)(size_t)words;
+    const cone_long8 a = __builtin_ia32_gathersiv8di(none, from, __builtin_astype(at.lo, cone_int8), (unsigned char)255, 4);
+    const cone_long8 b = __builtin_ia32_gathersiv8di(none, from, __builtin_astype(at.hi, cone_int8), (unsigned char)255, 4);
+    const laneu x = __builtin_astype(a, laneu), y = __builtin_astype(b, laneu);
+    *low = shuffle2(x, y, LW_EVEN);
+    *high = shuffle2(x, y, LW_ODD);
+}
+#else
+#define LW_GATHER_LOW(l) words[at.s##l]
+#define LW_GATHER_HIGH(l) words[at.s##l + 1]
+LW_FN void gather_pairs(__global const uint* words, lanei at, laneu* low, laneu* high) {
+    *low = (laneu)LW_LANES(LW_GATHER_LOW);
+    *high = (laneu)LW_LANES(LW_GATHER_HIGH);
+}
+#endif
+
+// A coordinate in cells from the first one's centre. Half a cell from the grid's border inwards the outermost voxels hold: those beyond
+// are empty because there are none.
+LW_FN real from_centre(real x, float scale, float most) {
+    const real q = fmax(fma_(x, (real)scale, (real)-0.5f), (real)0.0f);
+    return select_(q, (real)most, q > most);  // fmin() would look for NaN as well
+}
+
+// Where voxel i of a brick lies in it. (With & the compiler takes a product of 16 bits, at half the latency.)
+LW_FN lanei in_brick(lanei ix, lanei iy, lanei iz) {
+    return ((iz & 7) * LW_VOXEL_STORED + (iy & 7)) * LW_VOXEL_STORED + (ix & 7);
+}
+
+// LW_VOXEL_STRIDE, 23 * 32, times a slot, at less than half of a product's latency.
+LW_FN lanei brick_at(lanei slot) { return (((slot << 4) + (slot << 3)) - slot) << 5; }
+
+// x, y, z: in voxels of the finest level. table: of the level. 0: no live lane has anything there.
+LW_FN int find_corner(cone_corner* c, __global const int* table, int size, int level, real x, real y, real z, mask live) {
+    const float scale = as_float((127 - level) << 23), most = (float)((size >> level) - 1);
+    const real qx = from_centre(x, scale, most), qy = from_centre(y, scale, most), qz = from_centre(z, scale, most);
+    const lanei ix = to_lanei(qx), iy = to_lanei(qy), iz = to_lanei(qz);
+    c->x = qx - to_real(ix);
+    c->y = qy - to_real(iy);
+    c->z = qz - to_real(iz);
+    const int side = size >> level;
+    if (side <= LW_VOXEL_BRICK) {
+        const int slot = table[0];
+        c->has = live;
+        c->at = in_brick(ix, iy, iz) + slot * LW_VOXEL_STRIDE;
+        return slot >= 0;
+    }
+    const int bits = 28 - (int)clz(side);  // of bricks a side
+    const lanei slot = gatheri(table, ((((iz >> 3) << bits) + (iy >> 3)) << bits) + (ix >> 3));
+    c->has = and_(live, slot >= (lanei)0);
+    if (!any_(c->has)) return 0;
+    c->at = brick_at(max(slot, (lanei)0)) + in_brick(ix, iy, iz);
+    return 1;
+}
+
+// One word's share of a sum; opacity not yet scaled.
+LW_FN void add_word(cone_sample* sum, laneu word, real weight, int unit) {
+    sum->a = fma_(to_real(as_lanei_(word & LW_VOXEL_OPACITY_MASK)), weight, sum->a);
+#if LW_CONE_LIGHT
+    const real step = weight * as_real_(((word >> LW_VOXEL_EXPONENT_SHIFT) & LW_VOXEL_EXPONENT_MASK) + (uint)unit);
+    sum->r = fma_(to_real(as_lanei_(word & LW_VOXEL_RED_MASK)), step, sum->r);
+    sum->g = fma_(to_real(as_lanei_(word & LW_VOXEL_GREEN_MASK)), step, sum->g);
+    sum->b = fma_(to_real(as_lanei_(word & LW_VOXEL_BLUE_MASK)), step, sum->b);
+#endif
+}
+
+// The eight voxels' words of one plane, each lane's with `weight`, onto the sum.
+LW_FN void add_plane(cone_sample* sum, __global const uint* words, const cone_corner* c, lanei at, real weight, int unit) {
+    const real upper = weight * c->z, lower = weight - upper;
+    const real w3 = upper * c->y, w2 = upper - w3, w1 = lower * c->y, w0 = lower - w1;
+    const real rows[4] = {w0, w1, w2, w3};
+    LW_UNROLL for (int k = 0; k < 4; ++k) {
+        laneu low, high;
+        gather_pairs(words, at + ((k & 1) ? LW_VOXEL_STORED : 0) + ((k & 2) ? LW_VOXEL_STORED * LW_VOXEL_STORED : 0), &low, &high);
+        const real far = rows[k] * c->x;
+        add_word(sum, low, rows[k] - far, unit);
+        add_word(sum, high, far, unit);
+    }
+}
+
+// Three of six sides, by the squares of the direction's components (whose sum is 1): each axis' plane is the one that a ray meets.
+LW_FN void add_sides(cone_sample* sum, __global const uint* words, const cone_corner* c, int plane, real dx, real dy, real dz, real has,
+                     int unit) {
+    const real none = (real)0.0f;
+    const lanei down = (lanei)0, up = (lanei)plane;
+    add_plane(sum, words, c, c->at + selecti_(down, up, dx > none), has * dx * dx, unit);
+    add_plane(sum, words + 2 * plane, c, c->at + selecti_(down, up, dy > none), has * dy * dy, unit);
+    add_plane(sum, words + 4 * plane, c, c->at + selecti_(down, up, dz > none), has * dz * dz, unit);
+}
+
+#if LW_CONE_MODE == 2 && LW_CONE_LIGHT
+#define LW_CONE_SHARE (3.0f * 0.2820947918f / 511.0f)
+LW_FN real along(laneu word, real dx, real dy, real dz) {
+    const real x = to_real(as_lanei_(word & 1023u)), y = to_real(as_lanei_((word >> 10) & 1023u)), z = to_real(as_lanei_((word >> 20) & 1023u));
+    return fma_(x, dx, fma_(y, dy, z * dz));
+}
+// L = Y0 c0 (1 + 3 share . d), d against the ray, of each voxel before it is interpolated: the product is linear in what was filtered.
+LW_FN void add_harmonics(cone_sample* sum, __global const uint* words, const cone_corner* c, int plane, real dx, real dy, real dz, real has,
+                         int unit) {
+    const real upper = has * c->z, lower = has - upper;
+    const real w3 = upper * c->y, w2 = upper - w3, w1 = lower * c->y, w0 = lower - w1;
+    const real rows[4] = {w0, w1, w2, w3};
+    // The fields are 511 for 0.
+    const real even_light = fma_((real)(511.0f * LW_CONE_SHARE), dx + dy + dz, (real)0.2820947918f);
+    LW_UNROLL for (int k = 0; k < 4; ++k) {
+        const lanei at = c->at + ((k & 1) ? LW_VOXEL_STORED : 0) + ((k & 2) ? LW_VOXEL_STORED * LW_VOXEL_STORED : 0);
+        laneu word[2], r[2], g[2], b[2];
+        gather_pairs(words, at, &word[0], &word[1]);
+        gather_pairs(words + plane, at, &r[0], &r[1]);
+        gather_pairs(words + 2 * plane, at, &g[0], &g[1]);
+        gather_pairs(words + 3 * plane, at, &b[0], &b[1]);
+        const real far = rows[k] * c->x;
+        const real weight[2] = {rows[k] - far, far};
+        LW_UNROLL for (int i = 0; i < 2; ++i) {
+            const laneu w = word[i];
+            const real step = weight[i] * as_real_(((w >> LW_VOXEL_EXPONENT_SHIFT) & LW_VOXEL_EXPONENT_MASK) + (uint)unit);
+            sum->a = fma_(to_real(as_lanei_(w & LW_VOXEL_OPACITY_MASK)), weight[i], sum->a);
+            sum->r = fma_(to_real(as_lanei_(w & LW_VOXEL_RED_MASK)) * step, fma_((real)-LW_CONE_SHARE, along(r[i], dx, dy, dz), even_light), sum->r);
+            sum->g = fma_(to_real(as_lanei_(w & LW_VOXEL_GREEN_MASK)) * step, fma_((real)-LW_CONE_SHARE, along(g[i], dx, dy, dz), even_light), sum->g);
+            sum->b = fma_(to_real(as_lanei_(w & LW_VOXEL_BLUE_MASK)) * step, fma_((real)-LW_CONE_SHARE, along(b[i], dx, dy, dz), even_light), sum->b);
+        }
+    }
+}
+#endif
+
+// Light and opacity between a corner's eight voxels, seen by a ray that goes along d.
+LW_FN void sample_corner(cone_sample* sample, const cone_volume* v, int level, const cone_corner* c, real dx, real dy, real dz) {
+    const real has = ones_(c->has), none = (real)0.0f;
+    sample->r = sample->g = sample->b = sample->a = none;
+    __global const uint* words = level == 0 ? v->base : v->mips;
+    const int plane = level == 0 ? v->grids.basePlane : v->grids.mipPlane;
+#if LW_CONE_MODE == 1
+    if (level > 0 || LW_CONE_SIDES) add_sides(sample, words, c, plane, dx, dy, dz, has, v->unit);
+    else add_plane(sample, words, c, c->at, has, v->unit);
+#elif LW_CONE_MODE == 2 && LW_CONE_LIGHT
+    if (level == 0 && LW_CONE_SIDES) add_sides(sample, words, c, plane, dx, dy, dz, has, v->unit);
+    else add_harmonics(sample, words, c, plane, dx, dy, dz, has, v->unit);
+#else
+    if (level == 0 && LW_CONE_SIDES) add_sides(sample, words, c, plane, dx, dy, dz, has, v->unit);
+    else add_plane(sample, words, c, c->at, has, v->unit);
+#endif
+    sample->a = fmin(sample->a * LW_VOXEL_OPACITY_STEP, (real)1.0f);
+    sample->r = fmax(sample->r * LW_VOXEL_RED_STEP, none);
+    sample->g = fmax(sample->g * LW_VOXEL_GREEN_STEP, none);
+    sample->b = fmax(sample->b * LW_VOXEL_BLUE_STEP, none);
+}
+
+#endif

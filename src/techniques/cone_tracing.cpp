@@ -1,0 +1,155 @@
+// Frame part, report and registration; the table of parameters is cone_tracing_parameters.cpp's.
+#include "techniques/cone_tracing.h"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "compute/device.h"
+#include "compute/error.h"
+#include "inputs/rsm_input.h"
+#include "techniques/cone_tracing_parameters.h"
+#include "techniques/cone_tracing_points.h"
+#include "techniques/cone_tracing_view.h"
+#include "techniques/cone_tracing_volume.h"
+#include "techniques/prewarm.h"
+#include "techniques/technique_entry.h"
+
+namespace lightwell {
+namespace {
+
+// One grid within another has all kernels of many.
+constexpr std::uint32_t kPrewarmedCascades = 2, kPrewarmedSize = 32;
+// Radiance from infinity above which it is refused: no sum over a hemisphere leaves float's range, and no sky comes near it.
+constexpr float kLargestEnvironment = 1e20f;
+constexpr std::uint32_t kMakes = kMakesAmbient;
+
+// Geometry and source views apart, which the volume speaks of.
+std::vector<LWChoice> unusedInputs(const LWFrame& frame, const LWConeTracingDesc& desc) {
+    std::vector<LWChoice> unused;
+    if (frame.vplCount)
+        unused.push_back({"frame.vpls", "not used: technique cone_tracing takes light from RSMs, emissive geometry and the environment only"});
+    if (frame.blockerCount) unused.push_back({"frame.blockers", "not used: in technique cone_tracing voxels block light"});
+    for (std::uint32_t l = 0; l < frame.lightCount; ++l)
+        if (frame.lights[l].rsmCount == 0) {
+            unused.push_back({"frame.lights", "some have no RSM: technique cone_tracing makes no indirect light of those"});
+            break;
+        }
+    if (desc.extent > 0.0f && frame.focus) unused.push_back({"center", "not used: the grids lie around frame.focus"});
+    return unused;
+}
+
+void checkEnvironment(const LWFrame& frame) {
+    for (int c = 0; c < 3; ++c)
+        if (frame.environment[c] > kLargestEnvironment)
+            fail(LW_ERROR_INVALID_ARGUMENT, "frame.environment[", c, "]: expected a radiance of at most ", kLargestEnvironment, ", got ",
+                 frame.environment[c]);
+}
+
+class ConeTracingTechnique final : public Technique {
+public:
+    ConeTracingTechnique(Device& device, const LWConeTracingDesc& desc)
+        : device_(device), desc_(desc), volume_(std::make_unique<ConeTracingVolume>(device, desc)), passes_(device, desc) {}
+
+    void update(Executor& executor, const LWFrame& frame) override {
+        checkEnvironment(frame);
+        volume_->check(frame);
+        rsms_.import(executor, frame);
+        const bool lost = continuity_.beginLost();
+        // What its memory holds is not known.
+        if (lost) volume_ = std::make_unique<ConeTracingVolume>(device_, desc_);
+        volume_->record(executor, frame, rsms_, frame.reset != 0 || lost);
+        choices_ = unusedInputs(frame, desc_);
+        for (const LWChoice& choice : volume_->choices(frame)) choices_.push_back(choice);
+        states_.purge();
+        states_.each([](ConeTracingView& state) { state.startFrame(); });
+        if (points_) points_->startFrame();
+    }
+
+    void render(Executor& executor, const std::shared_ptr<View>& view, const LWGBuffer& gbuffer, const LWOutput& output) override {
+        checkLightOutputs(device_, *view, output, "cone_tracing", kMakes);
+        ConeTracingView& state = states_.get(view, [&] { return std::make_unique<ConeTracingView>(device_, desc_); });
+        state.render(executor, *view, gbuffer, output, passes_, volume_->world());
+    }
+
+    void renderPoints(Executor& executor, const Points& points) override {
+        checkPoints(device_, points);
+        if (!points_) points_.emplace(device_, coneOptions(desc_));
+        points_->render(executor, points, volume_->world());
+    }
+
+    void lose() override { continuity_.lose(); }
+
+    // Of every source that frames may bring, in small grids: the same kernels.
+    void prewarm(Executor& executor, const std::shared_ptr<View>&) override {
+        LWConeTracingDesc desc = desc_;
+        desc.size = std::min(desc.size, kPrewarmedSize);
+        desc.cascades = std::min(desc.cascades, kPrewarmedCascades);
+        for (int source = LW_VOXEL_SOURCE_TRIANGLES; source <= LW_VOXEL_SOURCE_SCREEN; ++source) {
+            if (desc_.source == LW_VOXEL_SOURCE_AUTO) desc.source = LWVoxelSource(source);
+            else if (source != LW_VOXEL_SOURCE_TRIANGLES) break;
+            ConeTracingTechnique twin(device_, desc);
+            exerciseTechnique(executor, twin, kMakes);
+            exercisePoints(executor, twin);
+        }
+    }
+
+    Report report() override;
+    std::vector<DebugView> debugViews(const View* view) override;
+    std::uint64_t bytes() const override;
+
+private:
+    Device& device_;
+    LWConeTracingDesc desc_;
+    Continuity continuity_{device_};
+    RsmInput rsms_;
+    std::unique_ptr<ConeTracingVolume> volume_;
+    ConeTracingPasses passes_;
+    PerView<ConeTracingView> states_;
+    std::optional<ConeTracingPoints> points_;  // from the first lwRenderPoints on
+    std::vector<LWChoice> choices_;            // of the last update
+};
+
+Report ConeTracingTechnique::report() {
+    Report report;
+    rsms_.report(report);
+    for (const LWChoice& choice : choices_) report.choose(choice.name, choice.reason);
+    volume_->report(report);
+    ConeTracingView::startReport(report);
+    states_.each([&](const ConeTracingView& state) { state.report(report); });
+    if (points_) points_->report(report);
+    return report;
+}
+
+std::vector<DebugView> ConeTracingTechnique::debugViews(const View* view) {
+    std::vector<DebugView> views;
+    volume_->addDebugViews(views);
+    if (const ConeTracingView* state = states_.find(view)) state->addDebugViews(views);
+    return views;
+}
+
+std::uint64_t ConeTracingTechnique::bytes() const {
+    std::uint64_t total = rsms_.bytes() + volume_->bytes() + passes_.gather.bytes() + (points_ ? points_->bytes() : 0);
+    states_.each([&](const ConeTracingView& state) { total += state.bytes(); });
+    return total;
+}
+
+// ------------------------------------------------------------------------------------- registration
+
+std::uint64_t estimateBytes(const void* desc, const LWViewDesc& view, const FrameShape& shape) {
+    const LWConeTracingDesc& cones = *static_cast<const LWConeTracingDesc*>(desc);
+    return RsmInput::estimateBytes(shape) + ConeTracingVolume::estimateBytes(cones, shape) +
+           ConeGather::estimateBytes(coneOptions(cones)) + ConeTracingView::estimateBytes(cones, view, shape.uploads);
+}
+
+}  // namespace
+
+const TechniqueEntry& coneTracingEntry() {
+    static const TechniqueEntry entry = techniqueEntry<ConeTracingTechnique, LWConeTracingDesc, lwDefaultConeTracing>(
+        "cone_tracing", "voxel cone tracing: the scene as lit voxels, followed from each pixel in a few cones", 1, coneTracingParameters(),
+        coneTracingSettings(), estimateBytes);
+    return entry;
+}
+
+}  // namespace lightwell

@@ -1,0 +1,198 @@
+#include "techniques/cone_tracing_view.h"
+
+#include "compute/device.h"
+#include "compute/raw_enum.h"
+#include "inputs/image_access.h"
+
+namespace lightwell {
+namespace {
+
+constexpr std::size_t kCountBytes = ConeGather::kCounts * sizeof(cl_int);
+constexpr std::size_t kUpsampleCountBytes = 2 * sizeof(cl_int);
+constexpr std::uint32_t kLightPlanes = 5;  // irradiance, validity, open share
+
+bool isAsked(const LWImage& image) { return rawEnum(image.format) != LW_FORMAT_NONE; }
+
+std::uint32_t halvingsOf(const LWConeTracingDesc& desc) {
+    return desc.resolution == LW_CONE_RESOLUTION_HALF ? 1 : desc.resolution == LW_CONE_RESOLUTION_QUARTER ? 2 : 0;
+}
+bool isInterleaved(const LWConeTracingDesc& desc) { return desc.resolution == LW_CONE_RESOLUTION_INTERLEAVED; }
+bool dimsLight(const LWConeTracingDesc& desc) { return desc.occlusion == LW_CONE_OCCLUSION_ALL; }
+
+std::uint32_t halved(std::uint32_t side, std::uint32_t times) {
+    for (; times; --times) side = JointBilateral::halved(side);
+    return side;
+}
+
+std::uint64_t planeBytes(std::uint32_t width, std::uint32_t height) { return sizeof(float) * std::uint64_t(paddedWidth(width)) * height; }
+
+}  // namespace
+
+ConeGatherOptions coneOptions(const LWConeTracingDesc& desc) {
+    ConeGatherOptions options;
+    options.size = desc.size;
+    options.cascades = desc.cascades;
+    options.mode = desc.mode;
+    options.sides = coneSides(desc);
+    options.cones = desc.cones;
+    options.interleaved = isInterleaved(desc);
+    options.nudge = double(desc.nudge);
+    options.step = double(desc.step);
+    options.distance = double(desc.distance);
+    options.opacityCorrection = desc.opacityCorrection != 0;
+    options.apertureOffset = desc.apertureOffset != 0;
+    options.near = desc.occlusion == LW_CONE_OCCLUSION_NEAR;
+    options.occlusionDistance = double(desc.occlusionDistance);
+    return options;
+}
+
+ConeTracingPasses::ConeTracingPasses(Device& device, const LWConeTracingDesc& desc)
+    : gather(device, coneOptions(desc)), halvings(halvingsOf(desc)), interleaved(isInterleaved(desc)), dims(dimsLight(desc)) {
+    if (halvings) bilateral.emplace(device, kLightPlanes);
+    if (dims) dim_ = &device.programs().kernel("cone_tracing/cone_tracing", "cone_tracing_dim");
+}
+
+void ConeTracingPasses::recordDim(Executor& executor, const Planes& irradiance, const Planes& open) {
+    const std::uint32_t lanes = dim_->width();
+    executor.run("cone_tracing.dim", *dim_, {(irradiance.width + lanes - 1) / lanes, irradiance.height}, {8, 1}, irradiance, open,
+                 cl_int(irradiance.width), cl_int(irradiance.height));
+}
+
+ConeTracingView::ConeTracingView(Device& device, const LWConeTracingDesc& desc)
+    : device_(device),
+      halvings_(halvingsOf(desc)),
+      interleaved_(isInterleaved(desc)),
+      dims_(dimsLight(desc)),
+      counts_(device, kCountBytes, "counts of a view"),
+      upsampleCounts_(device, kUpsampleCountBytes, "counts of a view") {}
+
+// Memory of what this frame needs, for the view's largest size.
+void ConeTracingView::reserve(const View& view, bool wantsOpen) {
+    if (interleaved_ && !gathered_)
+        gathered_ = PlanarImage(device_, view.maxWidth, view.maxHeight, ConeGather::kGathered, "shares of pixels' cones");
+    if (!halvings_ && wantsOpen && !ownOpen_) ownOpen_ = PlanarImage(device_, view.maxWidth, view.maxHeight, 1, "ambient occlusion");
+    for (std::uint32_t l = std::uint32_t(levels_.size()); l < halvings_; ++l) {
+        const std::uint32_t w = halved(view.maxWidth, l + 1), h = halved(view.maxHeight, l + 1);
+        levels_.push_back({PlanarImage(device_, w, h, 3, "positions of fewer pixels"), PlanarImage(device_, w, h, 3, "normals of fewer pixels"),
+                           PlanarImage(device_, w, h, kLightPlanes, "light of fewer pixels")});
+    }
+}
+
+void ConeTracingView::render(Executor& executor, const View& view, const LWGBuffer& gbuffer, const LWOutput& output,
+                             ConeTracingPasses& passes, const ConeWorld& world) {
+    gbuffer_.import(executor, view, gbuffer, 0, "gbuffer");
+    lastTraced_ = Planes{};
+    const bool wantsLight = isAsked(output.irradiance), makesOpen = dims_ && wantsLight && !isAsked(output.ambientOcclusion);
+    reserve(view, makesOpen);
+    executor.fill("cone_gather.counts", counts_, 0, 0, kCountBytes);
+    executor.fill("cone_gather.counts", upsampleCounts_, 0, 0, kUpsampleCountBytes);
+    Light light;
+    light.irradiance = irradiance_.begin(executor, view, output.irradiance, 3, "output.irradiance");
+    light.validity = validity_.begin(executor, view, output.validity, 1, "output.validity");
+    light.open = open_.begin(executor, view, output.ambientOcclusion, 1, "output.ambientOcclusion");
+    isGathered_ = bool(light);
+    if (light && halvings_) {
+        traceReduced(executor, view, passes, world, light);
+    } else if (light) {
+        if (makesOpen) light.open = ownOpen_.planes(view.width, view.height);
+        if (interleaved_)
+            traceInterleaved(executor, passes, world, light);
+        else
+            traceAll(executor, passes, world, light);
+    }
+    irradiance_.end(executor);
+    validity_.end(executor);
+    open_.end(executor);
+    isRendered_ = true;
+}
+
+void ConeTracingView::traceAll(Executor& executor, ConeTracingPasses& passes, const ConeWorld& world, const Light& light) {
+    passes.gather.recordTrace(executor, gbuffer_.position, gbuffer_.normal, world, light.irradiance, light.validity, light.open, counts_);
+    if (dims_ && light.irradiance) passes.recordDim(executor, light.irradiance, light.open);
+}
+
+void ConeTracingView::traceInterleaved(Executor& executor, ConeTracingPasses& passes, const ConeWorld& world, const Light& light) {
+    const Planes gathered = gathered_.planes(gbuffer_.position.width, gbuffer_.position.height);
+    passes.gather.recordTrace(executor, gbuffer_.position, gbuffer_.normal, world, gathered, {}, {}, counts_, bool(light.open));
+    passes.gather.recordFilter(executor, gbuffer_.position, gbuffer_.normal, gathered, light.irradiance, light.validity, light.open);
+    if (dims_ && light.irradiance) passes.recordDim(executor, light.irradiance, light.open);
+    lastTraced_ = gathered;
+}
+
+// Halves of halves: each level's surfaces are some of the one before, which it is up-sampled by.
+void ConeTracingView::traceReduced(Executor& executor, const View& view, ConeTracingPasses& passes, const ConeWorld& world,
+                                   const Light& light) {
+    std::vector<Planes> positions{gbuffer_.position}, normals{gbuffer_.normal}, lights{Planes{}};
+    for (std::uint32_t l = 0; l < halvings_; ++l) {
+        const std::uint32_t w = halved(view.width, l + 1), h = halved(view.height, l + 1);
+        positions.push_back(levels_[l].position.planes(w, h));
+        normals.push_back(levels_[l].normal.planes(w, h));
+        lights.push_back(levels_[l].light.planes(w, h));
+        passes.bilateral->recordDownsample(executor, positions[l], normals[l], positions[l + 1], normals[l + 1]);
+    }
+    const bool dims = dims_ && light.irradiance;
+    const Planes& coarsest = lights.back();
+    const Light traced{light.irradiance ? subPlanes(coarsest, 0, 3) : Planes{}, light.validity ? subPlanes(coarsest, 3, 1) : Planes{},
+                       light.open || dims ? subPlanes(coarsest, 4, 1) : Planes{}};
+    passes.gather.recordTrace(executor, positions.back(), normals.back(), world, traced.irradiance, traced.validity, traced.open, counts_);
+    if (dims) passes.recordDim(executor, traced.irradiance, traced.open);
+    for (std::uint32_t l = halvings_; l > 0; --l) {
+        const Planes& to = lights[l - 1];
+        const Light result = l == 1 ? light
+                                    : Light{light.irradiance ? subPlanes(to, 0, 3) : Planes{}, light.validity ? subPlanes(to, 3, 1) : Planes{},
+                                            light.open ? subPlanes(to, 4, 1) : Planes{}};
+        if (l == 1) executor.fill("cone_gather.counts", upsampleCounts_, 0, 0, kUpsampleCountBytes);
+        passes.bilateral->recordUpsampleAll(executor, positions[l - 1], normals[l - 1], positions[l], normals[l], lights[l],
+                                            result.irradiance, result.validity, result.open, upsampleCounts_);
+    }
+    lastTraced_ = coarsest;
+}
+
+void ConeTracingView::startReport(Report& report) {
+    for (const char* name : {"rejected_pixels", "saturated_pixels", "pixels_outside", "upsample_fallbacks"})
+        report.counts.push_back({name, 0});
+}
+
+void ConeTracingView::report(Report& report) const {
+    if (!isRendered_) return;
+    gbuffer_.report(report);
+    irradiance_.report(report);
+    validity_.report(report);
+    open_.report(report);
+    if (!isGathered_) return;
+    // Down-sampling turns what is neither surface nor background into background; up-sampling counts it.
+    report.read(device_, "rejected_pixels", halvings_ ? upsampleCounts_ : counts_, 0);
+    report.read(device_, "saturated_pixels", counts_, sizeof(cl_int));
+    report.read(device_, "pixels_outside", counts_, 2 * sizeof(cl_int));
+    if (halvings_) report.read(device_, "upsample_fallbacks", upsampleCounts_, sizeof(cl_int));
+}
+
+void ConeTracingView::addDebugViews(std::vector<DebugView>& views) const {
+    if (!isRendered_) return;
+    views.push_back({"position", "world position (m)", gbuffer_.position, {}});
+    views.push_back({"normal", "world normal as the host gave it", gbuffer_.normal, {}});
+    if (!lastTraced_) return;
+    views.push_back({"gathered",
+                     interleaved_ ? "irradiance of a share of the cones (W/m^2), and what the filter makes of the others"
+                                  : "irradiance (W/m^2), validity and open share of fewer pixels, before they are up-sampled",
+                     lastTraced_, {}});
+}
+
+std::uint64_t ConeTracingView::bytes() const {
+    std::uint64_t total = gbuffer_.bytes() + irradiance_.bytes() + validity_.bytes() + open_.bytes() + gathered_.bytes() + ownOpen_.bytes() +
+                          counts_.bytes() + upsampleCounts_.bytes();
+    for (const Level& level : levels_) total += level.position.bytes() + level.normal.bytes() + level.light.bytes();
+    return total;
+}
+
+std::uint64_t ConeTracingView::estimateBytes(const LWConeTracingDesc& desc, const LWViewDesc& view, bool uploads) {
+    std::uint64_t total = GBufferInput::estimateBytes(view, 0, uploads) + OutputTarget::estimateBytes(view, 3, uploads) +
+                          2 * OutputTarget::estimateBytes(view, 1, uploads) + kCountBytes + kUpsampleCountBytes;
+    if (isInterleaved(desc)) total += ConeGather::kGathered * planeBytes(view.maxWidth, view.maxHeight);
+    if (dimsLight(desc) && !halvingsOf(desc)) total += planeBytes(view.maxWidth, view.maxHeight);
+    for (std::uint32_t l = 1; l <= halvingsOf(desc); ++l)
+        total += (3 + 3 + kLightPlanes) * planeBytes(halved(view.maxWidth, l), halved(view.maxHeight, l));
+    return total;
+}
+
+}  // namespace lightwell

@@ -1,0 +1,315 @@
+// Visibility through voxels: shadows against lines drawn from the eye, walls against nothing at all coming through, convex rooms
+// against nothing missing.
+#include "passes/voxel_visibility.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "support/voxel_sight_rig.h"
+
+using namespace lightwell;
+using namespace lightwell::test;
+using reference::Image;
+using reference::Vec;
+
+namespace {
+
+constexpr int kSize = 32;
+
+std::size_t at(int size, int x, int y, int z) { return std::size_t(x + size * (y + size * z)); }
+int lightOf(unsigned char byte) { return byte & LW_SIGHT_FULL; }
+
+// Floating clusters in the open: their eyes stand off by one voxel along x.
+lw_cluster eyeAt(Vec voxels) { return clusterIn(voxels - Vec{1, 0, 0}, {1, 0, 0}); }
+
+Voxels randomVoxels(int size, int count, unsigned seed) {
+    Voxels voxels(size);
+    std::mt19937 random(seed);
+    std::uniform_int_distribution<int> coordinate(0, size - 1);
+    for (int i = 0; i < count; ++i) {
+        const int x = coordinate(random), y = coordinate(random), z = coordinate(random);
+        voxels.set(x, y, z);
+    }
+    return voxels;
+}
+
+}  // namespace
+
+TEST_CASE("where nothing lies, all of every eye's light arrives", "[voxel_visibility]") {
+    const auto width = GENERATE(1u, 16u);
+    VoxelSightRig rig(width, kSize);
+    const std::vector<lw_cluster> clusters = {eyeAt({16.3, 15.8, 16.5}), eyeAt({1.2, 0.1, 0.3}), eyeAt({31.9, 30.7, 31.2}),
+                                              eyeAt({7.0, 8.0, 31.99})};
+    rig.sweep(Voxels(kSize), clusters);
+    const std::vector<unsigned char> sights = rig.sights(clusters.size());
+    CHECK(std::count(sights.begin(), sights.end(), LW_SIGHT_FULL) == std::ptrdiff_t(sights.size()));
+    CHECK(rig.state().swept == 4);
+}
+
+TEST_CASE("the edge of a half-plane's shadow lies within a voxel of the line from the eye", "[voxel_visibility]") {
+    // A wall in layer `wall` of an axis, over all of the second axis, and of the third up to an edge.
+    const auto axis = GENERATE(0, 1, 2);
+    const auto turned = GENERATE(false, true);
+    VoxelSightRig rig(16, kSize);
+    const int wall = 12, screen = 26, edge = 14, main = axis, along = (axis + (turned ? 2 : 1)) % 3;
+    Voxels voxels(kSize);
+    voxels.fill([&](int x, int y, int z) {
+        const int p[3] = {x, y, z};
+        return p[main] == wall && p[along] < edge;
+    });
+    std::vector<lw_cluster> clusters;
+    std::vector<Vec> eyes;
+    for (const double height : {4.3, 9.7, 13.6, 17.5, 22.4}) {
+        double p[3] = {15.6, 15.6, 15.6};
+        p[main] = 3.4;
+        p[along] = height;
+        eyes.push_back({p[0], p[1], p[2]});
+        clusters.push_back(eyeAt(eyes.back()));
+    }
+    rig.sweep(voxels, clusters);
+    const std::vector<unsigned char> sights = rig.sights(clusters.size());
+    for (std::size_t e = 0; e < eyes.size(); ++e) {
+        const double from[3] = {eyes[e].x, eyes[e].y, eyes[e].z};
+        // The wall's far side decides for eyes above the edge, its near one for those below.
+        const double corner = from[along] > edge ? wall + 1.0 : wall;
+        const double line = from[along] + (edge - from[along]) * (screen + 0.5 - from[main]) / (corner - from[main]);
+        if (line < 1.0 || line > kSize - 1.0) continue;
+        for (const int across : {6, 15, 20}) {
+            double lit = 0.0;
+            for (int i = 0; i < kSize; ++i) {
+                int p[3] = {across, across, across};
+                p[main] = screen;
+                p[along] = i;
+                lit += lightOf(sights[e * kSize * kSize * kSize + at(kSize, p[0], p[1], p[2])]) / double(LW_SIGHT_FULL);
+            }
+            CAPTURE(axis, turned, e, across);
+            CHECK(kSize - lit == Approx(line).margin(1.0));
+        }
+    }
+}
+
+TEST_CASE("a wall of one voxel lets nothing through, however it stands", "[voxel_visibility]") {
+    const auto size = GENERATE(32, 64);
+    VoxelSightRig rig(16, size);
+    for (const Vec n : {Vec{1, 0, 0}, Vec{0, 1, 0}, Vec{0, 0, 1}, Vec{0.8, 0.6, 0}, Vec{0.3, -0.5, 0.9}, Vec{1, 1, 1}}) {
+        const Vec normal = reference::unit(n), middle{size * 0.52, size * 0.52, size * 0.52};
+        Voxels voxels(size);
+        voxels.fill([&](int x, int y, int z) { return voxels.touches(middle, normal, x, y, z); });
+        const Vec eye = middle + normal * (0.25 * size);
+        rig.sweep(voxels, {eyeAt(eye)});
+        const std::vector<unsigned char> sights = rig.sights(1);
+        int behind = 0, through = 0;
+        for (int z = 0; z < size; ++z)
+            for (int y = 0; y < size; ++y)
+                for (int x = 0; x < size; ++x) {
+                    if (dot(Vec{x + 0.5, y + 0.5, z + 0.5} - middle, normal) > -1.0 || voxels.has(x, y, z)) continue;
+                    ++behind;
+                    through += lightOf(sights[at(size, x, y, z)]) > 0;
+                }
+        CAPTURE(size, n.x, n.y, n.z);
+        CHECK(behind > size * size * size / 8);
+        CHECK(through == 0);
+    }
+}
+
+TEST_CASE("what is added only takes light away", "[voxel_visibility]") {
+    VoxelSightRig rig(16, kSize);
+    const std::vector<lw_cluster> clusters = {eyeAt({16.3, 15.8, 16.5}), eyeAt({2.2, 29.1, 8.3})};
+    Voxels voxels(kSize);
+    std::vector<unsigned char> before(2 * kSize * kSize * kSize, LW_SIGHT_FULL);
+    for (unsigned step = 1; step <= 5; ++step) {
+        const Voxels more = randomVoxels(kSize, 120, step);
+        for (std::size_t i = 0; i < voxels.words.size(); ++i) voxels.words[i] |= more.words[i];
+        // The voxels that eyes are in stay open: an eye that finds its own taken looks from another.
+        for (const Vec eye : {Vec{16.3, 15.8, 16.5}, Vec{2.2, 29.1, 8.3}}) {
+            const int bit = int(eye.x) % 8 + 8 * (int(eye.y) % 8) + 64 * (int(eye.z) % 8);
+            const int brick = int(eye.x) / 8 + 4 * (int(eye.y) / 8 + 4 * (int(eye.z) / 8));
+            voxels.words[std::size_t(brick * 16 + bit / 32)] &= ~(1u << (bit % 32));
+        }
+        rig.sweep(voxels, clusters);
+        const std::vector<unsigned char> sights = rig.sights(2);
+        int brighter = 0, darker = 0;
+        for (std::size_t i = 0; i < sights.size(); ++i) {
+            brighter += lightOf(sights[i]) > lightOf(before[i]);
+            darker += lightOf(sights[i]) < lightOf(before[i]);
+        }
+        CHECK(brighter == 0);
+        CHECK(darker > 100);
+        before = sights;
+    }
+}
+
+TEST_CASE("the same bits at every width, in every run", "[voxel_visibility]") {
+    const Voxels voxels = randomVoxels(kSize, 900, 3);
+    const std::vector<lw_cluster> clusters = {eyeAt({16.3, 15.8, 16.5}), eyeAt({2.2, 29.1, 8.3}), eyeAt({31.5, 0.5, 0.5})};
+    std::vector<unsigned char> first;
+    for (const std::uint32_t width : {1u, 4u, 16u, 16u}) {
+        VoxelSightRig rig(width, kSize);
+        rig.sweep(voxels, clusters);
+        const std::vector<unsigned char> sights = rig.sights(clusters.size());
+        if (first.empty()) first = sights;
+        CHECK(sights == first);
+    }
+}
+
+TEST_CASE("only eyes that move are swept, and all when what lies in voxels changes", "[voxel_visibility]") {
+    VoxelSightRig rig(16, kSize), fresh(16, kSize);
+    Voxels voxels = randomVoxels(kSize, 300, 4);
+    std::vector<lw_cluster> clusters = {eyeAt({16.3, 15.8, 16.5}), eyeAt({2.2, 29.1, 8.3}), eyeAt({40.0, 3.0, 3.0})};
+    rig.sweep(voxels, clusters);
+    CHECK(rig.state().swept == 2);  // the third is beyond the grid
+    rig.sweep(voxels, clusters);
+    CHECK(rig.state().swept == 0);
+    clusters[1] = eyeAt({2.2, 28.1, 8.3});
+    rig.sweep(voxels, clusters);
+    CHECK(rig.state().swept == 1);
+    voxels.set(20, 20, 20);
+    rig.sweep(voxels, clusters);
+    CHECK(rig.state().swept == 2);
+    fresh.sweep(voxels, clusters);
+    CHECK(rig.sights(2) == fresh.sights(2));
+    rig.pass.forget();
+    rig.sweep(voxels, clusters);
+    CHECK(rig.state().swept == 2);
+}
+
+namespace {
+
+// A closed room, turned about an axis: corner and three edges of `side` voxels each.
+struct TurnedRoom {
+    Vec middle, axes[3];
+    double half;
+
+    TurnedRoom(int size, double share, Vec about, double angle) : middle{size * 0.5, size * 0.5, size * 0.5}, half(0.5 * share * size) {
+        const Vec k = reference::unit(about);
+        const double c = std::cos(angle), s = std::sin(angle);
+        const Vec unit[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+        for (int a = 0; a < 3; ++a) {  // Rodrigues' formula
+            const Vec v = unit[a], cross{k.y * v.z - k.z * v.y, k.z * v.x - k.x * v.z, k.x * v.y - k.y * v.x};
+            axes[a] = v * c + cross * s + k * (dot(k, v) * (1.0 - c));
+        }
+    }
+    // Of wall 2 a + (0 or 1), across axis a; u, v from -1 to 1.
+    Vec wallPoint(int wall, double u, double v) const {
+        const int a = wall / 2;
+        return middle + axes[a] * (wall % 2 ? half : -half) + axes[(a + 1) % 3] * (u * half) + axes[(a + 2) % 3] * (v * half);
+    }
+    Vec inward(int wall) const { return axes[wall / 2] * (wall % 2 ? -1.0 : 1.0); }
+    Voxels voxels(int size) const {
+        Voxels result(size);
+        result.fill([&](int x, int y, int z) {
+            const Vec p = Vec{x + 0.5, y + 0.5, z + 0.5} - middle;
+            for (int a = 0; a < 3; ++a)
+                for (const double side : {-half, half}) {
+                    const double reach = 0.5 * (std::abs(axes[a].x) + std::abs(axes[a].y) + std::abs(axes[a].z));
+                    if (std::abs(dot(p, axes[a]) - side) <= reach && std::abs(dot(p, axes[(a + 1) % 3])) <= half + reach &&
+                        std::abs(dot(p, axes[(a + 2) % 3])) <= half + reach)
+                        return true;
+                }
+            return false;
+        });
+        return result;
+    }
+};
+
+}  // namespace
+
+namespace {
+
+// Of the light of clusters on a room's walls, what arrives on its walls: everywhere, and more than two voxels from all edges. Weighed by
+// the form factor, as light is.
+struct Arriving {
+    double lit = 0.0, all = 0.0, litInside = 0.0, allInside = 0.0;
+};
+
+void addRoom(Arriving& sum, const TurnedRoom& room, int size) {
+    VoxelSightRig rig(16, size);
+    std::vector<lw_cluster> clusters;
+    for (int wall = 0; wall < 6; ++wall)
+        for (const double u : {-0.6, 0.1, 0.7}) clusters.push_back(clusterIn(room.wallPoint(wall, u, 0.3 * u), room.inward(wall)));
+    rig.sweep(room.voxels(size), clusters);
+    constexpr std::uint32_t kPlaces = 40;
+    const auto at = [](std::uint32_t i) { return -1.0 + (2 * i + 1.0) / kPlaces; };
+    Image position(kPlaces, 6 * kPlaces), normal(kPlaces, 6 * kPlaces);
+    for (std::uint32_t row = 0; row < 6 * kPlaces; ++row)
+        for (std::uint32_t i = 0; i < kPlaces; ++i) {
+            const int wall = int(row / kPlaces);
+            position.set(i, row, inWorld(room.wallPoint(wall, at(i), at(row % kPlaces))));
+            normal.set(i, row, room.inward(wall));
+        }
+    const std::vector<float> seen = rig.seen(position, normal, std::uint32_t(clusters.size()));
+    std::size_t k = 0;
+    for (const lw_cluster& c : clusters)
+        for (std::uint32_t y = 0; y < 6 * kPlaces; ++y)
+            for (std::uint32_t x = 0; x < kPlaces; ++x, ++k) {
+                const Vec to = reference::vecOf(c.medoidPosition) - position.get(x, y);
+                const double d2 = dot(to, to);
+                const double w = std::max(0.0, dot(to, normal.get(x, y))) * std::max(0.0, -dot(to, reference::vecOf(c.normal))) / (d2 * d2);
+                const bool isInside = room.half * (1.0 - std::max(std::abs(at(x)), std::abs(at(y % kPlaces)))) > 2.0;
+                sum.all += w;
+                sum.lit += w * double(seen[k]);
+                if (isInside) sum.allInside += w, sum.litInside += w * double(seen[k]);
+            }
+}
+
+}  // namespace
+
+TEST_CASE("walls of a convex room shadow neither each other nor themselves, but for a strip beside edges", "[voxel_visibility][large]") {
+    const auto size = GENERATE(32, 64);
+    const auto turn = GENERATE(0, 1, 2);
+    Arriving sum;
+    for (const double share : {0.52, 0.54, 0.56, 0.58, 0.6, 0.62})  // wherever in voxels the walls lie
+        addRoom(sum, TurnedRoom(size, share, turn == 2 ? Vec{1, 2, 3} : Vec{0, 0, 1}, turn == 0 ? 0.0 : 0.6), size);
+    CAPTURE(size, turn, sum.lit / sum.all, sum.litInside / sum.allInside);
+    // Where two walls meet, the place off one may lie in the other's voxels, and what it is interpolated from behind them: a strip of
+    // an eighth of a voxel where walls lie along axes, more where they do not.
+    CHECK(sum.lit > (size == 32 ? 0.95 : 0.97) * sum.all);
+    // A way that falls towards a turned wall's steps is interpolated with them.
+    CHECK(sum.litInside > (turn == 0 ? 0.999 : 0.985) * sum.allInside);
+}
+
+TEST_CASE("of one room's light less than a thousandth comes through a wall into the next", "[voxel_visibility]") {
+    // Two rooms of 0.8 and 0.4 of the grid beside each other, between them a wall of `thick` voxels; turned against the grid.
+    const auto size = GENERATE(32, 64);
+    const auto thick = GENERATE(1.0, 2.0);
+    const auto angle = GENERATE(0.0, 0.35);
+    VoxelSightRig rig(16, size);
+    const TurnedRoom room(size, 0.6, {0, 0, 1}, angle);
+    Voxels voxels = room.voxels(size);
+    const double near = 0.37, far = near + thick;  // the wall's sides, along the room's first axis from its middle
+    voxels.fill([&](int x, int y, int z) {
+        const Vec p = Vec{x + 0.5, y + 0.5, z + 0.5} - room.middle;
+        const double reach = 0.5 * (std::abs(room.axes[0].x) + std::abs(room.axes[0].y)), along = dot(p, room.axes[0]);
+        return along >= near - reach && along <= far + reach && std::abs(dot(p, room.axes[1])) <= room.half && std::abs(dot(p, room.axes[2])) <= room.half;
+    });
+    std::vector<lw_cluster> clusters;
+    for (const double u : {-0.7, -0.3, 0.4, 0.8}) clusters.push_back(clusterIn(room.wallPoint(4, -0.5, u), room.inward(4)));
+    rig.sweep(voxels, clusters);
+    // The floor, on both sides of the wall, and the wall's dark side.
+    constexpr std::uint32_t kPlaces = 64;
+    Image position(kPlaces, 2 * kPlaces), normal(kPlaces, 2 * kPlaces);
+    const auto at = [](std::uint32_t i) { return -1.0 + (2 * i + 1.0) / kPlaces; };
+    for (std::uint32_t y = 0; y < kPlaces; ++y)
+        for (std::uint32_t x = 0; x < kPlaces; ++x) {
+            position.set(x, y, inWorld(room.wallPoint(4, at(x), at(y))));
+            normal.set(x, y, room.inward(4));
+            position.set(x, kPlaces + y, inWorld(room.wallPoint(0, at(x), at(y)) + room.axes[0] * (room.half + far)));
+            normal.set(x, kPlaces + y, room.axes[0]);
+        }
+    const std::vector<float> seen = rig.seen(position, normal, std::uint32_t(clusters.size()));
+    double light = 0.0, dark = 0.0;
+    int lit = 0, unlit = 0;
+    std::size_t k = 0;
+    for (std::size_t c = 0; c < clusters.size(); ++c)
+        for (std::uint32_t y = 0; y < 2 * kPlaces; ++y)
+            for (std::uint32_t x = 0; x < kPlaces; ++x, ++k) {
+                const double along = dot((position.get(x, y) - kGridCorner) * (1.0 / kVoxelSide) - room.middle, room.axes[0]);
+                if (along < near) light += double(seen[k]), ++lit;
+                if (along > far - 1e-3) dark += double(seen[k]), ++unlit;
+            }
+    CAPTURE(size, thick, angle);
+    CHECK(light / lit > 0.9);
+    CHECK(dark / unlit < 1e-3);
+    CHECK(unlit > 1000);
+}
