@@ -46,10 +46,10 @@ void LpvBlocking::reserve(Executor& executor) {
     executor.fill("lpv_blocking.clear", state_, 0, 0, state_.bytes());
 }
 
-void LpvBlocking::begin(Executor& executor, std::uint64_t revision, const Buffer& place) {
+void LpvBlocking::begin(Executor& executor, std::uint64_t revision, const Buffer& place, bool scrolls) {
     reserve(executor);
     executor.run("lpv_blocking.begin", begin_, {1, 1}, {1, 1}, place, cl_uint(revision), cl_uint(revision >> 32),
-                 cl_int(isKept_ ? 0 : 1), state_);
+                 cl_int(isKept_ ? 0 : 1), cl_int(scrolls ? 1 : 0), cl_int(size_), state_);
     isKept_ = true;
 }
 
@@ -68,7 +68,7 @@ void LpvBlocking::end(Executor& executor) {
 
 void LpvBlocking::record(Executor& executor, const SurfelSet& surfels, const std::vector<SurfelRange>& views,
                          const Buffer& place) {
-    begin(executor, surfels.revision, place);
+    begin(executor, surfels.revision, place, false);
     bool isFirst = true;
     for (const SurfelRange& view : views) {
         if (view.count == 0 || !surfels.planes) continue;
@@ -83,7 +83,7 @@ void LpvBlocking::record(Executor& executor, const SurfelSet& surfels, const std
 }
 
 void LpvBlocking::record(Executor& executor, const GeometryInput& geometry, const Buffer& place) {
-    begin(executor, geometry.revision, place);
+    begin(executor, geometry.revision, place, true);
     if (geometry.triangleCount)
         executor.run("lpv_blocking.inject", rasterise_, gridOver((geometry.triangleCount + kTriangles - 1) / kTriangles),
                      kListGroup, geometry.triangles.memory, cl_int(geometry.triangles.planeStride), cl_int(geometry.triangleCount), place, cl_int(size_), sums_, state_);

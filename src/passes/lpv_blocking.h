@@ -36,7 +36,7 @@ public:
 
 private:
     void reserve(Executor& executor);
-    void begin(Executor& executor, std::uint64_t revision, const Buffer& place);
+    void begin(Executor& executor, std::uint64_t revision, const Buffer& place, bool scrolls);
     void merge(Executor& executor, bool isFirst);
     void end(Executor& executor);
 
