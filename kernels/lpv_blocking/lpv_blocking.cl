@@ -122,10 +122,13 @@ LW_FN int block_triangle(const lpv_raster* r, const lpv_region* region, int corn
     const float linear = (LPV_SIDE(r->nx, r->ny, r->nz) < 0.0f ? -LPV_LOBE1 : LPV_LOBE1) * full;
     const long units[LW_LPV_BANDS] = {(long)(LPV_LOBE0 * full), (long)(linear * r->nx), (long)(linear * r->ny), (long)(linear * r->nz)};
     const int side = region->size + 1;
-    for (int v = r->firstV; v <= r->lastV; ++v)
+    for (int v = r->firstV; v <= r->lastV; ++v) {
+        long edges[3];
+        raster_row(r, v, edges);
         for (int u = r->firstU; u <= r->lastU; ++u) {
             float p[3];
-            if (!raster_sample(r, u, v, p)) continue;
+            if (!raster_sample(r, u, v, edges)) continue;
+            raster_place(r, u, v, p);
             const int x = whole_below(p[0] + 0.5f) - region->lattice.corner[0], y = whole_below(p[1] + 0.5f) - region->lattice.corner[1],
                       z = whole_below(p[2] + 0.5f) - region->lattice.corner[2];
             if (!part_has(region->low, region->high, x, y, z)) continue;
@@ -136,6 +139,7 @@ LW_FN int block_triangle(const lpv_raster* r, const lpv_region* region, int corn
             }
             for (int b = 0; b < LW_LPV_BANDS; ++b) run[b] += units[b];
         }
+    }
     return corner;
 }
 
@@ -201,11 +205,15 @@ __kernel void lpv_blocking_faces(__global const float4* merged, int size, __glob
     const int x = (int)get_global_id(0), line = (int)get_global_id(1), y = line % size, z = line / size, plane = lpv_plane(size);
     if (x >= size || line >= size * size || !state->stale) return;
     const int4 slot = state->parts.slot;
+    const int side = size + 1, x0 = slot_along(x + slot.x, side), x1 = slot_along(x + 1 + slot.x, side);
+    const int row = side * slot_along(y + slot.y, side), row1 = side * slot_along(y + 1 + slot.y, side);
+    const int slice = side * side * slot_along(z + slot.z, side), slice1 = side * side * slot_along(z + 1 + slot.z, side);
     __global float* to = faces + lpv_cell(size, x, y, z);
-    float4 b[8];
-    for (int k = 0; k < 8; ++k) b[k] = merged[slot_of(x + (k & 1), y + (k >> 1 & 1), z + (k >> 2), slot, size + 1)];
-    const float4 bx = 0.25f * ((b[0] + b[2]) + (b[4] + b[6])), by = 0.25f * ((b[0] + b[1]) + (b[4] + b[5])),
-                 bz = 0.25f * ((b[0] + b[1]) + (b[2] + b[3]));
+    const float4 corner = merged[slice + row + x0], alongX = merged[slice + row + x1], alongY = merged[slice + row1 + x0],
+                 alongZ = merged[slice1 + row + x0];
+    const float4 bx = 0.25f * ((corner + alongY) + (alongZ + merged[slice1 + row1 + x0])),
+                 by = 0.25f * ((corner + alongX) + (alongZ + merged[slice1 + row + x1])),
+                 bz = 0.25f * ((corner + alongX) + (alongY + merged[slice + row1 + x1]));
     face_ways(bx, bx.y, bx.z, bx.w, to, plane);
     face_ways(by, by.z, by.y, by.w, to + LW_LPV_WAYS * plane, plane);
     face_ways(bz, bz.w, bz.y, bz.z, to + 2 * LW_LPV_WAYS * plane, plane);

@@ -157,10 +157,13 @@ LW_FN void cover_triangle(const lpv_raster* r, const sweep_region* region, sweep
     long units[4], found = 0;  // of one sample; samples of the cell
     sheets_of(n, sheets);
     units_of(n, r->area, r->nx, r->ny, r->nz, units);
-    for (int v = r->firstV; v <= r->lastV; ++v)
+    for (int v = r->firstV; v <= r->lastV; ++v) {
+        long edges[3];
+        raster_row(r, v, edges);
         for (int u = r->firstU; u <= r->lastU; ++u) {
             float p[3];
-            if (!raster_sample(r, u, v, p)) continue;
+            if (!raster_sample(r, u, v, edges)) continue;
+            raster_place(r, u, v, p);
             const int x = whole_below(p[0] - 0.5f * r->nx) - region->lattice.corner[0],
                       y = whole_below(p[1] - 0.5f * r->ny) - region->lattice.corner[1],
                       z = whole_below(p[2] - 0.5f * r->nz) - region->lattice.corner[2];
@@ -173,6 +176,7 @@ LW_FN void cover_triangle(const lpv_raster* r, const sweep_region* region, sweep
             }
             ++found;
         }
+    }
     if (cell >= 0) add_units(run, cell, sheets, found, units, sums, marks);
 }
 

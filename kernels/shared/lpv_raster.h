@@ -36,6 +36,7 @@ typedef struct {
     float area;            // of one sample, in sides of a cell
     float slopeU, slopeV;  // of the height along the axis
     int axis, u, v;        // the dominant axis, and the other two
+    int isFar;             // some edge is
     int firstU, lastU, firstV, lastV;  // samples of a part that may lie in it; last below first: none does
 } lpv_raster;
 
@@ -109,7 +110,8 @@ LW_FN int raster_turn(const lpv_raster* r, int (*whole)[3], int isFar, float alo
 // A triangle, without samples yet; 0: it has none anywhere. (By pointer: what a loop's functions return Oclgrind does not know.)
 LW_FN int raster_of(__global const float* triangles, int stride, int t, const lpv_lattice* lattice, float scale, lpv_raster* r) {
     float along[2][3];  // two sides of the triangle, of vertices as they are: far from the origin samples would be coarse
-    int whole[3][3], isFar = 0;
+    int whole[3][3];
+    r->isFar = 0;
     for (int a = 0; a < 3; ++a) {
         const float p[3] = {triangles[(LW_TRIANGLE_A + a) * stride + t], triangles[(LW_TRIANGLE_B + a) * stride + t],
                             triangles[(LW_TRIANGLE_C + a) * stride + t]};
@@ -118,7 +120,7 @@ LW_FN int raster_of(__global const float* triangles, int stride, int t, const lp
             r->at[k][a] = at;
             const int isExact = fabs(at) < LPV_EXACT;
             whole[k][a] = isExact ? whole_below(at * (float)LPV_STEPS + 0.5f) : 0;
-            isFar = isFar || !isExact;
+            r->isFar = r->isFar || !isExact;
         }
         along[0][a] = (p[1] - p[0]) * scale;
         along[1][a] = (p[2] - p[0]) * scale;
@@ -139,7 +141,7 @@ LW_FN int raster_of(__global const float* triangles, int stride, int t, const lp
     r->slopeV = -n[r->v] / n[r->axis];
     r->area = length / (float)(LPV_RASTER * LPV_RASTER);
     // Along y, (u, v) is (x, z), which is left-handed about it.
-    const int turn = raster_turn(r, whole, isFar, r->axis == 1 ? -n[1] : n[r->axis]);
+    const int turn = raster_turn(r, whole, r->isFar, r->axis == 1 ? -n[1] : n[r->axis]);
     for (int k = 0; k < 3; ++k) raster_edge(r, whole, k, k == 2 ? 0 : k + 1, turn, &r->edges[k]);
     return turn != 0;
 }
@@ -157,21 +159,31 @@ LW_FN void raster_within(lpv_raster* r, const lpv_lattice* lattice, lw_int4 low,
     raster_range(r, r->v, samples_from(lattice, low, r->v), samples_to(lattice, high, r->v), &r->firstV, &r->lastV);
 }
 
-LW_FN int raster_inside(const lpv_edge* edge, int u, int v) {
+LW_FN int raster_far(const lpv_edge* edge, int u, int v) {
     if (!edge->isFar) return edge->at + edge->stepU * u + edge->stepV * v >= 0;
     const float x = (float)u + 0.5f, y = (float)v + 0.5f;
     const float e = (edge->to[0] - edge->from[0]) * (y - edge->from[1]) - (edge->to[1] - edge->from[1]) * (x - edge->from[0]);
     return edge->isAbove ? e >= 0.0f : e < 0.0f;
 }
 
-// Whether a sample lies in the triangle; if so where, in cells of the lattice.
-LW_FN int raster_sample(const lpv_raster* r, int u, int v, float* cells) {
-    if (!(raster_inside(&r->edges[0], u, v) && raster_inside(&r->edges[1], u, v) && raster_inside(&r->edges[2], u, v))) return 0;
+// The edges' numbers for raster_sample(), which takes a row's samples one after the other.
+LW_FN void raster_row(const lpv_raster* r, int v, long* edges) {
+    for (int k = 0; k < 3; ++k) edges[k] = r->edges[k].at + r->edges[k].stepU * r->firstU + r->edges[k].stepV * v;
+}
+
+// Whether a sample lies in the triangle.
+LW_FN int raster_sample(const lpv_raster* r, int u, int v, long* edges) {
+    const int isInside = (edges[0] | edges[1] | edges[2]) >= 0;
+    for (int k = 0; k < 3; ++k) edges[k] += r->edges[k].stepU;
+    return r->isFar ? raster_far(&r->edges[0], u, v) && raster_far(&r->edges[1], u, v) && raster_far(&r->edges[2], u, v) : isInside;
+}
+
+// Where a sample in the triangle lies, in cells of the lattice.
+LW_FN void raster_place(const lpv_raster* r, int u, int v, float* cells) {
     const float x = (float)u + 0.5f, y = (float)v + 0.5f, unit = 1.0f / (float)LPV_RASTER;
     cells[r->u] = x * unit;
     cells[r->v] = y * unit;
     cells[r->axis] = (r->at[0][r->axis] + (x - r->at[0][r->u]) * r->slopeU + (y - r->at[0][r->v]) * r->slopeV) * unit;
-    return 1;
 }
 
 #endif

@@ -93,9 +93,9 @@ LW_FN int parts_have(__global const LwLpvParts* parts, int x, int y, int z) {
 }
 
 // Where cell (x, y, z) of a grid of `count` a side is kept. slot: LwLpvParts's.
+LW_FN int slot_along(int cell, int count) { return cell < count ? cell : cell - count; }
 LW_FN int slot_of(int x, int y, int z, lw_int4 slot, int count) {
-    const int sx = x + slot.x, sy = y + slot.y, sz = z + slot.z;
-    return ((sz < count ? sz : sz - count) * count + (sy < count ? sy : sy - count)) * count + (sx < count ? sx : sx - count);
+    return (slot_along(z + slot.z, count) * count + slot_along(y + slot.y, count)) * count + slot_along(x + slot.x, count);
 }
 
 #endif
