@@ -107,9 +107,6 @@ __kernel void lpv_blocking_inject(__global const float* surfels, int stride, int
     if (outside) atomic_add(&state->surfelsOutside, outside);
 }
 
-// Triangles of a work-item: neighbours, as they are ordered.
-#define BLOCKING_RUN 16
-
 // A grid's lattice, and the corners of a part of it that are made.
 typedef struct {
     lpv_lattice lattice;
@@ -143,13 +140,15 @@ LW_FN int block_triangle(const lpv_raster* r, const lpv_region* region, int corn
     return corner;
 }
 
-// One work-item = BLOCKING_RUN triangles: their samples on the grid's lattice, at those corners that are to be made.
-__kernel void lpv_blocking_triangles(__global const float* triangles, int stride, int count, __global const LwLpvPlace* grid,
-                                     int size, __global uint* sums, __global const LwLpvBlockers* state) {
-    const int first = lw_list_index() * BLOCKING_RUN, last = min(first + BLOCKING_RUN, count);
-    if (!state->stale) return;
+// One work-item = one node of the tree over the triangles: the samples of its leaves' triangles on the grid's lattice, at those corners
+// that are to be made.
+__kernel void lpv_blocking_triangles(__global const float* nodes, int nodeCount, __global const float* triangles, int stride,
+                                     __global const LwLpvPlace* grid, int size, __global uint* sums,
+                                     __global const LwLpvBlockers* state) {
+    const int n = lw_list_index();
     const float scale = (float)LPV_RASTER * grid->origin.w;
-    if (!(scale > 0.0f)) return;
+    if (n >= nodeCount || !state->stale || !(scale > 0.0f)) return;
+    __global const float* node = nodes + n * LW_TREE_NODE;
     lpv_region region;
     region.size = size;
     lattice_of(grid->origin, &region.lattice);
@@ -158,13 +157,19 @@ __kernel void lpv_blocking_triangles(__global const float* triangles, int stride
     for (int part = 0; part < state->parts.count; ++part) {
         region.low = state->parts.low[part];
         region.high = state->parts.high[part];
-        for (int t = first; t < last; t += LW_WIDTH)
-            for (uint bits = raster_near(triangles, stride, t, &region.lattice, scale, region.low, region.high); bits;) {
-                const int k = t + take_lowest(&bits);
-                lpv_raster r;
-                if (k >= last || !raster_of(triangles, stride, k, &region.lattice, scale, &r)) continue;
-                raster_within(&r, &region.lattice, region.low, region.high);
-                corner = block_triangle(&r, &region, corner, run, sums);
+        const int4 reach = region.high - 1;  // the last corners', half a cell on: as far as the cells before them do
+        for (int first = 0; first < LW_TREE_CHILDREN; first += LW_WIDTH)
+            for (uint leaves = raster_leaves(node, first, &region.lattice, scale, region.low, reach); leaves;) {
+                __global const int* leaf = (__global const int*)node + first + take_lowest(&leaves);
+                const int begin = leaf[LW_TREE_CHILD], end = begin + leaf[LW_TREE_COUNT];
+                for (int t = begin; t < end; t += LW_WIDTH)
+                    for (uint bits = raster_near(triangles, stride, t, &region.lattice, scale, region.low, reach); bits;) {
+                        const int k = t + take_lowest(&bits);
+                        lpv_raster r;
+                        if (k >= end || !raster_of(triangles, stride, k, &region.lattice, scale, &r)) continue;
+                        raster_within(&r, &region.lattice, region.low, reach);
+                        corner = block_triangle(&r, &region, corner, run, sums);
+                    }
             }
     }
     end_run(run, corner, sums);

@@ -141,9 +141,6 @@ __kernel void lpv_sweep_cover_surfels(__global const float* surfels, int stride,
     end_areas(&run, sums, marks);
 }
 
-// Triangles of a work-item: neighbours, as they are ordered.
-#define COVER_RUN 16
-
 // A grid's lattice, and the cells of a part of it that are made.
 typedef struct {
     lpv_lattice lattice;
@@ -180,13 +177,15 @@ LW_FN void cover_triangle(const lpv_raster* r, const sweep_region* region, sweep
     if (cell >= 0) add_units(run, cell, sheets, found, units, sums, marks);
 }
 
-// One work-item = COVER_RUN triangles: their samples on the grid's lattice, in those cells that are to be made.
-__kernel void lpv_sweep_cover_triangles(__global const float* triangles, int stride, int count, __global const LwLpvPlace* grid,
-                                        int size, __global const LwSweepCover* state, __global uint* sums) {
-    const int first = lw_list_index() * COVER_RUN, last = min(first + COVER_RUN, count);
-    if (!state->stale) return;
+// One work-item = one node of the tree over the triangles: the samples of its leaves' triangles on the grid's lattice, in those cells
+// that are to be made.
+__kernel void lpv_sweep_cover_triangles(__global const float* nodes, int nodeCount, __global const float* triangles, int stride,
+                                        __global const LwLpvPlace* grid, int size, __global const LwSweepCover* state,
+                                        __global uint* sums) {
+    const int n = lw_list_index();
     const float scale = (float)LPV_RASTER * grid->origin.w;
-    if (!(scale > 0.0f)) return;
+    if (n >= nodeCount || !state->stale || !(scale > 0.0f)) return;
+    __global const float* node = nodes + n * LW_TREE_NODE;
     __global uint* marks = sums + sweep_area_marks(size);
     sweep_region region;
     region.size = size;
@@ -196,13 +195,18 @@ __kernel void lpv_sweep_cover_triangles(__global const float* triangles, int str
     for (int part = 0; part < state->parts.count; ++part) {
         region.low = state->parts.low[part];
         region.high = state->parts.high[part];
-        for (int t = first; t < last; t += LW_WIDTH)
-            for (uint bits = raster_near(triangles, stride, t, &region.lattice, scale, region.low, region.high); bits;) {
-                const int k = t + take_lowest(&bits);
-                lpv_raster r;
-                if (k >= last || !raster_of(triangles, stride, k, &region.lattice, scale, &r)) continue;
-                raster_within(&r, &region.lattice, region.low, region.high);
-                cover_triangle(&r, &region, &run, sums, marks);
+        for (int first = 0; first < LW_TREE_CHILDREN; first += LW_WIDTH)
+            for (uint leaves = raster_leaves(node, first, &region.lattice, scale, region.low, region.high); leaves;) {
+                __global const int* leaf = (__global const int*)node + first + take_lowest(&leaves);
+                const int begin = leaf[LW_TREE_CHILD], end = begin + leaf[LW_TREE_COUNT];
+                for (int t = begin; t < end; t += LW_WIDTH)
+                    for (uint bits = raster_near(triangles, stride, t, &region.lattice, scale, region.low, region.high); bits;) {
+                        const int k = t + take_lowest(&bits);
+                        lpv_raster r;
+                        if (k >= end || !raster_of(triangles, stride, k, &region.lattice, scale, &r)) continue;
+                        raster_within(&r, &region.lattice, region.low, region.high);
+                        cover_triangle(&r, &region, &run, sums, marks);
+                    }
             }
     }
     end_areas(&run, sums, marks);

@@ -19,8 +19,8 @@
 // Samples from the lattice's origin within which they are: products of two differences of so many steps stay below 2^60. Edges to
 // vertices farther off are told by floats, which have no more than a quarter of a sample there.
 #define LPV_EXACT 2097152.0f
-// Beyond the samples in a part's cells, those that may count there: area lies half a cell behind its surface, or at the corner half
-// a cell off. One more for rounding.
+// Beyond the samples in a part's cells, those that may count there: area lies half a cell behind its surface, or at a corner half a
+// cell off. One more for rounding.
 #define LPV_BESIDE (LPV_RASTER / 2 + 1)
 
 typedef struct {
@@ -51,6 +51,19 @@ LW_FN int samples_from(const lpv_lattice* lattice, lw_int4 low, int a) {
 }
 LW_FN int samples_to(const lpv_lattice* lattice, lw_int4 high, int a) {
     return LPV_RASTER * (lattice->corner[a] + (a == 0 ? high.x : a == 1 ? high.y : high.z)) + LPV_BESIDE;
+}
+
+// Of LW_WIDTH children of a node of the tree over the triangles, from `child` on, a bit each: leaves that reach a part. (Boxes are wider
+// than what they hold by more than rounding.)
+LW_FN uint raster_leaves(__global const float* node, int child, const lpv_lattice* lattice, float scale, lw_int4 low, lw_int4 high) {
+    mask isNear = loadi((__global const int*)node, LW_TREE_COUNT + child) > 0;
+    for (int a = 0; a < 3; ++a) {
+        const float first = (float)samples_from(lattice, low, a), beyond = (float)samples_to(lattice, high, a), from = lattice->from[a];
+        const real centre = (load(node, LW_TREE_CHILDREN * a + child) - from) * scale,
+                   extent = load(node, LW_TREE_HALF + LW_TREE_CHILDREN * a + child) * scale;
+        isNear = and_(isNear, and_(centre + extent >= first, centre - extent <= beyond));
+    }
+    return bits_(isNear);
 }
 
 // Of LW_WIDTH triangles from t on a bit each: those that reach a part and may have samples there. Without samples along two axes there

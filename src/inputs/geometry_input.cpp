@@ -192,6 +192,7 @@ void GeometryInput::import(Executor& executor, const LWGeometry* geometry) {
         const bool isKnown = !isForgotten_ && changed.size() <= drawn.size();
         upload(executor, drawn, tree.order, tree.nodes, isKnown ? boxesAround(changed) : std::vector<float>());
         triangleCount = std::uint32_t(drawn.size());
+        nodeCount = std::uint32_t(tree.nodes.size() / LW_TREE_NODE);
         diagonal = drawn.empty() ? 0.0f : float(bounds.diagonal());
         revision += isKnown ? 1 : 2;
         isForgotten_ = false;

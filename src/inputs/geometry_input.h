@@ -43,6 +43,7 @@ public:
 
     Planes triangles;  // kPlaneCount planes, height 1, width = triangles padded; none without triangles
     Buffer nodes;      // of the tree of boxes over the triangles, see geometry_types.h
+    std::uint32_t nodeCount = 0;
     Buffer changes;    // a node of boxes around all that the last revision changed: triangles that came, and that went
     std::uint32_t triangleCount = 0;  // drawn
     float diagonal = 0.0f;            // of the bounding box of what is drawn, m

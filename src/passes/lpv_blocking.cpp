@@ -9,7 +9,6 @@ namespace {
 
 constexpr const char* kProgram = "lpv_blocking/lpv_blocking";
 constexpr std::size_t kRun = 64;  // LPV_RUN of the kernels
-constexpr std::size_t kTriangles = 16;  // BLOCKING_RUN
 constexpr Range kListGroup{16, 1};
 constexpr Range kCellGroup{16, 4};
 constexpr Range kRunGroup{1, 64};
@@ -85,8 +84,9 @@ void LpvBlocking::record(Executor& executor, const SurfelSet& surfels, const std
 void LpvBlocking::record(Executor& executor, const GeometryInput& geometry, const Buffer& place) {
     begin(executor, geometry.revision, place, true);
     if (geometry.triangleCount)
-        executor.run("lpv_blocking.inject", rasterise_, gridOver((geometry.triangleCount + kTriangles - 1) / kTriangles),
-                     kListGroup, geometry.triangles.memory, cl_int(geometry.triangles.planeStride), cl_int(geometry.triangleCount), place, cl_int(size_), sums_, state_);
+        executor.run("lpv_blocking.inject", rasterise_, gridOver(geometry.nodeCount), kListGroup, geometry.nodes,
+                     cl_int(geometry.nodeCount), geometry.triangles.memory, cl_int(geometry.triangles.planeStride), place,
+                     cl_int(size_), sums_, state_);
     merge(executor, true);
     end(executor);
 }

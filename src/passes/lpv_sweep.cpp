@@ -14,7 +14,6 @@ namespace lightwell {
 namespace {
 
 constexpr std::size_t kRun = 64;  // LW_SWEEP_RUN of the kernels
-constexpr std::size_t kTriangles = 16;  // COVER_RUN
 constexpr Range kListGroup{16, 1};
 constexpr Range kCellGroup{16, 4};
 constexpr const char* kInject = "lpv_sweep/lpv_sweep_inject";
@@ -122,10 +121,10 @@ void LpvSweep::recordCover(Executor& executor, const LpvSweepInput& input) {
     const std::size_t size = options_.size;
     executor.run("lpv_sweep.clear", clear_, {size, size * size}, kCellGroup, areas_, cl_int(size), cover_);
     if (hasTriangles) {
-        const Planes& planes = input.triangles->triangles;
-        const std::uint32_t count = input.triangles->triangleCount;
-        executor.run("lpv_sweep.cover", coverTriangles_, gridOver((count + kTriangles - 1) / kTriangles), kListGroup,
-                     planes.memory, cl_int(planes.planeStride), cl_int(count), place_, cl_int(options_.size), cover_, areas_);
+        const GeometryInput& geometry = *input.triangles;
+        executor.run("lpv_sweep.cover", coverTriangles_, gridOver(geometry.nodeCount), kListGroup, geometry.nodes,
+                     cl_int(geometry.nodeCount), geometry.triangles.memory, cl_int(geometry.triangles.planeStride), place_,
+                     cl_int(size), cover_, areas_);
     } else if (hasSurfels) {
         const Planes& planes = input.surfels.planes;
         executor.run("lpv_sweep.cover", coverSurfels_, runsOf(input.surfels.count), kListGroup, planes.memory,

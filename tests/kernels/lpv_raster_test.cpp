@@ -4,7 +4,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "shared/geometry_types.h"
+#include "inputs/geometry_input.h"
+#include "passes/vpl_list.h"
 #include "shared/lpv_sweep_types.h"
 #include "support/lpv_rig.h"
 
@@ -34,39 +35,68 @@ LwLpvParts allOf(int side) {
 // Cells of 1/2.
 const LwLpvPlace kGrid = placeOf(-1.0, 2.0, 0.5, 0.5);
 
+// Triangles, three vertices each, as kernels get them.
+struct Triangles {
+    std::vector<float> vertices;
+    GeometryInput input;
+    void add(const std::array<double, 3>& p) {
+        for (const double x : p) vertices.push_back(float(x));
+    }
+    void import(KernelRig& rig) {
+        LWGeometry geometry{};
+        geometry.structSize = sizeof geometry;
+        geometry.vertices = vertices.data();
+        geometry.vertexCount = std::uint32_t(vertices.size() / 3);
+        geometry.triangleCount = geometry.vertexCount / 3;
+        input.import(rig.executor(), &geometry);
+    }
+
+    // Sums of all of a grid's cells, and of all of its corners.
+    std::vector<cl_uint> cover(KernelRig& rig, const LwLpvPlace& place) const {
+        LwSweepCover stale{};
+        stale.stale = 1;
+        stale.parts = allOf(kSize);
+        const Guarded placed = rig.upload(std::vector<LwLpvPlace>{place}), state = rig.upload(std::vector<LwSweepCover>{stale}),
+                      sums = rig.upload(std::vector<cl_uint>((2 * LW_SWEEP_BLOCKS + 1) * kCells));
+        rig.run("cover", rig.kernel("lpv_sweep/lpv_sweep_cover", "lpv_sweep_cover_triangles"), gridOver(input.nodeCount), {16, 1}, input.nodes,
+                cl_int(input.nodeCount), input.triangles.memory, cl_int(input.triangles.planeStride), placed, cl_int(kSize), state, sums);
+        return rig.download<cl_uint>(sums);
+    }
+    std::vector<cl_uint> block(KernelRig& rig, const LwLpvPlace& place) const {
+        LwLpvBlockers stale{};
+        stale.stale = 1;
+        stale.parts = allOf(kSize + 1);
+        const Guarded placed = rig.upload(std::vector<LwLpvPlace>{place}), state = rig.upload(std::vector<LwLpvBlockers>{stale}),
+                      sums = rig.upload(std::vector<cl_uint>(2 * LW_LPV_BANDS * std::size_t(lpv_corners(kSize))));
+        rig.run("block", rig.kernel("lpv_blocking/lpv_blocking", "lpv_blocking_triangles"), gridOver(input.nodeCount), {16, 1}, input.nodes,
+                cl_int(input.nodeCount), input.triangles.memory, cl_int(input.triangles.planeStride), placed, cl_int(kSize), sums, state);
+        return rig.download<cl_uint>(sums);
+    }
+};
+
 // A height over (x, y) of the grid of cells of 1/2 from (-1, 2, 0.5) on, as triangles over a square mesh; no steeper than 1.
 // Vertices that are not moved lie on samples of the lattice.
-struct Sheet {
-    std::vector<float> planes;  // of GeometryInput
-    int count = 0, stride = 0;
-
+struct Sheet : Triangles {
     Sheet(int mesh, bool moved) {
         std::mt19937 random(31);
         std::uniform_real_distribution<double> unit(-1.0, 1.0);
-        std::vector<std::array<double, 3>> vertices;
+        std::vector<std::array<double, 3>> corners;
         for (int j = 0; j <= mesh; ++j)
             for (int i = 0; i <= mesh; ++i) {
                 const bool isEdge = i == 0 || j == 0 || i == mesh || j == mesh;
                 const double shift = moved && !isEdge ? 0.2 : 0.0;
                 // 66 samples to a side: one more than the grid's 64 all around.
                 const double u = -0.5 + 66.0 * (i + shift * unit(random)) / mesh, v = -0.5 + 66.0 * (j + shift * unit(random)) / mesh;
-                vertices.push_back({-1.0 + u / 8.0, 2.0 + v / 8.0, 0.5 + 4.0 + 0.8 * std::sin(0.5 * u / 8.0) + 0.4 * std::cos(v / 8.0)});
+                corners.push_back({-1.0 + u / 8.0, 2.0 + v / 8.0, 0.5 + 4.0 + 0.8 * std::sin(0.5 * u / 8.0) + 0.4 * std::cos(v / 8.0)});
             }
-        std::vector<std::array<std::size_t, 3>> triangles;
         for (int j = 0; j < mesh; ++j)
             for (int i = 0; i < mesh; ++i) {
-                const auto at = [&](int di, int dj) { return std::size_t((j + dj) * (mesh + 1) + i + di); };
-                triangles.push_back({at(0, 0), at(1, 0), at(1, 1)});
+                const auto put = [&](int di, int dj) { add(corners[std::size_t((j + dj) * (mesh + 1) + i + di)]); };
+                put(0, 0), put(1, 0), put(1, 1);
                 // Some turned round: of either winding an edge's samples are one triangle's.
-                if ((i + j) % 2) triangles.push_back({at(0, 0), at(0, 1), at(1, 1)});
-                else triangles.push_back({at(0, 0), at(1, 1), at(0, 1)});
+                if ((i + j) % 2) put(0, 0), put(0, 1), put(1, 1);
+                else put(0, 0), put(1, 1), put(0, 1);
             }
-        count = int(triangles.size());
-        stride = (count + 15) / 16 * 16;
-        planes.resize(std::size_t(stride) * LW_TRIANGLE_PLANES);
-        for (std::size_t t = 0; t < triangles.size(); ++t)
-            for (std::size_t k = 0; k < 3; ++k)
-                for (std::size_t a = 0; a < 3; ++a) planes[(3 * k + a) * std::size_t(stride) + t] = float(vertices[triangles[t][k]][a]);
     }
 };
 
@@ -87,38 +117,22 @@ std::array<double, 2> samplesOfFan(KernelRig& rig, const LwLpvPlace& place, doub
         const double x[] = {t, 66.0, 66.0 - t, 0.0}, y[] = {0.0, t, 66.0, 66.0 - t};
         return {x[side] - 0.75, y[side] - 0.75};
     };
-    const std::size_t count = along.size(), stride = (count + 15) / 16 * 16;
-    std::vector<float> planes(stride * LW_TRIANGLE_PLANES);
+    const std::size_t count = along.size();
+    Triangles fan;
+    const double cell = double(place.cell.s[0]), height = double(place.origin.s[2]) + 3.3 * cell;
     for (std::size_t t = 0; t < count; ++t) {
         std::array<std::array<double, 2>, 3> corners = {{{u, v}, rim(along[t]), rim(along[(t + 1) % count])}};
         if (random() % 2u) std::swap(corners[1], corners[2]);
-        for (std::size_t k = 0; k < 3; ++k) {
-            for (std::size_t a = 0; a < 2; ++a)
-                planes[(3 * k + a) * stride + t] = float(double(place.origin.s[a]) + double(place.cell.s[0]) * corners[k][a] / 4.0);
-            planes[(3 * k + 2) * stride + t] = place.origin.s[2] + 3.3f * place.cell.s[0];
-        }
+        for (const auto& p : corners)
+            fan.add({double(place.origin.s[0]) + cell * p[0] / 4.0, double(place.origin.s[1]) + cell * p[1] / 4.0, height});
     }
-    const Guarded triangles = rig.upload(planes), placed = rig.upload(std::vector<LwLpvPlace>{place}),
-                  corners = rig.upload(std::vector<cl_uint>(2 * LW_LPV_BANDS * std::size_t(lpv_corners(kSize))));
-    LwLpvBlockers anew{};
-    anew.stale = 1;
-    anew.parts = allOf(kSize + 1);
-    const Guarded blockers = rig.upload(std::vector<LwLpvBlockers>{anew});
-    rig.run("block", rig.kernel("lpv_blocking/lpv_blocking", "lpv_blocking_triangles"), {stride, 1}, {16, 1}, triangles,
-            cl_int(stride), cl_int(count), placed, cl_int(kSize), corners, blockers);
-    const std::vector<cl_uint> sums = rig.download<cl_uint>(corners);
+    fan.import(rig);
+    const std::vector<cl_uint> sums = fan.block(rig, place), cells = fan.cover(rig, place);
     double whole = 0.0;
     for (std::size_t i = 0; i < std::size_t(lpv_corners(kSize)); ++i) {
         const cl_uint* at = &sums[2 * LW_LPV_BANDS * i];
         whole += double(std::int64_t(std::uint64_t(at[1]) << 32 | at[0]));
     }
-    LwSweepCover stale{};
-    stale.stale = 1;
-    stale.parts = allOf(kSize);
-    const Guarded areas = rig.upload(std::vector<cl_uint>((2 * LW_SWEEP_BLOCKS + 1) * kCells)), cover = rig.upload(std::vector<LwSweepCover>{stale});
-    rig.run("cover", rig.kernel("lpv_sweep/lpv_sweep_cover", "lpv_sweep_cover_triangles"), {stride, 1}, {16, 1}, triangles,
-            cl_int(stride), cl_int(count), placed, cl_int(kSize), cover, areas);
-    const std::vector<cl_uint> cells = rig.download<cl_uint>(areas);
     double covered = 0.0;
     for (std::size_t i = 0; i < kCells; ++i) {
         const cl_uint* at = &cells[2 * (LW_SWEEP_BLOCKS * i + LW_SWEEP_COVER)];
@@ -152,18 +166,9 @@ namespace {
 void checkSheet(int mesh) {
     KernelRig rig(GENERATE(1u, 16u));
     const bool moved = GENERATE(false, true);
-    const Sheet sheet(mesh, moved);
-    const std::size_t words = (2 * LW_SWEEP_BLOCKS + 1) * kCells;
-    const Guarded triangles = rig.upload(sheet.planes), place = rig.upload(std::vector<LwLpvPlace>{kGrid}),
-                  sums = rig.upload(std::vector<cl_uint>(words));
-    LwSweepCover stale{};
-    stale.stale = 1;
-    stale.parts = allOf(kSize);
-    const Guarded state = rig.upload(std::vector<LwSweepCover>{stale});
-    const std::size_t padded = std::size_t(sheet.stride);
-    rig.run("cover", rig.kernel("lpv_sweep/lpv_sweep_cover", "lpv_sweep_cover_triangles"), {padded, 1}, {16, 1}, triangles,
-            cl_int(sheet.stride), cl_int(sheet.count), place, cl_int(kSize), state, sums);
-    const std::vector<cl_uint> found = rig.download<cl_uint>(sums);
+    Sheet sheet(mesh, moved);
+    sheet.import(rig);
+    const std::vector<cl_uint> found = sheet.cover(rig, kGrid), blocked = sheet.block(rig, kGrid);
     std::vector<double> columns(std::size_t(kSize) * kSize);
     for (std::size_t i = 0; i < kCells; ++i) {
         const cl_uint* at = &found[2 * (LW_SWEEP_BLOCKS * i + LW_SWEEP_COVER)];
@@ -177,14 +182,6 @@ void checkSheet(int mesh) {
     // As much leans into the border's columns as out of them; fans, below, are flat and tell each sample.
     CHECK(sum < 1.02 * kSize * kSize);
 
-    const Guarded corners = rig.upload(std::vector<cl_uint>(2 * LW_LPV_BANDS * std::size_t(lpv_corners(kSize))));
-    LwLpvBlockers anew{};
-    anew.stale = 1;
-    anew.parts = allOf(kSize + 1);
-    const Guarded blockers = rig.upload(std::vector<LwLpvBlockers>{anew});
-    rig.run("block", rig.kernel("lpv_blocking/lpv_blocking", "lpv_blocking_triangles"), {padded, 1}, {16, 1}, triangles,
-            cl_int(sheet.stride), cl_int(sheet.count), place, cl_int(kSize), corners, blockers);
-    const std::vector<cl_uint> blocked = rig.download<cl_uint>(corners);
     double straight = 0.0;  // along z, of whole areas: the columns' own
     for (std::size_t i = 0; i < std::size_t(lpv_corners(kSize)); ++i) {
         const cl_uint* at = &blocked[2 * (LW_LPV_BANDS * i + 3)];
