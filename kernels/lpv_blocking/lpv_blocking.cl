@@ -45,8 +45,8 @@ __kernel void lpv_blocking_begin(__global const LwLpvPlace* place, uint low, uin
     if (!state->stale) return;
     LwLpvParts parts;
     parts_of(last, origin, isSame && scrolls, size + 1, &parts);
-    if (!scrolls) parts.slot = (int4)(0);
     state->parts = parts;
+    if (scrolls) state->current = 1 - state->current;
     state->origin = origin;
     state->revision[0] = low;
     state->revision[1] = high;
@@ -175,19 +175,26 @@ __kernel void lpv_blocking_triangles(__global const float* nodes, int nodeCount,
     end_run(run, corner, sums);
 }
 
-// One work-item = one corner (x; y and z) that is to be made: its sums, which are emptied, as a vector; of the first view, or where it
-// blocks more than those before.
-__kernel void lpv_blocking_merge(__global uint* sums, int size, int isFirst, __global float4* merged,
+// One work-item = one corner (x; y and z). That is to be made: its sums, which are emptied, as a vector; of the first view, or where it
+// blocks more than those before. That stayed: as it was, from the other of the two arrays.
+__kernel void lpv_blocking_merge(__global uint* sums, int size, int isFirst, __global float4* merged, __global float4* other,
                                  __global const LwLpvBlockers* state) {
     const int side = size + 1, x = (int)get_global_id(0), line = (int)get_global_id(1), y = line % side, z = line / side;
-    if (x >= side || line >= side * side || !state->stale || !parts_have(&state->parts, x, y, z)) return;
-    __global uint* from = sums + 2 * LW_LPV_BANDS * (line * side + x);
-    const int at = slot_of(x, y, z, state->parts.slot, side);
+    if (x >= side || line >= side * side || !state->stale) return;
+    const int at = line * side + x;
+    __global float4* now = state->current ? other : merged;
+    __global const float4* last = state->current ? merged : other;
+    if (!parts_have(&state->parts, x, y, z)) {
+        const int4 shift = state->parts.shift;
+        now[at] = last[((z + shift.z) * side + y + shift.y) * side + x + shift.x];
+        return;
+    }
+    __global uint* from = sums + 2 * LW_LPV_BANDS * at;
     const float scale = 1.0f / LPV_WHOLE;
     const float4 found = (float4)(convert_float(long_at(from)), convert_float(long_at(from + 2)), convert_float(long_at(from + 4)),
                                   convert_float(long_at(from + 6))) * scale;
     for (int i = 0; i < 2 * LW_LPV_BANDS; ++i) from[i] = 0u;
-    if (isFirst || found.x > merged[at].x) merged[at] = found;
+    if (isFirst || found.x > now[at].x) now[at] = found;
 }
 
 // What gets through where blockers of first coefficient b0 have `linear` = c1 . d: |c1 . d| is the larger one of d and -d.
@@ -205,33 +212,28 @@ LW_FN void face_ways(float4 b, float e, float u, float v, __global float* to, in
 }
 
 // One work-item = one cell (x; y and z): its three faces towards lower neighbours.
-__kernel void lpv_blocking_faces(__global const float4* merged, int size, __global float* faces,
+__kernel void lpv_blocking_faces(__global const float4* merged, __global const float4* other, int size, __global float* faces,
                                  __global const LwLpvBlockers* state) {
-    const int x = (int)get_global_id(0), line = (int)get_global_id(1), y = line % size, z = line / size, plane = lpv_plane(size);
+    const int x = (int)get_global_id(0), line = (int)get_global_id(1), y = line % size, z = line / size, row = size + 1,
+              slice = row * row, plane = lpv_plane(size);
     if (x >= size || line >= size * size || !state->stale) return;
-    const int4 slot = state->parts.slot;
-    const int side = size + 1, x0 = slot_along(x + slot.x, side), x1 = slot_along(x + 1 + slot.x, side);
-    const int row = side * slot_along(y + slot.y, side), row1 = side * slot_along(y + 1 + slot.y, side);
-    const int slice = side * side * slot_along(z + slot.z, side), slice1 = side * side * slot_along(z + 1 + slot.z, side);
+    __global const float4* b = (state->current ? other : merged) + (z * row + y) * row + x;
     __global float* to = faces + lpv_cell(size, x, y, z);
-    const float4 corner = merged[slice + row + x0], alongX = merged[slice + row + x1], alongY = merged[slice + row1 + x0],
-                 alongZ = merged[slice1 + row + x0];
-    const float4 bx = 0.25f * ((corner + alongY) + (alongZ + merged[slice1 + row1 + x0])),
-                 by = 0.25f * ((corner + alongX) + (alongZ + merged[slice1 + row + x1])),
-                 bz = 0.25f * ((corner + alongX) + (alongY + merged[slice + row1 + x1]));
+    const float4 bx = 0.25f * ((b[0] + b[row]) + (b[slice] + b[slice + row])),
+                 by = 0.25f * ((b[0] + b[1]) + (b[slice] + b[slice + 1])), bz = 0.25f * ((b[0] + b[1]) + (b[row] + b[row + 1]));
     face_ways(bx, bx.y, bx.z, bx.w, to, plane);
     face_ways(by, by.z, by.y, by.w, to + LW_LPV_WAYS * plane, plane);
     face_ways(bz, bz.w, bz.y, bz.z, to + 2 * LW_LPV_WAYS * plane, plane);
 }
 
 // One work-item = LW_LPV_BLOCK_RUN cells of a row (x; y and z): 1 where anything blocks at their corners.
-__kernel void lpv_blocking_runs(__global const float4* merged, int size, __global int* runs, __global const LwLpvBlockers* state) {
-    const int count = size / LW_LPV_BLOCK_RUN, run = (int)get_global_id(0), line = (int)get_global_id(1), side = size + 1;
+__kernel void lpv_blocking_runs(__global const float4* merged, __global const float4* other, int size, __global int* runs,
+                                __global const LwLpvBlockers* state) {
+    const int count = size / LW_LPV_BLOCK_RUN, run = (int)get_global_id(0), line = (int)get_global_id(1), row = size + 1;
     if (run >= count || line >= size * size || !state->stale) return;
-    const int x = run * LW_LPV_BLOCK_RUN, y = line % size, z = line / size;
-    const int4 slot = state->parts.slot;
+    __global const float4* b = (state->current ? other : merged) + (line / size * row + line % size) * row + run * LW_LPV_BLOCK_RUN;
     float most = 0.0f;
     for (int i = 0; i <= LW_LPV_BLOCK_RUN; ++i)
-        for (int k = 0; k < 4; ++k) most = fmax(most, merged[slot_of(x + i, y + (k & 1), z + (k >> 1), slot, side)].x);
+        most = fmax(most, fmax(fmax(b[i].x, b[i + row].x), fmax(b[i + row * row].x, b[i + row * row + row].x)));
     runs[line * count + run] = most > 0.0f;
 }

@@ -1,6 +1,6 @@
 // Grids that move on by whole cells of the world: what was made of a cell is right wherever the grid lies, so that the cells that
-// stay are kept, and those that came in are made. Cells keep their slots in memory: cell c of the world's has slot c modulo the grid's
-// size along each axis, and what comes in takes the slots of what went out.
+// stay are kept, and those that came in are made. What is large keeps its slots in memory: cell c of the world's has slot c modulo the
+// grid's size along each axis, and what comes in takes the slots of what went out. What many read is moved along.
 #ifndef LW_LPV_SCROLL_H
 #define LW_LPV_SCROLL_H
 
@@ -54,6 +54,7 @@ LW_FN void parts_of(const lw_float4 last, const lw_float4 now, int keeps, int co
         high[a] = min(count, count - shift);
         isKept = isKept && low[a] < high[a];
     }
+    parts->shift = (lw_int4)(to.corner[0] - from.corner[0], to.corner[1] - from.corner[1], to.corner[2] - from.corner[2], 0);
     parts->slot = (lw_int4)(lpv_wrap(to.corner[0], count), lpv_wrap(to.corner[1], count), lpv_wrap(to.corner[2], count), 0);
     parts->count = 0;
     const lw_int4 all = (lw_int4)(count, count, count, 0);

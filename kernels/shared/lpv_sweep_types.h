@@ -59,7 +59,7 @@ typedef struct {
     lw_int stale, unused;
     LwLpvParts parts;
 } LwSweepCover;
-LW_SIZE_CHECK(LwSweepCover, 160);
+LW_SIZE_CHECK(LwSweepCover, 176);
 
 // A plane's light, between empty cells on all sides.
 #define LW_SWEEP_PAD 16

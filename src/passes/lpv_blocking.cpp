@@ -55,13 +55,13 @@ void LpvBlocking::begin(Executor& executor, std::uint64_t revision, const Buffer
 void LpvBlocking::merge(Executor& executor, bool isFirst) {
     const std::size_t side = size_ + 1;
     executor.run("lpv_blocking.merge", merge_, {side, side * side}, kCellGroup, sums_, cl_int(size_), cl_int(isFirst ? 1 : 0),
-                 merged_, state_);
+                 merged_, other(), state_);
 }
 
 void LpvBlocking::end(Executor& executor) {
     const std::size_t lines = std::size_t(size_) * size_;
-    executor.run("lpv_blocking.faces", faceWays_, {size_, lines}, kCellGroup, merged_, cl_int(size_), faces_, state_);
-    executor.run("lpv_blocking.faces", markRuns_, {size_ / LW_LPV_BLOCK_RUN, lines}, kRunGroup, merged_, cl_int(size_), runs_,
+    executor.run("lpv_blocking.faces", faceWays_, {size_, lines}, kCellGroup, merged_, other(), cl_int(size_), faces_, state_);
+    executor.run("lpv_blocking.faces", markRuns_, {size_ / LW_LPV_BLOCK_RUN, lines}, kRunGroup, merged_, other(), cl_int(size_), runs_,
                  state_);
 }
 
@@ -82,6 +82,7 @@ void LpvBlocking::record(Executor& executor, const SurfelSet& surfels, const std
 }
 
 void LpvBlocking::record(Executor& executor, const GeometryInput& geometry, const Buffer& place) {
+    other_.reserve(device_, mergedBytes(size_), "blockers at the corners of cells that stayed");
     begin(executor, geometry.revision, place, true);
     if (geometry.triangleCount)
         executor.run("lpv_blocking.inject", rasterise_, gridOver(geometry.nodeCount), kListGroup, geometry.nodes,
@@ -92,11 +93,11 @@ void LpvBlocking::record(Executor& executor, const GeometryInput& geometry, cons
 }
 
 std::uint64_t LpvBlocking::bytes() const {
-    return sums_.bytes() + merged_.bytes() + faces_.bytes() + runs_.bytes() + state_.bytes();
+    return sums_.bytes() + merged_.bytes() + other_.bytes() + faces_.bytes() + runs_.bytes() + state_.bytes();
 }
 
-std::uint64_t LpvBlocking::estimateBytes(std::uint32_t size) {
-    return sumBytes(size) + mergedBytes(size) + faceBytes(size) + runBytes(size) + sizeof(LwLpvBlockers);
+std::uint64_t LpvBlocking::estimateBytes(std::uint32_t size, bool scrolls) {
+    return sumBytes(size) + (scrolls ? 2 : 1) * mergedBytes(size) + faceBytes(size) + runBytes(size) + sizeof(LwLpvBlockers);
 }
 
 }  // namespace lightwell
