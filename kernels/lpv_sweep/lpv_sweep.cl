@@ -41,12 +41,15 @@ __kernel void lpv_sweep_resolve(__global const uint* lights, __global const uint
     const int4 slot = cover->parts.slot;
     // A row in the second order is a column in the first.
     const int start = order == 0 ? (z * size + row) * size : z * size * size + row, step = order == 0 ? 1 : size;
+    // Areas are kept in slots.
+    const int kept = order == 0 ? slot_of(-slot.x, row, z, slot, size) : slot_of(row, -slot.y, z, slot, size),
+              firstSlot = order == 0 ? slot.x : slot.y;
     __global const uint* lightMarks = lights + sweep_light_marks(size);
     __global const uint* areaMarks = areas + sweep_area_marks(size);
     uint sending = 0u, stopping = 0u;
     for (int i = 0; i < size; ++i) {
         sending |= lightMarks[start + i * step];
-        stopping |= areaMarks[order == 0 ? slot_of(i, row, z, slot, size) : slot_of(row, i, z, slot, size)];
+        stopping |= areaMarks[kept + step * i];  // in any order
     }
     const int at = order * cells + (z * size + row) * size;
     used[2 * (at / size)] = sending;
@@ -60,13 +63,13 @@ __kernel void lpv_sweep_resolve(__global const uint* lights, __global const uint
                 sources[(k + c) * stride + at + i] =
                     convert_float(long_at(light + 2 * (k + c))) * first * second * inverse * inverse;
         }
-        const int kept = order == 0 ? slot_of(i, row, z, slot, size) : slot_of(row, i, z, slot, size);
-        __global const uint* area = areas + 2 * LW_SWEEP_BLOCKS * kept;
+        const int from = kept + step * slot_along(firstSlot + i, size);
+        __global const uint* area = areas + 2 * LW_SWEEP_BLOCKS * from;
         for (uint bits = stopping; bits;) {
             const int k = take_lowest(&bits);
             sheets[k * stride + at + i] = convert_float(long_at(area + 2 * k)) * unit;
         }
-        const float closed = areaMarks[kept] ? convert_float(long_at(area + 2 * LW_SWEEP_COVER)) * unit : 0.0f;
+        const float closed = areaMarks[from] ? convert_float(long_at(area + 2 * LW_SWEEP_COVER)) * unit : 0.0f;
         sheets[LW_SWEEP_COVER * stride + at + i] = 1.0f - fmin(closed, 1.0f);
     }
 }
