@@ -150,7 +150,10 @@ TEST_CASE("of triangles that meet in a point, on a sample or beside it, each sam
     for (int i = 0; i < 60; ++i) {
         const bool isFar = i % 2;
         const LwLpvPlace place = isFar ? placeOf(0.5 * 100000, -0.5 * 70000, 0.5 * 40000, 0.5) : kGrid;
-        const auto near = [&](int k) { return double(random() % 60u) + 2.5 + (k % 3 ? 1.0 : 0.0) * std::pow(0.1, k % 7) * (double(random()) / 4294967296.0 - 0.5); };
+        const auto near = [&](int k) {
+            const double off = std::pow(0.1, k % 7) * (double(random()) / 4294967296.0 - 0.5);
+            return double(random() % 60u) + 2.5 + (k % 3 ? off : 0.0);
+        };
         const double u = near(i / 2), v = near(i / 3);
         INFO("fan " << i << " about " << u << " " << v);
         const auto [corners, cells] = samplesOfFan(rig, place, u, v, 5 + 13 * (i % 9), unsigned(i));
