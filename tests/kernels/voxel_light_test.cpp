@@ -58,7 +58,7 @@ std::array<double, 3> totalOf(const std::vector<VoxelTexel>& texels) {
 }  // namespace
 
 TEST_CASE("a voxel's light is its texels' flux over pi and its surfaces' area, and all flux arrives",
-          "[voxel_light]") {
+          "[voxel_light][large]") {
     VoxelLightRig rig(16, 32, LW_VOXEL_MODE_ISOTROPIC, false);
     Lit scene(700);
     // Those on a voxel's very border may lie on its other side for floats.
@@ -99,7 +99,7 @@ TEST_CASE("a voxel's light is its texels' flux over pi and its surfaces' area, a
     }
 }
 
-TEST_CASE("the same words in any order of texels and at any width", "[voxel_light]") {
+TEST_CASE("the same words in any order of texels and at any width", "[voxel_light][large]") {
     const auto mode = GENERATE(LW_VOXEL_MODE_ISOTROPIC, LW_VOXEL_MODE_ANISOTROPIC, LW_VOXEL_MODE_SH2);
     const bool sides = mode == LW_VOXEL_MODE_ANISOTROPIC;
     VoxelLightRig wide(16, 32, mode, sides), narrow(1, 32, mode, sides);
@@ -121,7 +121,7 @@ TEST_CASE("the same words in any order of texels and at any width", "[voxel_ligh
 }
 
 TEST_CASE("words lose less than half a percent of the mean irradiance, at contrasts of ten thousand",
-          "[voxel_light]") {
+          "[voxel_light][large]") {
     const bool isEven = GENERATE(false, true);
     VoxelLightRig rig(16, 32, LW_VOXEL_MODE_ISOTROPIC, false);
     const std::vector<VoxelTriangle> room = voxelRoom(2.3, 29.6);
@@ -175,7 +175,7 @@ TEST_CASE("words lose less than half a percent of the mean irradiance, at contra
 }
 
 TEST_CASE("bricks whose light and surfaces stay are not made again, and come out as if they were",
-          "[voxel_light]") {
+          "[voxel_light][large]") {
     const auto mode = GENERATE(LW_VOXEL_MODE_ISOTROPIC, LW_VOXEL_MODE_ANISOTROPIC);
     VoxelLightRig rig(16, 32, mode, false), anew(16, 32, mode, false);
     Lit scene(90);
@@ -240,7 +240,7 @@ TEST_CASE("emissive surfaces shine by themselves", "[voxel_light]") {
 }
 
 TEST_CASE("a thin wall shows each side its own light where voxels know what faces them",
-          "[voxel_light]") {
+          "[voxel_light][large]") {
     const bool aware = GENERATE(false, true);
     VoxelLightRig rig(16, 32, LW_VOXEL_MODE_ANISOTROPIC, true);
     rig.aware = aware;
@@ -268,7 +268,7 @@ TEST_CASE("a thin wall shows each side its own light where voxels know what face
     CHECK(across == 0.0);
 }
 
-TEST_CASE("SH2 keeps the flux of a wall, and shines to its own side", "[voxel_light]") {
+TEST_CASE("SH2 keeps the flux of a wall, and shines to its own side", "[voxel_light][large]") {
     VoxelLightRig rig(16, 32, LW_VOXEL_MODE_SH2, false);
     const std::vector<VoxelTriangle> wall = sheet(13.5, 0.0, 32.0, -1);
     rig.setTriangles(wall);
