@@ -5,11 +5,18 @@
 #include "shared/surface.h"
 #include "shared/voxel_visibility_types.h"
 
-#if LW_WIDTH == 1
-LW_FN lanei gather_bytes(__global const uchar* p, lanei i) { return p[i]; }
+// Lane l: byte p[i.l] and, times 256, the one after it.
+#ifdef POCL_DEVICE_ADDRESS_BITS
+typedef ushort lw_loose_pair __attribute__((aligned(1)));
+#define LW_SIGHT_PAIR(p, i) ((int)*(__global const lw_loose_pair*)((p) + (i)))  // half the loads
 #else
-#define LW_SIGHT_LANE(l) p[i.s##l]
-LW_FN lanei gather_bytes(__global const uchar* p, lanei i) { return (lanei)LW_LANES(LW_SIGHT_LANE); }
+#define LW_SIGHT_PAIR(p, i) ((int)(p)[i] | (int)(p)[(i) + 1] << 8)
+#endif
+#if LW_WIDTH == 1
+LW_FN lanei gather_pairs(__global const uchar* p, lanei i) { return LW_SIGHT_PAIR(p, i); }
+#else
+#define LW_SIGHT_LANE(l) LW_SIGHT_PAIR(p, i.s##l)
+LW_FN lanei gather_pairs(__global const uchar* p, lanei i) { return (lanei)LW_LANES(LW_SIGHT_LANE); }
 #endif
 
 // Of a coordinate in voxels' centres: the lower of the two voxels that it lies between, and how far it is on to the upper one.
@@ -64,8 +71,9 @@ LW_FN real voxel_sight(__global const uchar* sights, __global const LwVoxelEye* 
     LW_UNROLL for (int i = 0; i < 4; ++i) {
         const real w = ((i & 1) ? ty : 1.0f - ty) * ((i & 2) ? tz : 1.0f - tz);
         const lanei at = first + ((i & 1) * size + (i >> 1) * size * size);
-        add_sight(&sum, &missing, w * (1.0f - tx), gather_bytes(sight, at));
-        add_sight(&sum, &missing, w * tx, gather_bytes(sight, at + 1));
+        const lanei pair = gather_pairs(sight, at);
+        add_sight(&sum, &missing, w * (1.0f - tx), pair & 255);
+        add_sight(&sum, &missing, w * tx, pair >> 8);
     }
     return 1.0f - missing / ((float)LW_SIGHT_FULL * sum);
 }
