@@ -80,31 +80,35 @@ LW_FN void add_sample(cone_light* l, const cone_sample* s, const LwConeStep* ste
 // The corner of a step's place in grid c; 0: nothing there.
 #if LW_CONE_CASCADES == 1
 LW_FN int find_at(cone_corner* corner, const cone_volume* volumes, const cone_origin* from, int c, __global const LwConeStep* step, real dx,
-                  real dy, real dz, mask live, real out) {
+                  real dy, real dz, mask live, real out, real far) {
     const real d = (real)step->distance;
     return find_corner(corner, volumes[c].table + volumes[c].grids.first[step->level], volumes[c].grids.size, step->level,
-                       fma_(dx, d, from->x[c]), fma_(dy, d, from->y[c]), fma_(dz, d, from->z[c]), and_(live, out >= d));
+                       fma_(dx, d, from->x[c]), fma_(dy, d, from->y[c]), fma_(dz, d, from->z[c]), and_(live, and_(out >= step->begins, far >= d)));
 }
 #endif
 
 // grid: the one whose voxels the steps are counted in. reach, far: how far the cone reaches, all lanes and each, in voxels of the
 // finest. live: the lanes that it is followed for.
+//
+// Samples count as long as half of their cell lies before the ray's way out, and see what the grid's outermost cells hold: in a grid that
+// is fitted to a room, walls are those, and the samples that they are interpolated between lie on both sides. Ending at the
+// border, cones of 60 degrees lost half of the light of a closed box.
 LW_FN void march(cone_light* l, const cone_volume* volumes, const cone_origin* from, int grid, real dx, real dy, real dz,
                  __global const LwConeStep* steps, int count, float reach, real far, mask live) {
     const int last = LW_CONE_CASCADES - 1, size = volumes[0].grids.size;
     const float most = (float)size, whole = (float)(1 << last);
     const real leaves = fmin(way_out(from->x[last], dx, most), fmin(way_out(from->y[last], dy, most), way_out(from->z[last], dz, most)));
-    const real out = fmin(whole * leaves, far);
+    const real out = whole * leaves;
     // Steps up to where the last lane leaves the grid are known before there is any light: a count that the processor need not guess.
-    const float end = fmin(reach, max_lane(select_((real)-1.0f, out, live)));
+    const float end = max_lane(select_((real)-1.0f, out, live)), reaches = fmin(reach, max_lane(select_((real)-1.0f, far, live)));
 #if LW_CONE_CASCADES == 1
     // The next sample's place and brick are looked for before this one's words, so that the one search does not wait for the other.
     cone_corner corner, next;
-    int has = count > 0 && steps[0].distance <= end && find_at(&corner, volumes, from, 0, steps, dx, dy, dz, live, out), nextHas;
+    int has = count > 0 && steps[0].begins <= end && find_at(&corner, volumes, from, 0, steps, dx, dy, dz, live, out, far), nextHas;
     for (int i = 0; i < count; ++i, has = nextHas, corner = next) {
         const LwConeStep step = steps[i];
-        if (step.distance > end) break;
-        nextHas = i + 1 < count && steps[i + 1].distance <= end && find_at(&next, volumes, from, 0, steps + i + 1, dx, dy, dz, live, out);
+        if (step.begins > end || step.distance > reaches) break;
+        nextHas = i + 1 < count && steps[i + 1].begins <= end && find_at(&next, volumes, from, 0, steps + i + 1, dx, dy, dz, live, out, far);
         if (!has) continue;
         const mask lit = and_(corner.has, l->through > LW_CONE_LEAST);
         if (!any_(lit)) continue;
@@ -117,8 +121,8 @@ LW_FN void march(cone_light* l, const cone_volume* volumes, const cone_origin* f
     for (int i = 0; i < count; ++i) {
         const LwConeStep step = steps[i];
         const float distance = step.distance * stretch;
-        if (distance > end) break;
-        live = and_(live, and_(out >= distance, l->through > LW_CONE_LEAST));
+        if (step.begins * stretch > end || distance > reaches) break;
+        live = and_(live, and_(and_(out >= step.begins * stretch, far >= distance), l->through > LW_CONE_LEAST));
         if (!any_(live)) break;
         // The finest grid that has all of the sample; the outermost one whatever it has.
         mask left = live;

@@ -154,6 +154,7 @@ LW_FN lw_uint voxel_pack_harmonics(lw_float c0, lw_float x, lw_float y, lw_float
     const lw_float bound = c0 * LW_VOXEL_SQRT3, inverse = bound > 0.0f ? 1.0f / bound : 0.0f;
     // Of c0 too small for an inverse nothing is left of a direction.
     const lw_float per = inverse < 3e38f ? inverse : 0.0f;
+    if (!(bound > 0.0f)) return 0u;
     return voxel_harmonic(x * per, voxel_threshold(dither, 0u)) |
            voxel_harmonic(y * per, voxel_threshold(dither, 1u)) << 10 |
            voxel_harmonic(z * per, voxel_threshold(dither, 2u)) << 20;

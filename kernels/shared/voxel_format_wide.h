@@ -64,9 +64,10 @@ LW_FN laneu voxel_packed_harmonics(real c0, real x, real y, real z, laneu dither
     const mask some = bound > 0.0f;
     const real inverse = select_(none, 1.0f / select_((real)(1.0f), bound, some), some);
     const real per = select_(none, inverse, inverse < 3e38f);
-    return voxel_harmonics(x * per, voxel_thresholds(dither, 0u)) |
-           voxel_harmonics(y * per, voxel_thresholds(dither, 1u)) << (laneu)10 |
-           voxel_harmonics(z * per, voxel_thresholds(dither, 2u)) << (laneu)20;
+    const laneu shares = voxel_harmonics(x * per, voxel_thresholds(dither, 0u)) |
+                         voxel_harmonics(y * per, voxel_thresholds(dither, 1u)) << (laneu)10 |
+                         voxel_harmonics(z * per, voxel_thresholds(dither, 2u)) << (laneu)20;
+    return selectu_((laneu)(0u), shares, some);
 }
 // voxel_dither of lanes.
 LW_FN laneu voxel_dithers(lanei x, lanei y, int z, int level, int plane) {

@@ -10,15 +10,26 @@ typedef struct {
     float perEmission;
 } lw_surfels;
 
-// Where a small surfel lies among a task's voxels; -1: not there, -2: it is not small.
+// Where a small surfel lies among a task's voxels; IN_OTHERS: none of it is there; IN_SEVERAL: some may be.
+#define IN_OTHERS (-1)
+#define IN_SEVERAL (-2)
 LW_FN int small_at(const lw_surfels* s, int i, const lw_task* task) {
     __global const float* p = s->planes + i;
-    if (p[LW_SURFEL_RADIUS * s->stride] * s->origin.w >= SURFEL_SMALL) return -2;
-    const float x = (p[LW_SURFEL_POSITION * s->stride] - s->origin.x) * s->origin.w,
-                y = (p[(LW_SURFEL_POSITION + 1) * s->stride] - s->origin.y) * s->origin.w,
-                z = (p[(LW_SURFEL_POSITION + 2) * s->stride] - s->origin.z) * s->origin.w;
-    const int voxel[3] = {(int)x, (int)y, (int)z};
-    return place_in(task, voxel);
+    const float radius = p[LW_SURFEL_RADIUS * s->stride] * s->origin.w, reach = radius * OCTAGON_REACH + 0.01f;
+    const float c[3] = {(p[LW_SURFEL_POSITION * s->stride] - s->origin.x) * s->origin.w,
+                        (p[(LW_SURFEL_POSITION + 1) * s->stride] - s->origin.y) * s->origin.w,
+                        (p[(LW_SURFEL_POSITION + 2) * s->stride] - s->origin.z) * s->origin.w};
+    if (radius < SURFEL_SMALL) {
+        const int voxel[3] = {(int)c[0], (int)c[1], (int)c[2]};
+        return place_in(task, voxel);
+    }
+    int near = 1;
+    for (int a = 0; a < 3; ++a) {
+        const float low = (float)(task->corner[a] + (a == 2 ? task->first : 0)),
+                    high = (float)(task->corner[a] + (a == 2 ? task->last + 1 : LW_VOXEL_BRICK));
+        near = near && c[a] + reach >= low && c[a] - reach <= high;
+    }
+    return near ? IN_SEVERAL : IN_OTHERS;
 }
 
 // A frame about the normal (Duff et al. 2017).
@@ -66,14 +77,6 @@ LW_FN int task_list(const lw_task* task, int size, int i) {
     return 2 * (own + ((k / 9 - 1) * side + k / 3 % 3 - 1) * side + k % 3 - 1) + 1;
 }
 
-LW_FN int near_task(const lw_facet* f, const lw_task* task) {
-    const int low[3] = {task->corner[0], task->corner[1], task->corner[2] + task->first},
-              high[3] = {low[0] + LW_VOXEL_BRICK, low[1] + LW_VOXEL_BRICK, task->corner[2] + task->last + 1};
-    int near = 1;
-    for (int a = 0; a < 3; ++a) near = near && f->high[a] >= (float)low[a] - 0.01f && f->low[a] <= (float)high[a] + 0.01f;
-    return near;
-}
-
 // As voxel_triangles_occupy.
 __kernel void voxel_surfels_occupy(__global const float* surfels, int stride, __global const int* begins, __global const int* order,
                                    __global const LwLpvPlace* place, int size, __global const int* list, __global uint* occupied,
@@ -90,10 +93,10 @@ __kernel void voxel_surfels_occupy(__global const float* surfels, int stride, __
             for (int k = begins[bin]; k < begins[bin + 1]; ++k) {
                 const int at = small_at(&s, order[k], &task);
                 if (at >= 0) words[at >> 5] |= 1u << (at & 31);
-                if (at != -2) continue;
+                if (at != IN_SEVERAL) continue;
                 lw_facet f;
                 octagon_of(&s, order[k], &f);
-                if (near_task(&f, &task)) occupy_task(&f, &task, words);
+                occupy_task(&f, &task, words);
             }
         }
         for (int w = 0; w < FILL_WORDS; ++w) occupied[LW_VOXEL_WORDS * task.brick + FILL_WORDS * task.part + w] = words[w];
@@ -117,7 +120,7 @@ __kernel void voxel_surfels_fill(__global const float* surfels, int stride, int 
             const int bin = task_list(&task, size, l);
             for (int k = begins[bin]; k < begins[bin + 1]; ++k) {
                 const int at = small_at(&s, order[k], &task);
-                if (at == -1) continue;
+                if (at == IN_OTHERS) continue;
                 lw_coat coat;
                 coat_of(&s, order[k], &coat);
                 if (at >= 0) {
@@ -127,7 +130,7 @@ __kernel void voxel_surfels_fill(__global const float* surfels, int stride, int 
                 }
                 lw_facet f;
                 octagon_of(&s, order[k], &f);
-                if (near_task(&f, &task)) fill_task(&f, &coat, &task, sums);
+                fill_task(&f, &coat, &task, sums);
             }
         }
         store_sums(sums, &task, slot, slots, surfaces);

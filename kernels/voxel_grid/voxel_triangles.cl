@@ -190,12 +190,12 @@ __kernel void voxel_triangles_outside(__global const float* triangles, int strid
     const int first = (int)get_global_id(0) * OUTSIDE_RUN;
     if (first >= count || !state->stale || !(place->origin.w > 0.0f)) return;
     const float half_ = 0.5f * (float)size * place->cell.x;
-    int outside = 0;
+    int outside = min(OUTSIDE_RUN, count - first);
     for (int t = first; t < min(first + OUTSIDE_RUN, count); t += LW_WIDTH) {
         __global const float* p = triangles + t;
         const mask near = and_(and_(spans_box(p, stride, place->origin.x + half_, half_), spans_box(p + stride, stride, place->origin.y + half_, half_)),
                                spans_box(p + 2 * stride, stride, place->origin.z + half_, half_));
-        outside += (int)popcount(bits_(and_(not_(near), lanei_iota() + (lanei)(t) < (lanei)(count))));
+        outside -= (int)popcount(bits_(and_(near, lanei_iota() + (lanei)(t) < (lanei)(count))));
     }
     if (outside) atomic_add(&state->outside, outside);
 }

@@ -1,9 +1,9 @@
 // What voxels send out and how opaque they are (docs/techniques/voxel_light.md).
 //
-// A voxel holds surfaces of areas A (in faces of the voxel) and unit normals n, of which sums are known: A, A |n.a| for each axis a,
-// A n. What faces one way along an axis covers F = sum A max(0, n.a) of a face, what faces the other way B; of both only the larger
-// counts as opacity, min(1, max(F, B)): in a thin wall the two lie behind each other. A ray meets the isotropic voxel's largest
-// axis' opacity.
+// A voxel holds surfaces of areas A (in faces of the voxel) and unit normals n, of which sums are known:
+// A, A |n.a| for each axis a, A n. What faces one way along an axis covers F = sum A max(0, n.a) of a
+// face, what faces the other way B; of both only the larger counts as opacity, min(1, max(F, B)): in a
+// thin wall the two lie behind each other. A ray meets the isotropic voxel's largest axis' opacity.
 #ifndef LW_VOXEL_SHADE_H
 #define LW_VOXEL_SHADE_H
 
@@ -22,13 +22,21 @@ typedef struct {
     real flux[3], towards[3];       // radiance times faces; of all colours together its direction's mean
 } lw_voxels;
 
-LW_FN real voxel_share(laneu word, int shift) { return (to_real(as_lanei_(word >> (laneu)(uint)shift & (laneu)(1023u))) - 511.0f) * (1.0f / 511.0f); }
-LW_FN real voxel_tenth(laneu word, int shift) { return to_real(as_lanei_(word >> (laneu)(uint)shift & (laneu)(1023u))) * (1.0f / 1023.0f); }
-LW_FN real voxel_glow(laneu word, int shift) { return to_real(as_lanei_(word >> (laneu)(uint)shift & (laneu)(511u))); }
+LW_FN real voxel_share(laneu word, int shift) {
+    return (to_real(as_lanei_(word >> (laneu)(uint)shift & (laneu)(1023u))) - 511.0f) * (1.0f / 511.0f);
+}
+LW_FN real voxel_tenth(laneu word, int shift) {
+    return to_real(as_lanei_(word >> (laneu)(uint)shift & (laneu)(1023u))) * (1.0f / 1023.0f);
+}
+LW_FN real voxel_glow(laneu word, int shift) {
+    return to_real(as_lanei_(word >> (laneu)(uint)shift & (laneu)(511u)));
+}
 
-// Voxels `at`, at + 1, ... of all slots' 512; in false where none of them has a surface. perFace: 1 / (pi a face's area).
-LW_FN int load_voxels(__global const float* surfaces, LwVoxelContents contents, __global const float* light,
-                      __global const float* arriving, float emission, float perFace, int at, lw_voxels* v) {
+// Voxels `at`, at + 1, ... of all slots' 512; in false where none of them has a surface. perFace: 1 /
+// (pi a face's area).
+LW_FN int load_voxels(__global const float* surfaces, LwVoxelContents contents,
+                      __global const float* light, __global const float* arriving, float emission,
+                      float perFace, int at, lw_voxels* v) {
     const int plane = contents.slots * LW_VOXEL_BRICK_VOXELS;
     v->area = load(surfaces, LW_SURFACE_AREA * plane + at);
     if (!any_(v->area > 0.0f)) return 0;
@@ -45,13 +53,17 @@ LW_FN int load_voxels(__global const float* surfaces, LwVoxelContents contents, 
         brightness += flux;
         v->flux[c] = fmin(flux * perFace, (real)(VOXEL_MOST));
         v->own[c] = voxel_glow(glow, 9 * c) * glowStep;
-        if (contents.feedback) v->own[c] = fma_(voxel_tenth(albedo, 10 * c) * M_1_PI_F, load(arriving, c * plane + at), v->own[c]);
+        if (contents.feedback)
+            v->own[c] =
+                fma_(voxel_tenth(albedo, 10 * c) * M_1_PI_F, load(arriving, c * plane + at), v->own[c]);
         v->own[c] = fmin(v->own[c], (real)(VOXEL_MOST));
     }
     const mask lit = brightness > 0.0f;
     const real inverse = select_((real)(0.0f), 1.0f / select_((real)(1.0f), brightness, lit), lit);
     for (int c = 0; c < 3; ++c)
-        v->towards[c] = contents.planes > LW_LIGHT_DIRECTION ? load(light, (LW_LIGHT_DIRECTION + c) * plane + at) * inverse : v->normal[c];
+        v->towards[c] = contents.planes > LW_LIGHT_DIRECTION
+                            ? load(light, (LW_LIGHT_DIRECTION + c) * plane + at) * inverse
+                            : v->normal[c];
     return 1;
 }
 
@@ -61,7 +73,9 @@ LW_FN real voxel_over(real a, real b) {
     return select_((real)(0.0f), a / select_((real)(1.0f), b, some), some);
 }
 
-LW_FN real larger_side(const lw_voxels* v, int axis) { return 0.5f * (v->axes[axis] + fabs(v->area * v->normal[axis])); }
+LW_FN real larger_side(const lw_voxels* v, int axis) {
+    return 0.5f * (v->axes[axis] + fabs(v->area * v->normal[axis]));
+}
 
 // Premultiplied red, green, blue and opacity for all directions.
 LW_FN void shade_mean(const lw_voxels* v, real* value) {
@@ -72,37 +86,40 @@ LW_FN void shade_mean(const lw_voxels* v, real* value) {
     value[3] = opacity;
 }
 
-// The same for rays that go down the axis (sign 1: they see what faces up) or up (-1).
+// The same for rays that go down the axis (sign 1: they see what faces up) or up (-1). aware: of what faces the ray alone, light and
+// opacity. With the opacity of what faces away, rays that leave a lit wall were dimmed by it, which cost a closed box half of its light.
 LW_FN void shade_side(const lw_voxels* v, int axis, float sign, int aware, real* value) {
-    const real covered = larger_side(v, axis), opacity = fmin(covered, (real)(1.0f));
     if (!aware) {
-        const real perArea = voxel_over(opacity, v->area);
+        const real opacity = fmin(larger_side(v, axis), (real)(1.0f)), perArea = voxel_over(opacity, v->area);
         for (int c = 0; c < 3; ++c) value[c] = fma_(v->flux[c], perArea, opacity * v->own[c]);
-    } else {
-        // Of the surfaces, and of the light that they throw back, the share that faces the ray: half of (|n.a| + n.a), whose means
-        // are known; light has the surfaces' own mean of the first.
-        const real most = voxel_over(v->axes[axis], v->area);
-        const real facing = 0.5f * (v->axes[axis] + sign * (v->area * v->normal[axis]));
-        const real sent = 0.5f * (most + sign * clamp(v->towards[axis], -most, most));
-        const real kept = voxel_over(opacity, covered);
-        for (int c = 0; c < 3; ++c) value[c] = kept * fma_(v->flux[c], sent, fmax(facing, (real)(0.0f)) * v->own[c]);
+        value[3] = opacity;
+        return;
     }
+    // Of the surfaces, and of the light that they throw back, the share that faces the ray: half of (|n.a| + n.a), whose means
+    // are known; light has the surfaces' own mean of the first.
+    const real most = voxel_over(v->axes[axis], v->area);
+    const real facing = fmax(0.5f * (v->axes[axis] + sign * (v->area * v->normal[axis])), (real)(0.0f));
+    const real sent = 0.5f * (most + sign * clamp(v->towards[axis], -most, most));
+    const real opacity = fmin(facing, (real)(1.0f)), kept = voxel_over(opacity, facing);
+    for (int c = 0; c < 3; ++c) value[c] = kept * fma_(v->flux[c], sent, facing * v->own[c]);
     value[3] = opacity;
 }
 
-// Premultiplied c0 and opacity, then c1 of each colour: hemispheres of even radiance about the surfaces' and the light's mean
-// normals, whose flux through their own surface two bands keep. Where surfaces face both ways only half of them is seen from a
-// side, so that what is seen there is brighter than their mean over the sphere, at most by 2.
+// Premultiplied c0 and opacity, then c1 of each colour: hemispheres of even radiance about the surfaces'
+// and the light's mean normals, whose flux through their own surface two bands keep. Where surfaces face
+// both ways only half of them is seen from a side, so that what is seen there is brighter than their
+// mean over the sphere, at most by 2.
 LW_FN void shade_harmonics(const lw_voxels* v, real* value) {
     shade_mean(v, value);
     const real perArea = voxel_over(value[3], v->area);
-    const real facing =
-        sqrt(fma_(v->normal[0], v->normal[0], fma_(v->normal[1], v->normal[1], v->normal[2] * v->normal[2])));
+    const real facing = sqrt(
+        fma_(v->normal[0], v->normal[0], fma_(v->normal[1], v->normal[1], v->normal[2] * v->normal[2])));
     const real seen = 2.0f / (1.0f + fmin(facing, (real)(1.0f)));
     for (int c = 0; c < 3; ++c) {
         const real thrown = v->flux[c] * perArea, own = value[3] * v->own[c];
         for (int axis = 0; axis < 3; ++axis)
-            value[4 + 3 * c + axis] = seen * VOXEL_HEMISPHERE_1 * fma_(thrown, v->towards[axis], own * v->normal[axis]);
+            value[4 + 3 * c + axis] =
+                seen * VOXEL_HEMISPHERE_1 * fma_(thrown, v->towards[axis], own * v->normal[axis]);
         value[c] *= seen * VOXEL_SQRT_PI;
     }
 }

@@ -15,12 +15,16 @@ constexpr std::size_t kRun = 64;  // LIGHT_RUN of the kernels
 constexpr Range kListGroup{16, 1};
 constexpr Range kBrickGroup{4, 1};
 
-std::size_t bricksOf(std::uint32_t size) { return std::size_t(voxel_table(cl_int(size), 1)); }
-std::size_t planeBytes(std::uint32_t slots) { return std::size_t(slots) * LW_VOXEL_BRICK_VOXELS * sizeof(cl_float); }
+std::size_t bricksOf(std::uint32_t size) {
+    return std::size_t(voxel_table(cl_int(size), 1));
+}
+std::size_t planeBytes(std::uint32_t slots) {
+    return std::size_t(slots) * LW_VOXEL_BRICK_VOXELS * sizeof(cl_float);
+}
 
 // Directions matter where words tell sides apart by what faces them.
 cl_int planesOf(LWVoxelMode mode, bool sides) {
-    return mode == LW_VOXEL_MODE_SH2 || sides ? LW_LIGHT_PLANES : LW_LIGHT_DIRECTION;
+    return mode == LW_VOXEL_MODE_SH2 || sides ? LW_VOXEL_LIGHT_PLANES : LW_LIGHT_DIRECTION;
 }
 
 }  // namespace
@@ -53,12 +57,14 @@ void VoxelLight::reserve(Executor& executor, std::uint32_t slots, const LwVoxelC
     sums_.reserve(device_, 2 * light, "sums of light in voxels");
     light_.reserve(device_, light, "light in voxels");
     touched_.reserve(device_, slots * sizeof(cl_int), "bricks that light has reached");
-    for (const Buffer* buffer : {&sums_, &light_, &touched_}) executor.fill("voxel_light.clear", *buffer, 0, 0, buffer->bytes());
+    for (const Buffer* buffer : {&sums_, &light_, &touched_})
+        executor.fill("voxel_light.clear", *buffer, 0, 0, buffer->bytes());
     slots_ = slots;
 }
 
-void VoxelLight::record(Executor& executor, const RsmInput& rsms, const VoxelSurfaces& surfaces, const Buffer& place,
-                        const VoxelMips& mips, const VoxelVolume& volume, bool aware, bool hears) {
+void VoxelLight::record(Executor& executor, const RsmInput& rsms, const VoxelSurfaces& surfaces,
+                        const Buffer& place, const VoxelMips& mips, const VoxelVolume& volume,
+                        bool aware, bool hears) {
     LwVoxelContents contents{};
     contents.mode = cl_int(volume.mode);
     contents.sides = volume.sides ? 1 : 0;
@@ -74,21 +80,27 @@ void VoxelLight::record(Executor& executor, const RsmInput& rsms, const VoxelSur
     contents_ = contents;
     isKept_ = false;
 
-    constexpr std::size_t kFrame = offsetof(LwVoxelState, largest);  // and what follows: of this frame alone
-    executor.fill("voxel_light.clear", volume.state, 0, cascade_ * sizeof(LwVoxelState) + kFrame, sizeof(LwVoxelState) - kFrame);
+    constexpr std::size_t kFrame =
+        offsetof(LwVoxelState, largest);  // and what follows: of this frame alone
+    executor.fill("voxel_light.clear", volume.state, 0, cascade_ * sizeof(LwVoxelState) + kFrame,
+                  sizeof(LwVoxelState) - kFrame);
     const std::size_t texels = rsms.texels ? rsms.texels.width : 0;
     if (texels)
-        executor.run("voxel_light.inject", inject_, gridOver((texels + kRun - 1) / kRun), kListGroup, rsms.texels, cl_int(texels),
-                     place, contents, surfaces.bricks, surfaces.surfaces, sums_, touched_, state_);
+        executor.run("voxel_light.inject", inject_, gridOver((texels + kRun - 1) / kRun), kListGroup,
+                     rsms.texels, cl_int(texels), place, contents, surfaces.bricks, surfaces.surfaces,
+                     sums_, touched_, state_);
     const Buffer& heard = hears ? irradiance_ : light_;  // a kernel's argument must be some memory
     const Range bricks = gridOver(bricksOf(size_));
-    executor.run("voxel_light.settle", settle_, bricks, kBrickGroup, place, contents, cl_int(isSame ? 0 : 1), surfaces.bricks,
-                 surfaces.surfaces, surfaces.changed, surfaces.state, sums_, touched_, light_, heard, largest_, mips.marks(),
-                 volume.state, cl_int(cascade_));
-    executor.run("voxel_light.settle", unit_, {1, 1}, {1, 1}, volume.state, cl_int(cascade_), mips.work());
-    executor.run("voxel_light.resolve", resolve_, bricks, kBrickGroup, place, contents, surfaces.bricks, surfaces.surfaces,
-                 surfaces.state, light_, heard, volume.table, cl_int(cascade_ * volume.tableSize()), mips.work(), volume.state,
-                 cl_int(cascade_), mips.marks(), volume.base);
+    executor.run("voxel_light.settle", settle_, bricks, kBrickGroup, place, contents,
+                 cl_int(isSame ? 0 : 1), surfaces.bricks, surfaces.surfaces, surfaces.changed,
+                 surfaces.state, sums_, touched_, light_, heard, largest_, mips.marks(), volume.state,
+                 cl_int(cascade_));
+    executor.run("voxel_light.settle", unit_, {1, 1}, {1, 1}, volume.state, cl_int(cascade_),
+                 mips.work());
+    executor.run("voxel_light.resolve", resolve_, bricks, kBrickGroup, place, contents, surfaces.bricks,
+                 surfaces.surfaces, surfaces.state, light_, heard, volume.table,
+                 cl_int(cascade_ * volume.tableSize()), mips.work(), volume.state, cl_int(cascade_),
+                 mips.marks(), volume.base);
     isKept_ = true;
 }
 
@@ -99,13 +111,15 @@ void VoxelLight::report(Device& device, Report& report) const {
 }
 
 std::uint64_t VoxelLight::bytes() const {
-    return sums_.bytes() + light_.bytes() + irradiance_.bytes() + touched_.bytes() + largest_.bytes() + state_.bytes();
+    return sums_.bytes() + light_.bytes() + irradiance_.bytes() + touched_.bytes() + largest_.bytes() +
+           state_.bytes();
 }
 
-std::uint64_t VoxelLight::estimateBytes(std::uint32_t size, LWVoxelMode mode, bool sides, bool hears, std::uint32_t slots) {
+std::uint64_t VoxelLight::estimateBytes(std::uint32_t size, LWVoxelMode mode, bool sides, bool hears,
+                                        std::uint32_t slots) {
     const auto planes = std::uint64_t(planesOf(mode, sides));
-    return (3 * planes + (hears ? 3 : 0)) * planeBytes(slots) + slots * sizeof(cl_int) + bricksOf(size) * sizeof(cl_float) +
-           sizeof(LwVoxelTexels);
+    return (3 * planes + (hears ? 3 : 0)) * planeBytes(slots) + slots * sizeof(cl_int) +
+           bricksOf(size) * sizeof(cl_float) + sizeof(LwVoxelTexels);
 }
 
 }  // namespace lightwell

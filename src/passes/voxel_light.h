@@ -1,5 +1,5 @@
-// Light in voxels: what RSMs' texels, emissive surfaces and the last frame's own light make of a grid's surfaces
-// (kernels/voxel_light), as words of the finest level of a VoxelVolume.
+// Light in voxels: what RSMs' texels, emissive surfaces and the last frame's own light make of a grid's
+// surfaces (kernels/voxel_light), as words of the finest level of a VoxelVolume.
 #pragma once
 
 #include <cstdint>
@@ -29,25 +29,32 @@ class VoxelLight {
 public:
     VoxelLight(Device& device, std::uint32_t size, std::uint32_t cascade);
 
-    // Passes "voxel_light.*", between the two of VoxelMips: words of bricks whose surfaces or light have changed, and their marks. What
-    // comes out is the same, to the bit, as all made anew. place: LwGridPlace. aware: a volume with sides shows on each the light of
-    // surfaces that face it alone. hears: irradiance() counts, too.
-    void record(Executor& executor, const RsmInput& rsms, const VoxelSurfaces& surfaces, const Buffer& place, const VoxelMips& mips,
-                const VoxelVolume& volume, bool aware, bool hears = false);
+    // Passes "voxel_light.*", between the two of VoxelMips: words of bricks whose surfaces or light have
+    // changed, and their marks. What comes out is the same, to the bit, as all made anew. place:
+    // LwGridPlace. aware: a volume with sides shows on each the light of surfaces that face it alone.
+    // hears: irradiance() counts, too.
+    void record(Executor& executor, const RsmInput& rsms, const VoxelSurfaces& surfaces,
+                const Buffer& place, const VoxelMips& mips, const VoxelVolume& volume, bool aware,
+                bool hears = false);
     void forget() { isKept_ = false; }  // the next record() writes all words
 
-    // Flux (W) of each colour, then where directions are told apart their sums: [plane][slot][LW_VOXEL_BRICK_VOXELS].
+    // Flux (W) of each colour, then where directions are told apart their sums:
+    // [plane][slot][LW_VOXEL_BRICK_VOXELS].
     const Buffer& light() const { return light_; }
     const Buffer& state() const { return state_; }  // LwVoxelTexels, of the last record()
-    // Irradiance of three colours that has come to each voxel, laid out as light(): recordHeard() of VoxelReceivers writes it.
+    // Irradiance of three colours that has come to each voxel, laid out as light(): recordHeard() of
+    // VoxelReceivers writes it.
     const Buffer& irradiance() const { return irradiance_; }
-    const Buffer& touched() const { return touched_; }  // LW_LIGHT_HEARD: who writes irradiance() that has changed sets it
+    const Buffer& touched() const {
+        return touched_;
+    }  // LW_LIGHT_HEARD: who writes irradiance() that has changed sets it
 
     // outside_texels, lost_texels
     void report(Device& device, Report& report) const;
     std::uint64_t bytes() const;
-    static std::uint64_t estimateBytes(std::uint32_t size, LWVoxelMode mode, bool sides, bool hears, std::uint32_t slots);
-    // Memory for irradiance of so many slots, 0 where it is new. record() calls it.
+    static std::uint64_t estimateBytes(std::uint32_t size, LWVoxelMode mode, bool sides, bool hears,
+                                       std::uint32_t slots);
+    // Memory for irradiance() of so many slots, 0 where it is new.
     void reserveHeard(Executor& executor, std::uint32_t slots);
 
 private:

@@ -23,7 +23,7 @@ namespace {
 constexpr std::uint32_t kPrewarmedCascades = 2, kPrewarmedSize = 32;
 // Radiance from infinity above which it is refused: no sum over a hemisphere leaves float's range, and no sky comes near it.
 constexpr float kLargestEnvironment = 1e20f;
-constexpr std::uint32_t kMakes = kMakesAmbient;
+constexpr std::uint32_t kMakes = kMakesAmbient | kMakesSpecular | kMakesRefracted | kMakesShadow;
 
 // Geometry and source views apart, which the volume speaks of.
 std::vector<LWChoice> unusedInputs(const LWFrame& frame, const LWConeTracingDesc& desc) {
@@ -38,6 +38,16 @@ std::vector<LWChoice> unusedInputs(const LWFrame& frame, const LWConeTracingDesc
         }
     if (desc.extent > 0.0f && frame.focus) unused.push_back({"center", "not used: the grids lie around frame.focus"});
     return unused;
+}
+
+std::optional<ConeLightSource> lightOf(const LWFrame& frame, const LWConeTracingDesc& desc) {
+    if (desc.shadowLight >= frame.lightCount) return std::nullopt;
+    const LWLight& light = frame.lights[desc.shadowLight];
+    ConeLightSource source;
+    source.isDirectional = light.kind == LW_LIGHT_DIRECTIONAL;
+    source.fullAngle = double(desc.shadowAngle);
+    for (int a = 0; a < 3; ++a) source.at[a] = source.isDirectional ? -light.direction[a] : light.position[a];
+    return source;
 }
 
 void checkEnvironment(const LWFrame& frame) {
@@ -60,6 +70,7 @@ public:
         // What its memory holds is not known.
         if (lost) volume_ = std::make_unique<ConeTracingVolume>(device_, desc_);
         volume_->record(executor, frame, rsms_, frame.reset != 0 || lost);
+        shadowLight_ = lightOf(frame, desc_);
         choices_ = unusedInputs(frame, desc_);
         for (const LWChoice& choice : volume_->choices(frame)) choices_.push_back(choice);
         states_.purge();
@@ -69,8 +80,9 @@ public:
 
     void render(Executor& executor, const std::shared_ptr<View>& view, const LWGBuffer& gbuffer, const LWOutput& output) override {
         checkLightOutputs(device_, *view, output, "cone_tracing", kMakes);
+        const ConeRaysAsked rays = ConeTracingRays::asked(*view, gbuffer, output, desc_, shadowLight_ ? &*shadowLight_ : nullptr);
         ConeTracingView& state = states_.get(view, [&] { return std::make_unique<ConeTracingView>(device_, desc_); });
-        state.render(executor, *view, gbuffer, output, passes_, volume_->world());
+        state.render(executor, *view, gbuffer, output, passes_, volume_->world(), rays);
     }
 
     void renderPoints(Executor& executor, const Points& points) override {
@@ -108,7 +120,8 @@ private:
     ConeTracingPasses passes_;
     PerView<ConeTracingView> states_;
     std::optional<ConeTracingPoints> points_;  // from the first lwRenderPoints on
-    std::vector<LWChoice> choices_;            // of the last update
+    std::optional<ConeLightSource> shadowLight_;  // of the last update, as is
+    std::vector<LWChoice> choices_;
 };
 
 Report ConeTracingTechnique::report() {
@@ -130,7 +143,7 @@ std::vector<DebugView> ConeTracingTechnique::debugViews(const View* view) {
 }
 
 std::uint64_t ConeTracingTechnique::bytes() const {
-    std::uint64_t total = rsms_.bytes() + volume_->bytes() + passes_.gather.bytes() + (points_ ? points_->bytes() : 0);
+    std::uint64_t total = rsms_.bytes() + volume_->bytes() + passes_.bytes() + (points_ ? points_->bytes() : 0);
     states_.each([&](const ConeTracingView& state) { total += state.bytes(); });
     return total;
 }
@@ -140,7 +153,7 @@ std::uint64_t ConeTracingTechnique::bytes() const {
 std::uint64_t estimateBytes(const void* desc, const LWViewDesc& view, const FrameShape& shape) {
     const LWConeTracingDesc& cones = *static_cast<const LWConeTracingDesc*>(desc);
     return RsmInput::estimateBytes(shape) + ConeTracingVolume::estimateBytes(cones, shape) +
-           ConeGather::estimateBytes(coneOptions(cones)) + ConeTracingView::estimateBytes(cones, view, shape.uploads);
+           ConeTracingPasses::estimateBytes(cones) + ConeTracingView::estimateBytes(cones, view, shape.uploads);
 }
 
 }  // namespace

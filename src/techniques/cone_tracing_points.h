@@ -32,7 +32,7 @@ private:
     }
     void recordHarmonics(Executor& executor, const Planes& position, const Planes& normal, const Harmonics& harmonics,
                          const Planes& validity, const Buffer& counts) override {
-        (void)executor, (void)position, (void)normal, (void)harmonics, (void)validity, (void)counts; // WAIT_C
+        gather_.recordHarmonics(executor, position, normal, *world_, harmonics, validity, counts);
     }
 
     Device& device_;

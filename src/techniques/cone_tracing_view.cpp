@@ -47,9 +47,18 @@ ConeGatherOptions coneOptions(const LWConeTracingDesc& desc) {
 }
 
 ConeTracingPasses::ConeTracingPasses(Device& device, const LWConeTracingDesc& desc)
-    : gather(device, coneOptions(desc)), halvings(halvingsOf(desc)), interleaved(isInterleaved(desc)), dims(dimsLight(desc)) {
+    : gather(device, coneOptions(desc)),
+      rays(device, coneOptions(desc)),
+      index(double(desc.refractiveIndex)),
+      halvings(halvingsOf(desc)),
+      interleaved(isInterleaved(desc)),
+      dims(dimsLight(desc)) {
     if (halvings) bilateral.emplace(device, kLightPlanes);
     if (dims) dim_ = &device.programs().kernel("cone_tracing/cone_tracing", "cone_tracing_dim");
+}
+
+std::uint64_t ConeTracingPasses::estimateBytes(const LWConeTracingDesc& desc) {
+    return ConeGather::estimateBytes(coneOptions(desc)) + ConeRays::estimateBytes(coneOptions(desc), true, double(desc.shadowAngle));
 }
 
 void ConeTracingPasses::recordDim(Executor& executor, const Planes& irradiance, const Planes& open) {
@@ -79,8 +88,8 @@ void ConeTracingView::reserve(const View& view, bool wantsOpen) {
 }
 
 void ConeTracingView::render(Executor& executor, const View& view, const LWGBuffer& gbuffer, const LWOutput& output,
-                             ConeTracingPasses& passes, const ConeWorld& world) {
-    gbuffer_.import(executor, view, gbuffer, 0, "gbuffer");
+                             ConeTracingPasses& passes, const ConeWorld& world, const ConeRaysAsked& rays) {
+    gbuffer_.import(executor, view, gbuffer, ConeTracingRays::needs(rays, gbuffer), "gbuffer");
     lastTraced_ = Planes{};
     const bool wantsLight = isAsked(output.irradiance), makesOpen = dims_ && wantsLight && !isAsked(output.ambientOcclusion);
     reserve(view, makesOpen);
@@ -103,6 +112,7 @@ void ConeTracingView::render(Executor& executor, const View& view, const LWGBuff
     irradiance_.end(executor);
     validity_.end(executor);
     open_.end(executor);
+    rays_.render(executor, view, output, gbuffer_, rays, passes.index, passes.rays, world);
     isRendered_ = true;
 }
 
@@ -151,6 +161,7 @@ void ConeTracingView::traceReduced(Executor& executor, const View& view, ConeTra
 void ConeTracingView::startReport(Report& report) {
     for (const char* name : {"rejected_pixels", "saturated_pixels", "pixels_outside", "upsample_fallbacks"})
         report.counts.push_back({name, 0});
+    ConeTracingRays::startReport(report);
 }
 
 void ConeTracingView::report(Report& report) const {
@@ -159,6 +170,7 @@ void ConeTracingView::report(Report& report) const {
     irradiance_.report(report);
     validity_.report(report);
     open_.report(report);
+    rays_.report(device_, report, !isGathered_);
     if (!isGathered_) return;
     // Down-sampling turns what is neither surface nor background into background; up-sampling counts it.
     report.read(device_, "rejected_pixels", halvings_ ? upsampleCounts_ : counts_, 0);
@@ -180,14 +192,15 @@ void ConeTracingView::addDebugViews(std::vector<DebugView>& views) const {
 
 std::uint64_t ConeTracingView::bytes() const {
     std::uint64_t total = gbuffer_.bytes() + irradiance_.bytes() + validity_.bytes() + open_.bytes() + gathered_.bytes() + ownOpen_.bytes() +
-                          counts_.bytes() + upsampleCounts_.bytes();
+                          counts_.bytes() + upsampleCounts_.bytes() + rays_.bytes();
     for (const Level& level : levels_) total += level.position.bytes() + level.normal.bytes() + level.light.bytes();
     return total;
 }
 
 std::uint64_t ConeTracingView::estimateBytes(const LWConeTracingDesc& desc, const LWViewDesc& view, bool uploads) {
     std::uint64_t total = GBufferInput::estimateBytes(view, 0, uploads) + OutputTarget::estimateBytes(view, 3, uploads) +
-                          2 * OutputTarget::estimateBytes(view, 1, uploads) + kCountBytes + kUpsampleCountBytes;
+                          2 * OutputTarget::estimateBytes(view, 1, uploads) + kCountBytes + kUpsampleCountBytes +
+                          ConeTracingRays::estimateBytes(view, uploads);
     if (isInterleaved(desc)) total += ConeGather::kGathered * planeBytes(view.maxWidth, view.maxHeight);
     if (dimsLight(desc) && !halvingsOf(desc)) total += planeBytes(view.maxWidth, view.maxHeight);
     for (std::uint32_t l = 1; l <= halvingsOf(desc); ++l)

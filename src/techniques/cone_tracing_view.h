@@ -9,6 +9,7 @@
 #include "inputs/output_target.h"
 #include "passes/cone_gather.h"
 #include "passes/joint_bilateral.h"
+#include "techniques/cone_tracing_rays.h"
 #include "techniques/technique.h"
 
 namespace lightwell {
@@ -25,9 +26,14 @@ public:
     ConeTracingPasses(Device& device, const LWConeTracingDesc& desc);
 
     ConeGather gather;
+    ConeRays rays;
+    double index;                             // of refraction
     std::optional<JointBilateral> bilateral;  // with fewer pixels
     std::uint32_t halvings = 0;               // of the view's sides, of what is traced
     bool interleaved = false, dims = false;   // dims: light is that times ambient occlusion
+
+    std::uint64_t bytes() const { return gather.bytes() + rays.bytes(); }
+    static std::uint64_t estimateBytes(const LWConeTracingDesc& desc);
 
     // Pass "cone_tracing.dim".
     void recordDim(Executor& executor, const Planes& irradiance, const Planes& open);
@@ -42,7 +48,7 @@ public:
 
     void startFrame() { isRendered_ = false; }
     void render(Executor& executor, const View& view, const LWGBuffer& gbuffer, const LWOutput& output, ConeTracingPasses& passes,
-                const ConeWorld& world);
+                const ConeWorld& world, const ConeRaysAsked& rays);
 
     static void startReport(Report& report);
     void report(Report& report) const;
@@ -69,6 +75,7 @@ private:
     bool interleaved_, dims_, isRendered_ = false, isGathered_ = false;
     GBufferInput gbuffer_;
     OutputTarget irradiance_, validity_, open_;
+    ConeTracingRays rays_;
     PlanarImage gathered_, ownOpen_;
     std::vector<Level> levels_;
     Buffer counts_, upsampleCounts_;

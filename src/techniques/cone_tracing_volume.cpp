@@ -1,6 +1,7 @@
 #include "techniques/cone_tracing_volume.h"
 
 #include <algorithm>
+#include <cstddef>
 
 #include "compute/device.h"
 #include "techniques/cone_tracing_view.h"
@@ -21,6 +22,16 @@ std::uint32_t firstSlots(std::uint32_t size) {
     return std::min(brickCount(size), std::max(512u, 12 * side * side));
 }
 std::uint32_t firstMipSlots(std::uint32_t size) { return std::min(mipBrickCount(size), firstSlots(size) / 2); }
+
+bool isEndless(const LWConeTracingDesc& desc) { return desc.bounces == 0; }
+
+// Light that voxels send on is smooth: as many cones as pixels have, but no more than nine.
+ConeGatherOptions bounceOptions(const LWConeTracingDesc& desc) {
+    ConeGatherOptions options = coneOptions(desc);
+    options.cones = std::min(options.cones, 9u);
+    options.interleaved = options.near = false;
+    return options;
+}
 
 VoxelVolume volumeOf(const LWConeTracingDesc& desc) {
     VoxelVolume volume;
@@ -43,7 +54,11 @@ ConeTracingVolume::ConeTracingVolume(Device& device, const LWConeTracingDesc& de
         mips_.push_back(std::make_unique<VoxelMips>(device, desc.size, c));
         lights_.push_back(std::make_unique<VoxelLight>(device, desc.size, c));
         wanted_.push_back(std::make_unique<LateRead<LwVoxelWork>>());
+        if (isEndless(desc)) receivers_.push_back(std::make_unique<VoxelReceivers>(device, desc.size));
     }
+    if (!isEndless(desc)) return;
+    bounce_ = std::make_unique<ConeGather>(device, bounceOptions(desc));
+    bounceCounts_ = Buffer(device, ConeGather::kCounts * sizeof(cl_int), "counts of further bounces");
 }
 
 void ConeTracingVolume::check(const LWFrame& frame) {
@@ -89,11 +104,25 @@ void ConeTracingVolume::record(Executor& executor, const LWFrame& frame, const R
         surfaces_.record(executor, *grids_[c], places_.grid(c).place());
         mips_[c]->recordTables(executor, grids_[c]->occupied(), grids_[c]->changed(), isNew, volume_);
         if (isNew) lights_[c]->forget();
-        lights_[c]->record(executor, rsms, VoxelSurfaces::of(*grids_[c]), places_.grid(c).place(), *mips_[c], volume_, desc_.normalAware != 0);
+        const VoxelSurfaces surfaces = VoxelSurfaces::of(*grids_[c]);
+        const Buffer& place = places_.grid(c).place();
+        if (bounce_) receivers_[c]->record(executor, surfaces, place, *mips_[c], *lights_[c]);
+        lights_[c]->record(executor, rsms, surfaces, place, *mips_[c], volume_, desc_.normalAware != 0, bool(bounce_));
         mips_[c]->recordFilter(executor, volume_);
         if (volume_.sparse) wanted_[c]->record(executor, "voxel_mips.counts", mips_[c]->work(), 0);
     }
     for (std::size_t c = 0; c < 3; ++c) environment_[c] = frame.environment[c];
+    if (bounce_) recordBounce(executor);
+}
+
+// What this frame's voxels send to each other: the next frame's have it.
+void ConeTracingVolume::recordBounce(Executor& executor) {
+    executor.fill("cone_gather.counts", bounceCounts_, 0, 0, bounceCounts_.bytes());
+    for (std::size_t c = 0; c < grids_.size(); ++c) {
+        const VoxelReceivers& at = *receivers_[c];
+        bounce_->recordTrace(executor, at.position(), at.normal(), world(), at.irradiance(), {}, {}, bounceCounts_);
+        receivers_[c]->recordHeard(executor, *lights_[c]);
+    }
 }
 
 std::vector<LWChoice> ConeTracingVolume::choices(const LWFrame& frame) const {
@@ -105,6 +134,16 @@ std::vector<LWChoice> ConeTracingVolume::choices(const LWFrame& frame) const {
 void ConeTracingVolume::report(Report& report) const {
     surfaces_.report(report);
     for (const auto& grid : grids_) grid->report(device_, report);
+    for (const auto& light : lights_) light->report(device_, report);
+    for (const auto& receivers : receivers_) receivers->report(device_, report);
+    if (!volume_.state) return;
+    for (std::size_t c = 0; c < grids_.size(); ++c) {
+        const std::size_t at = c * sizeof(LwVoxelState);
+        report.read(device_, "lit_bricks", volume_.state, at + offsetof(LwVoxelState, baseBricks));
+        report.read(device_, "coarser_bricks", volume_.state, at + offsetof(LwVoxelState, mipBricks));
+        report.read(device_, "dropped_bricks", volume_.state, at + offsetof(LwVoxelState, droppedBricks));
+        report.read(device_, "changed_bricks", volume_.state, at + offsetof(LwVoxelState, changedBricks));
+    }
 }
 
 void ConeTracingVolume::addDebugViews(std::vector<DebugView>& views) const {
@@ -119,11 +158,22 @@ std::uint64_t ConeTracingVolume::bytes() const {
     for (const auto& grid : grids_) total += grid->bytes();
     for (const auto& mips : mips_) total += mips->bytes();
     for (const auto& light : lights_) total += light->bytes();
+    for (const auto& receivers : receivers_) total += receivers->bytes();
+    if (bounce_) total += bounce_->bytes() + bounceCounts_.bytes();
     return total;
 }
 
+// Which bricks a scene fills is not known beforehand: all.
 std::uint64_t ConeTracingVolume::estimateBytes(const LWConeTracingDesc& desc, const FrameShape& shape) {
-    return ConeTracingSurfaces::estimateBytes(desc, shape) + GridPlaces::estimateBytes(desc.cascades, 0);
+    const std::uint64_t bricks = brickCount(desc.size), mipBricks = mipBrickCount(desc.size);
+    const VoxelVolume volume = volumeOf(desc);
+    const std::uint64_t words = bricks * volume.basePlanes() + mipBricks * volume.mipPlanes();
+    std::uint64_t grid = VoxelGrid::estimateBytes(desc.size, false) + VoxelMips::estimateBytes(desc.size) +
+                         VoxelLight::estimateBytes(desc.size, desc.mode, volume.sides, isEndless(desc), std::uint32_t(bricks)) +
+                         words * LW_VOXEL_STRIDE * sizeof(cl_uint) + volume.tableSize() * sizeof(cl_int) + sizeof(LwVoxelState);
+    if (isEndless(desc)) grid += VoxelReceivers::estimateBytes(desc.size, std::uint32_t(bricks));
+    return ConeTracingSurfaces::estimateBytes(desc, shape) + GridPlaces::estimateBytes(desc.cascades, 0) + desc.cascades * grid +
+           (isEndless(desc) ? ConeGather::estimateBytes(bounceOptions(desc)) + ConeGather::kCounts * sizeof(cl_int) : 0);
 }
 
 }  // namespace lightwell

@@ -14,6 +14,7 @@
 #include "passes/voxel_grid.h"
 #include "passes/voxel_light.h"
 #include "passes/voxel_mips.h"
+#include "passes/voxel_receivers.h"
 #include "techniques/cone_tracing_surfaces.h"
 #include "techniques/technique.h"
 
@@ -40,6 +41,7 @@ public:
 private:
     GridPlacement placementOf(const LWFrame& frame, bool refit) const;
     void growSlots();
+    void recordBounce(Executor& executor);
 
     Device& device_;
     LWConeTracingDesc desc_;
@@ -51,6 +53,9 @@ private:
     std::vector<std::unique_ptr<VoxelLight>> lights_;
     std::vector<std::unique_ptr<LateRead<LwVoxelWork>>> wanted_;  // slots that frames have wanted
     VoxelVolume volume_;
+    std::unique_ptr<ConeGather> bounce_;  // with further bounces, as the next two
+    std::vector<std::unique_ptr<VoxelReceivers>> receivers_;
+    Buffer bounceCounts_;
     std::uint32_t baseSlots_, mipSlots_;  // that each grid has room for
     float environment_[3] = {0.0f, 0.0f, 0.0f};
 };

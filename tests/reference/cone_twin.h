@@ -99,7 +99,7 @@ struct ConeTwin {
         Light light;
         for (const LwConeStep& step : steps) {
             const double distance = std::ldexp(double(step.distance), grid);
-            const Vec outermost = placed(world, cascades() - 1) + d * std::ldexp(distance, 1 - cascades());
+            const Vec outermost = placed(world, cascades() - 1) + d * std::ldexp(double(step.begins), grid + 1 - cascades());
             if (distance > reach || !holds(outermost, 0) || light.through <= double(LW_CONE_LEAST)) break;
             const int wanted = step.level + grid;
             int cascade = 0, level = 0;

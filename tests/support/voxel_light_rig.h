@@ -1,11 +1,12 @@
-// Triangles as lit voxels: passes voxel_grid, voxel_mips and voxel_light together, from texels that tests make.
+// Triangles as lit voxels: passes voxel_grid, voxel_mips and voxel_light together, from texels that
+// tests make.
 #pragma once
 
 #include <random>
 #include <vector>
 
 #include "inputs/rsm_input.h"
-#include "passes/voxel_light.h"
+#include "passes/voxel_receivers.h"
 #include "support/voxel_rig.h"
 #include "support/voxel_volume_rig.h"
 
@@ -19,11 +20,15 @@ struct VoxelLightRig : VoxelRig {
     VoxelVolume volume;
     VoxelMips mips;
     VoxelLight light;
-    bool aware = false;
+    VoxelReceivers receivers;
+    bool aware = false, hears = false;
     double area = kCell * kCell;  // of a voxel's face
 
     VoxelLightRig(std::uint32_t width, int n, LWVoxelMode mode, bool sides, bool sparse = true)
-        : VoxelRig(width, n, sparse), mips(device(), std::uint32_t(n), 0), light(device(), std::uint32_t(n), 0) {
+        : VoxelRig(width, n, sparse),
+          mips(device(), std::uint32_t(n), 0),
+          light(device(), std::uint32_t(n), 0),
+          receivers(device(), std::uint32_t(n)) {
         volume.size = std::uint32_t(n);
         volume.mode = mode;
         volume.sides = sides;
@@ -36,7 +41,8 @@ struct VoxelLightRig : VoxelRig {
         double largest = 0.0;
         for (std::size_t i = 0; i < texels.size(); ++i)
             for (std::size_t a = 0; a < 3; ++a) {
-                planes[(LW_RSM_POSITION + a) * width + i] = float(double(kOrigin[a]) + kCell * texels[i].at[a]);
+                planes[(LW_RSM_POSITION + a) * width + i] =
+                    float(double(kOrigin[a]) + kCell * texels[i].at[a]);
                 planes[(LW_RSM_NORMAL + a) * width + i] = float(texels[i].normal[a]);
                 planes[(LW_RSM_FLUX + a) * width + i] = float(texels[i].flux[a]);
                 largest = std::max(largest, texels[i].flux[a]);
@@ -61,7 +67,8 @@ struct VoxelLightRig : VoxelRig {
         const Guarded placed = upload(std::vector<LwLpvPlace>{lit});
         const bool isNew = volume.reserve(executor(), 1u << 20, 1u << 20);
         mips.recordTables(executor(), pass.occupied(), pass.changed(), isNew, volume);
-        light.record(executor(), rsms, VoxelSurfaces::of(pass), placed, mips, volume, aware);
+        if (hears) receivers.record(executor(), VoxelSurfaces::of(pass), placed, mips, light);
+        light.record(executor(), rsms, VoxelSurfaces::of(pass), placed, mips, volume, aware, hears);
         mips.recordFilter(executor(), volume);
         device().finish();
     }
@@ -71,11 +78,13 @@ struct VoxelLightRig : VoxelRig {
     std::vector<double> held(int p) const {
         const std::size_t slots = pass.slots() * std::size_t(LW_VOXEL_BRICK_VOXELS);
         std::vector<float> all(slots);
-        light.light().download(std::size_t(p) * slots * sizeof(float), slots * sizeof(float), all.data());
+        light.light().download(std::size_t(p) * slots * sizeof(float), slots * sizeof(float),
+                               all.data());
         std::vector<double> result;
         for (const cl_int slot : bricks())
             for (std::size_t i = 0; i < LW_VOXEL_BRICK_VOXELS; ++i)
-                result.push_back(slot < 0 ? 0.0 : double(all[std::size_t(slot) * LW_VOXEL_BRICK_VOXELS + i]));
+                result.push_back(slot < 0 ? 0.0
+                                          : double(all[std::size_t(slot) * LW_VOXEL_BRICK_VOXELS + i]));
         return result;
     }
     LwVoxelValue value(int plane, int x, int y, int z) const {
@@ -89,7 +98,9 @@ struct VoxelLightRig : VoxelRig {
             for (int p = 0; p < level.planes; ++p)
                 for (const cl_int slot : level.table)
                     for (int i = 0; i < LW_VOXEL_STORED_VOXELS && slot >= 0; ++i)
-                        result.push_back(level.words[(std::size_t(p) * level.slots + std::size_t(slot)) * LW_VOXEL_STRIDE + std::size_t(i)]);
+                        result.push_back(level.words[(std::size_t(p) * level.slots + std::size_t(slot)) *
+                                                         LW_VOXEL_STRIDE +
+                                                     std::size_t(i)]);
         }
         return result;
     }
@@ -115,8 +126,8 @@ inline std::vector<VoxelTriangle> voxelRoom(double lo, double hi) {
 }
 
 // Texels spread over triangles as evenly as by chance, `count` on each, of one radiance.
-inline std::vector<VoxelTexel> texelsOn(const std::vector<VoxelTriangle>& triangles, std::size_t count, std::array<double, 3> radiance,
-                                        unsigned seed) {
+inline std::vector<VoxelTexel> texelsOn(const std::vector<VoxelTriangle>& triangles, std::size_t count,
+                                        std::array<double, 3> radiance, unsigned seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> unit(0.0, 1.0);
     std::vector<VoxelTexel> texels;
@@ -126,9 +137,11 @@ inline std::vector<VoxelTexel> texelsOn(const std::vector<VoxelTriangle>& triang
             e[a] = t.at[1][a] - t.at[0][a];
             f[a] = t.at[2][a] - t.at[0][a];
         }
-        for (std::size_t a = 0; a < 3; ++a) n[a] = e[(a + 1) % 3] * f[(a + 2) % 3] - e[(a + 2) % 3] * f[(a + 1) % 3];
+        for (std::size_t a = 0; a < 3; ++a)
+            n[a] = e[(a + 1) % 3] * f[(a + 2) % 3] - e[(a + 2) % 3] * f[(a + 1) % 3];
         const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-        const double power = 3.14159265358979323846 * 0.5 * length * VoxelRig::kCell * VoxelRig::kCell / double(count);
+        const double power =
+            3.14159265358979323846 * 0.5 * length * VoxelRig::kCell * VoxelRig::kCell / double(count);
         for (std::size_t i = 0; i < count; ++i) {
             double u = unit(random), v = unit(random);
             if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
