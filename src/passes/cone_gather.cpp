@@ -61,7 +61,8 @@ ConeSchedule coneSchedule(const ConeGatherOptions& options) {
     // No cone is longer than the grid's diagonal.
     schedule.reach = std::fmin(options.distance, std::sqrt(3.0)) * sideOf(options);
     schedule.openReach = options.occlusionDistance * sideOf(options);
-    schedule.levels = std::uint32_t(voxel_levels(lw_int(options.size)));
+    // The outermost grid has as many levels again above those of the finest.
+    schedule.levels = std::uint32_t(voxel_levels(lw_int(options.size))) + options.cascades - 1;
     schedule.apertureOffset = options.apertureOffset;
     schedule.near = options.near;
     schedule.corrected = options.opacityCorrection;

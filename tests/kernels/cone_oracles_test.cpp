@@ -112,7 +112,7 @@ TEST_CASE("walls one voxel thick keep more of a room's light where they are opaq
 TEST_CASE("grids nested in each other and filled alike give what one grid gives",
           "[cone_gather][large]") {
     KernelRig rig(16);  // cone_gather_test has nested grids at both
-    const auto even = [](int, int, int) { return Rgba{0.06, 0.03, 0.015, 0.12}; };
+    const auto even = [](int, int, int) { return Rgba{0.0625, 0.03125, 0.015625, 31.0 / 255.0}; };  // words without rounding
     const std::uint32_t cascades = GENERATE(2u, 3u);
     const DeviceVoxels one = deviceVoxels(rig, {hostVoxels(16 << (cascades - 1), 0, even)});
     const DeviceVoxels nested =

@@ -146,7 +146,7 @@ struct ConeTwin {
         s.step = options.step;
         s.reach = std::min(options.distance, std::sqrt(3.0)) * side;
         s.openReach = options.occlusionDistance * side;
-        s.levels = std::uint32_t(voxel_levels(size()));
+        s.levels = std::uint32_t(voxel_levels(size()) + cascades() - 1);
         s.apertureOffset = options.apertureOffset;
         s.near = options.near;
         s.corrected = options.opacityCorrection;
