@@ -127,7 +127,7 @@ LW_FN void march(cone_light* l, const cone_volume* volumes, const cone_origin* f
         // The finest grid that has all of the sample; the outermost one whatever it has.
         mask left = live;
         const int wanted = step.level + grid;
-        LW_UNROLL for (int c = 0; c < LW_CONE_CASCADES; ++c) {
+        for (int c = 0; c < LW_CONE_CASCADES; ++c) {
             const int level = min(max(wanted - c, 0), volumes[c].grids.levels - 1);
             const float margin = 0.5f * (float)(1 << level);
             const real d = (real)(distance / (float)(1 << c));

@@ -16,6 +16,13 @@ LW_FN int list_of(__global const float* p, int stride, const float4 origin, int 
         low = fmin(low, c[a] + reach);
         high = fmax(high, c[a] - reach);
     }
+    if (radius < SURFEL_SMALL) {
+        for (int a = 0; a < 3; ++a) {
+            if (!(c[a] >= 0.0f && c[a] < most)) return -2;
+            cell[a] = (int)c[a] / LW_VOXEL_BRICK + 1;
+        }
+        return 2 * ((cell[2] * bin_side(size) + cell[1]) * bin_side(size) + cell[0]);
+    }
     if (low < 0.0f || high >= most) return -2;
     if (reach > LARGE_REACH) return 2 * large_bin(size) + 1;
     for (int a = 0; a < 3; ++a) {
@@ -25,24 +32,22 @@ LW_FN int list_of(__global const float* p, int stride, const float4 origin, int 
         // (What lies within rounding of a side may belong to both.)
         isInOne = isInOne && (int)(from - 1e-3f) == (int)(to + 1e-3f);
     }
-    const int isSmall = radius < SURFEL_SMALL;
-    if (isSmall)
-        for (int a = 0; a < 3; ++a)
-            if (!(c[a] >= 0.0f && c[a] < most)) return -2;
-    return 2 * ((cell[2] * bin_side(size) + cell[1]) * bin_side(size) + cell[0]) + (isSmall || isInOne ? 0 : 1);
+    return 2 * ((cell[2] * bin_side(size) + cell[1]) * bin_side(size) + cell[0]) + (isInOne ? 0 : 1);
 }
 
 // Surfels of a work-item, neighbours: those of one list are one atomic.
 #define BINS_RUN 32
 
-// One work-item = BINS_RUN surfels.
+// One work-item = BINS_RUN surfels: which list each belongs to, and how many each list has.
 __kernel void voxel_bins_count(__global const float* surfels, int stride, int count, __global const LwLpvPlace* place, int size,
-                               __global int* counts, __global LwVoxelGrid* state) {
+                               __global int* listOf, __global int* counts, __global LwVoxelGrid* state) {
     const int first = lw_list_index() * BINS_RUN, last = min(first + BINS_RUN, count);
     if (first >= count || !state->stale || !(place->origin.w > 0.0f)) return;
+    const float4 origin = place->origin;
     int list = -1, run = 0, outside = 0;
     for (int i = first; i < last; ++i) {
-        const int own = list_of(surfels + i, stride, place->origin, size);
+        const int own = list_of(surfels + i, stride, origin, size);
+        listOf[i] = own;
         outside += own == -2;
         if (own != list) {
             if (list >= 0) atomic_add(counts + list, run);
@@ -92,15 +97,14 @@ __kernel void voxel_bins_begin(__global const int* counts, int lists, __global c
 }
 
 // One work-item = BINS_RUN surfels, from the lists' ends on: all counts end at 0, for the next record.
-__kernel void voxel_bins_list(__global const float* surfels, int stride, int count, __global const LwLpvPlace* place, int size,
-                              __global int* counts, __global const int* begins, __global int* order,
-                              __global const LwVoxelGrid* state) {
+__kernel void voxel_bins_list(__global const int* listOf, int count, __global const LwLpvPlace* place, __global int* counts,
+                              __global const int* begins, __global int* order, __global const LwVoxelGrid* state) {
     const int first = lw_list_index() * BINS_RUN, last = min(first + BINS_RUN, count);
     if (first >= count || !state->stale || !(place->origin.w > 0.0f)) return;
     for (int i = first; i < last;) {
-        const int list = list_of(surfels + i, stride, place->origin, size);
+        const int list = listOf[i];
         int end = i + 1;
-        while (end < last && list_of(surfels + end, stride, place->origin, size) == list) ++end;
+        while (end < last && listOf[end] == list) ++end;
         if (list >= 0) {
             const int at = begins[list] + atomic_sub(counts + list, end - i) - (end - i);
             for (int k = i; k < end; ++k) order[at + k - i] = k;

@@ -37,20 +37,22 @@ void VoxelGridBins::record(Executor& executor, const SurfelSet& surfels, const B
     }
     chunks_.reserve(device_, chunks * sizeof(cl_int), "sums of surfels in bricks");
     begins_.reserve(device_, (lists + 1) * sizeof(cl_int), "where bricks' surfels begin");
+    listOf_.reserve(device_, std::max<std::size_t>(surfels.count, 1) * sizeof(cl_int), "surfels' bricks");
     order_.reserve(device_, std::max<std::size_t>(surfels.count, 1) * sizeof(cl_int), "surfels by bricks");
     const Range over = gridOver((surfels.count + kRun - 1) / kRun);
     const cl_int stride = cl_int(surfels.planes.planeStride), count = cl_int(surfels.count), size = cl_int(size_);
     if (count)
-        executor.run(kPass, count_, over, kListGroup, surfels.planes.memory, stride, count, place, size, counts_, state);
+        executor.run(kPass, count_, over, kListGroup, surfels.planes.memory, stride, count, place, size, listOf_, counts_,
+                     state);
     executor.run(kPass, addUp_, {chunks, 1}, kListGroup, counts_, cl_int(lists), chunks_, state);
     executor.run(kPass, scan_, {1, 1}, {1, 1}, chunks_, cl_int(chunks), state);
     executor.run(kPass, begin_, {chunks, 1}, kListGroup, counts_, cl_int(lists), chunks_, begins_, state);
     if (count)
-        executor.run(kPass, list_, over, kListGroup, surfels.planes.memory, stride, count, place, size, counts_, begins_, order_, state);
+        executor.run(kPass, list_, over, kListGroup, listOf_, count, place, counts_, begins_, order_, state);
 }
 
 std::uint64_t VoxelGridBins::estimateBytes(std::uint32_t size, std::uint64_t surfelCount) {
-    return (2 * listsOf(size) + 1 + chunksOf(size) + std::max<std::uint64_t>(surfelCount, 1)) * sizeof(cl_int);
+    return (2 * listsOf(size) + 1 + chunksOf(size) + 2 * std::max<std::uint64_t>(surfelCount, 1)) * sizeof(cl_int);
 }
 
 }  // namespace lightwell

@@ -19,14 +19,14 @@ public:
 
     const Buffer& begins() const { return begins_; }  // bin_lists + 1: where each list begins in order()
     const Buffer& order() const { return order_; }    // surfels
-    std::uint64_t bytes() const { return counts_.bytes() + chunks_.bytes() + begins_.bytes() + order_.bytes(); }
+    std::uint64_t bytes() const { return listOf_.bytes() + counts_.bytes() + chunks_.bytes() + begins_.bytes() + order_.bytes(); }
     static std::uint64_t estimateBytes(std::uint32_t size, std::uint64_t surfelCount);
 
 private:
     Device& device_;
     std::uint32_t size_;
     Kernel &count_, &addUp_, &scan_, &begin_, &list_;
-    Buffer counts_, chunks_, begins_, order_;
+    Buffer listOf_, counts_, chunks_, begins_, order_;
 };
 
 }  // namespace lightwell

@@ -59,8 +59,12 @@ void checkEnvironment(const LWFrame& frame) {
 
 class ConeTracingTechnique final : public Technique {
 public:
-    ConeTracingTechnique(Device& device, const LWConeTracingDesc& desc)
-        : device_(device), desc_(desc), volume_(std::make_unique<ConeTracingVolume>(device, desc)), passes_(device, desc) {}
+    ConeTracingTechnique(Device& device, const LWConeTracingDesc& desc, int hidden = 0)
+        : device_(device),
+          desc_(desc),
+          hidden_(hidden),
+          volume_(std::make_unique<ConeTracingVolume>(device, desc, hidden)),
+          passes_(device, desc) {}
 
     void update(Executor& executor, const LWFrame& frame) override {
         checkEnvironment(frame);
@@ -68,7 +72,7 @@ public:
         rsms_.import(executor, frame);
         const bool lost = continuity_.beginLost();
         // What its memory holds is not known.
-        if (lost) volume_ = std::make_unique<ConeTracingVolume>(device_, desc_);
+        if (lost) volume_ = std::make_unique<ConeTracingVolume>(device_, desc_, hidden_);
         volume_->record(executor, frame, rsms_, frame.reset != 0 || lost);
         shadowLight_ = lightOf(frame, desc_);
         choices_ = unusedInputs(frame, desc_);
@@ -98,10 +102,10 @@ public:
         LWConeTracingDesc desc = desc_;
         desc.size = std::min(desc.size, kPrewarmedSize);
         desc.cascades = std::min(desc.cascades, kPrewarmedCascades);
-        for (int source = LW_VOXEL_SOURCE_TRIANGLES; source <= LW_VOXEL_SOURCE_SCREEN; ++source) {
-            if (desc_.source == LW_VOXEL_SOURCE_AUTO) desc.source = LWVoxelSource(source);
-            else if (source != LW_VOXEL_SOURCE_TRIANGLES) break;
-            ConeTracingTechnique twin(device_, desc);
+        desc.source = LW_VOXEL_SOURCE_AUTO;
+        for (int hidden = 0; hidden <= 2; ++hidden) {
+            if (desc_.source != LW_VOXEL_SOURCE_AUTO && desc_.source != LW_VOXEL_SOURCE_TRIANGLES + hidden) continue;
+            ConeTracingTechnique twin(device_, desc, hidden);
             exerciseTechnique(executor, twin, kMakes);
             exercisePoints(executor, twin);
         }
@@ -114,6 +118,7 @@ public:
 private:
     Device& device_;
     LWConeTracingDesc desc_;
+    int hidden_;  // ConeTracingSurfaces'
     Continuity continuity_{device_};
     RsmInput rsms_;
     std::unique_ptr<ConeTracingVolume> volume_;

@@ -99,8 +99,10 @@ std::vector<LWParameter> ofCones() {
         flag("aperture_offset",
              "cones begin further off the wider they are, so that none takes light from its own surface; near light is missed more",
              offsetof(LWConeTracingDesc, apertureOffset), 0),
-        flag("normal_aware", "voxels whose surfaces all face away from a cone send it nothing: less light leaks through walls, more reading",
-             offsetof(LWConeTracingDesc, normalAware), 0),
+        flag("normal_aware",
+             "cones see of a voxel what faces them alone, light and opacity, so that surfaces neither light nor shadow themselves; takes "
+             "geometry whose triangles or surfels face outwards, and the finest voxels' six sides",
+             offsetof(LWConeTracingDesc, normalAware), 1),
         choosing(parameter("occlusion",
                            "what ambient occlusion from voxels dims of the light: nothing, as that has come past the voxels already; all, "
                            "which counts what is hidden twice; or all by what stands nearer than cones begin",
@@ -156,7 +158,7 @@ extern "C" void lwDefaultConeTracing(LWConeTracingDesc* desc) {
     desc->nudge = 1.0f;
     desc->step = 1.0f;
     desc->distance = 1.75f;
-    desc->opacityCorrection = 1;
+    desc->opacityCorrection = desc->normalAware = 1;
     desc->occlusion = LW_CONE_OCCLUSION_OFF;
     desc->occlusionDistance = 0.125f;
     desc->shadowAngle = 0.1f;

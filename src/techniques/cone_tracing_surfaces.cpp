@@ -37,7 +37,7 @@ Source ConeTracingSurfaces::chosen(LWVoxelSource source, std::uint32_t triangles
 }
 
 Source ConeTracingSurfaces::sourceOf(const LWFrame& frame) const {
-    return chosen(desc_.source, trianglesOf(frame), surfelsOf(frame));
+    return chosen(desc_.source, hidden_ > 0 ? 0 : trianglesOf(frame), hidden_ > 1 ? 0 : surfelsOf(frame));
 }
 
 void ConeTracingSurfaces::check(const LWFrame& frame) const {
@@ -46,7 +46,7 @@ void ConeTracingSurfaces::check(const LWFrame& frame) const {
         if (trianglesOf(frame) == 0)
             fail(LW_ERROR_INVALID_ARGUMENT,
                  "frame.geometry: expected triangles, as the technique's parameter source=triangles asks for them, got none");
-        triangles_.check(frame.geometry);
+        triangles_.check(frame.geometry, true);
     }
     if (source == Source::surfels) {
         if (surfelsOf(frame) == 0)
@@ -61,7 +61,7 @@ bool ConeTracingSurfaces::import(Executor& executor, const LWFrame& frame, const
     const Source source = sourceOf(frame);
     const bool isOther = source != source_;  // revisions count within a source
     source_ = source;
-    if (source == Source::triangles) triangles_.import(executor, frame.geometry);
+    if (source == Source::triangles) triangles_.import(executor, frame.geometry, true);
     if (source == Source::surfels) surfels_.import(executor, frame.geometry);
     if (source == Source::screen) screen_.import(executor, frame, rsms);
     else screen_.clear();
@@ -95,7 +95,7 @@ void ConeTracingSurfaces::report(Report& report) const {
 std::uint64_t ConeTracingSurfaces::estimateBytes(const LWConeTracingDesc& desc, const FrameShape& shape) {
     switch (chosen(desc.source, shape.triangles, shape.surfels)) {
         case Source::triangles:
-            return GeometryInput::estimateBytes(shape.triangles);
+            return GeometryInput::estimateBytes(shape.triangles, true);
         case Source::surfels:
             return SurfelInput::estimateBytes(shape.surfels, shape.uploads);
         default:

@@ -18,7 +18,8 @@ class ConeTracingSurfaces {
 public:
     enum class Source { none, triangles, surfels, screen };  // none: before the first frame
 
-    explicit ConeTracingSurfaces(Device& device, const LWConeTracingDesc& desc) : device_(device), desc_(desc) {}
+    // hidden: for twins that prewarm, of so many kinds of geometry frames are taken to have none: 1: triangles, 2: nor surfels.
+    ConeTracingSurfaces(Device& device, const LWConeTracingDesc& desc, int hidden) : device_(device), desc_(desc), hidden_(hidden) {}
 
     // Throws what import() would say of this frame, whose RSMs are RsmInput's to check.
     void check(const LWFrame& frame) const;
@@ -40,6 +41,7 @@ private:
 
     Device& device_;
     LWConeTracingDesc desc_;
+    int hidden_;
     Source source_ = Source::none;
     GeometryInput triangles_;
     SurfelInput surfels_;

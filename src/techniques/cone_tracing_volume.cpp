@@ -45,8 +45,12 @@ VoxelVolume volumeOf(const LWConeTracingDesc& desc) {
 
 }  // namespace
 
-ConeTracingVolume::ConeTracingVolume(Device& device, const LWConeTracingDesc& desc)
-    : device_(device), desc_(desc), surfaces_(device, desc), places_(device, desc.size, unitOf(desc), desc.cascades), volume_(volumeOf(desc)),
+ConeTracingVolume::ConeTracingVolume(Device& device, const LWConeTracingDesc& desc, int hidden)
+    : device_(device),
+      desc_(desc),
+      surfaces_(device, desc, hidden),
+      places_(device, desc.size, unitOf(desc), desc.cascades),
+      volume_(volumeOf(desc)),
       baseSlots_(firstSlots(desc.size)),
       mipSlots_(firstMipSlots(desc.size)) {
     for (std::uint32_t c = 0; c < desc.cascades; ++c) {

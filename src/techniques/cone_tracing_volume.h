@@ -22,7 +22,8 @@ namespace lightwell {
 
 class ConeTracingVolume {
 public:
-    ConeTracingVolume(Device& device, const LWConeTracingDesc& desc);
+    // hidden: ConeTracingSurfaces'.
+    ConeTracingVolume(Device& device, const LWConeTracingDesc& desc, int hidden);
 
     // Throws what record() would say of this frame, whose RSMs are RsmInput's to check.
     void check(const LWFrame& frame);

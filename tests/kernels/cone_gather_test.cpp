@@ -103,18 +103,27 @@ void checkTwin(KernelRig& rig, const ConeGatherOptions& options, const DeviceVox
 }  // namespace
 
 TEST_CASE("cones are what a loop over their samples makes of the same words", "[cone_gather]") {
-    KernelRig rig(GENERATE(1u, 16u));
-    const int mode = GENERATE(0, 1, 2);
-    const bool sides = GENERATE(false, true);
-    const HostVoxels host = someVoxels(32, mode, sides);
-    const DeviceVoxels voxels = deviceVoxels(rig, {host});
-    ConeGatherOptions options = optionsOf(host);
-    options.step = sides ? 0.5 : 1.0;
-    options.near = sides;
+    // Width, mode and sides, cascades: each mode with and without sides, each at both widths.
+    struct Case {
+        std::uint32_t width;
+        int mode;
+        bool sides;
+        std::uint32_t cascades;
+    };
+    const Case c = GENERATE(Case{1, 0, false, 1}, Case{16, 0, false, 1}, Case{16, 0, true, 1}, Case{1, 1, true, 1}, Case{16, 1, false, 1},
+                            Case{1, 2, false, 1}, Case{16, 2, true, 1}, Case{1, 0, false, 3}, Case{16, 0, false, 3});
+    KernelRig rig(c.width);
+    std::vector<HostVoxels> grids;
+    for (std::uint32_t k = 0; k < c.cascades; ++k) grids.push_back(someVoxels(c.cascades > 1 ? 16 : 32, c.mode, c.sides, 5 + k));
+    const DeviceVoxels voxels = deviceVoxels(rig, grids);
+    ConeGatherOptions options = optionsOf(grids[0]);
+    options.cascades = c.cascades;
+    options.step = c.sides ? 0.5 : 1.0;
+    options.near = c.sides;
     options.nudge = 2.0;
     options.occlusionDistance = 0.5;
-    options.apertureOffset = mode == 1;
-    options.opacityCorrection = mode != 2;
+    options.apertureOffset = c.mode == 1;
+    options.opacityCorrection = c.mode != 2;
     const auto [width, height] = testSize({61, 5});
     checkTwin(rig, options, voxels, somePoints(width, height, 32 * kVoxel));
 }

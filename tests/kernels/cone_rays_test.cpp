@@ -66,7 +66,7 @@ TEST_CASE("a homogeneous medium is the same whatever it is cut into", "[cone_ray
     }
 }
 
-TEST_CASE("a full wall one voxel thick blocks a cone of matching width", "[cone_rays]") {
+TEST_CASE("a full wall one voxel thick blocks a cone of matching width", "[cone_rays][large]") {
     KernelRig rig(16);
     const int level = GENERATE(0, 1, 2, 3);
     // The wall's voxel is the first of its cell; a sample of the cone lies in the middle of the cell.
@@ -173,7 +173,7 @@ TEST_CASE("a mirror shows the wall that it looks at, at both widths", "[cone_ray
     CHECK(light[4] == 0.0f);
 }
 
-TEST_CASE("refraction goes on, bends, and is mirrored beyond the critical angle", "[cone_rays]") {
+TEST_CASE("refraction goes on, bends, and is mirrored beyond the critical angle", "[cone_rays][large]") {
     KernelRig rig(GENERATE(1u, 16u));
     const DeviceVoxels voxels = deviceVoxels(rig, sides(64));
     const Vec eye{32, 32, 32};

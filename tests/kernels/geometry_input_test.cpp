@@ -211,57 +211,6 @@ TEST_CASE("what is wrong with a geometry is said, and the last one stays", "[geo
     CHECK(thrown([] { GeometryInput::estimateBytes(0xffffffffu); }).says("triangleCount: expected at most"));
 }
 
-TEST_CASE("emission comes where it is asked for and given; what is no radiance is refused", "[geometry_input]") {
-    KernelRig rig(16);
-    const Mesh mesh = scatter(37);
-    std::vector<float> emission(3 * 37);
-    for (std::size_t i = 0; i < emission.size(); ++i) emission[i] = 0.25f * float(i);
-    GeometryInput input;
-    LWGeometry g = mesh.geometry();
-    input.import(rig.executor(), &g, true);
-    CHECK(!input.hasEmission);
-    CHECK(input.triangles.count == GeometryInput::kPlaneCount);
-    CHECK(input.bytes() == GeometryInput::estimateBytes(37));
-    g.triangleEmission = emission.data();
-    input.import(rig.executor(), &g, false);
-    CHECK(!input.hasEmission);
-    input.import(rig.executor(), &g, true);
-    rig.device().finish();
-    CHECK(input.hasEmission);
-    CHECK(input.revision > 1);
-    CHECK(input.largestEmission == 0.25f * 110.0f);
-    const std::size_t stride = input.triangles.width;
-    const std::vector<float> planes = floatsOf(input.triangles.memory, rig.device(), stride * LW_TRIANGLE_EMISSIVE_PLANES);
-    for (std::size_t t = 0; t < 37; ++t)
-        for (std::size_t c = 0; c < 3; ++c)
-            CHECK(planes[(GeometryInput::kEmission + c) * stride + t] == emission[3 * input.hostIndices[t] + c]);
-    CHECK(input.bytes() <= GeometryInput::estimateBytes(37, true));
-    // Another emission is a change like any other.
-    emission[7] = 100.0f;
-    ++g.version;
-    const std::uint64_t revision = input.revision;
-    input.import(rig.executor(), &g, true);
-    CHECK(input.revision == revision + 1);
-    CHECK(input.largestEmission == 100.0f);
-    for (const float bad : {-1.0f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 2e20f}) {
-        std::vector<float> wrong = emission;
-        wrong[5] = bad;
-        LWGeometry h = g;
-        h.triangleEmission = wrong.data();
-        const Thrown t = thrown([&] { input.import(rig.executor(), &h, true); });
-        CHECK(t.status == LW_ERROR_INVALID_ARGUMENT);
-        CHECK(t.says("frame.geometry.triangleEmission[5]: expected 0 .. 1e+20, got"));
-        CHECK(thrown([&] { input.check(&h, true); }).message == t.message);
-        input.check(&h);  // nobody asks
-    }
-    g.triangleEmission = nullptr;
-    ++g.version;
-    input.import(rig.executor(), &g, true);
-    CHECK(!input.hasEmission);
-    CHECK(input.largestEmission == 0.0f);
-    rig.device().finish();
-}
-
 TEST_CASE("boxes around what changed, between lists of any lengths", "[geometry_input]") {
     KernelRig rig(16);
     Mesh mesh = scatter(200);

@@ -95,48 +95,6 @@ LWFrame frameOf(const LWLight* light, const LWSourceView* source) {
 
 }  // namespace
 
-TEST_CASE("surfels' emission comes where it is asked for and given; those whose emission is no radiance are left out", "[surfel_input]") {
-    KernelRig rig(GENERATE(1u, 16u));
-    HostSurfels host(45);
-    HostImage emission(LW_FORMAT_FLOAT3, 45, 1);
-    for (std::uint32_t i = 0; i < 45; ++i) emission.set(i, 0, 0.5 * i, 0.0, 1.0);
-    emission.set(3, 0, -1.0, 0, 0);
-    emission.set(4, 0, 0, std::numeric_limits<double>::quiet_NaN(), 0);
-    emission.set(5, 0, 0, 0, std::numeric_limits<double>::infinity());
-    SurfelInput input;
-    LWGeometry g = host.geometry();
-    input.import(rig.executor(), &g, true);
-    CHECK(input.surfels().emission == nullptr);
-    g.surfelEmission = emission.image();
-    input.import(rig.executor(), &g);
-    CHECK(input.surfels().emission == nullptr);
-    CHECK(rejectedOf(rig, input) == 0);
-    input.import(rig.executor(), &g, true);
-    CHECK(rejectedOf(rig, input) == 3);
-    const SurfelSet set = input.surfels();
-    REQUIRE(set.emission);
-    CHECK(set.revision > 1);
-    float largest = 0.0f;
-    set.emission->download(LW_SURFEL_LARGEST * sizeof(float), sizeof largest, &largest);
-    CHECK(largest == 22.0f);
-    const std::size_t stride = set.planes.width;
-    std::vector<float> v(stride * LW_SURFEL_EMISSIVE_PLANES);
-    Buffer::retained(rig.device(), set.planes.memory).download(0, v.size() * 4, v.data());
-    for (std::size_t i = 0; i < stride; ++i) {
-        const bool is = i < 45 && (i < 3 || i > 5);
-        CHECK((v[LW_SURFEL_RADIUS * stride + i] > 0.0f) == is);
-        CHECK(v[LW_SURFEL_EMISSION * stride + i] == (is ? 0.5f * float(i) : 0.0f));
-        CHECK(v[(LW_SURFEL_EMISSION + 2) * stride + i] == (is ? 1.0f : 0.0f));
-    }
-    CHECK(input.bytes() <= SurfelInput::estimateBytes(45, true, true));
-    HostImage grey(LW_FORMAT_FLOAT1, 45, 1);
-    g.surfelEmission = grey.image();
-    const Thrown t = thrown([&] { SurfelInput::check(rig.device(), &g, true); });
-    CHECK(t.status == LW_ERROR_INVALID_ARGUMENT);
-    CHECK(t.says("frame.geometry.surfelEmission"));
-    SurfelInput::check(rig.device(), &g);
-}
-
 TEST_CASE("a host's surfels as it described them; what cannot be used is left out and counted", "[surfel_input]") {
     KernelRig rig(GENERATE(1u, 16u));
     HostSurfels host(45);

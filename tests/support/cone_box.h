@@ -57,13 +57,13 @@ struct LitWall {
     LitWall(const LitWall&) = delete;
 };
 
-// Two triangles of a rectangle each time.
+// Two triangles of a rectangle each time, that face the way of v x u as LitWall does.
 struct WallTriangles {
     std::vector<float> vertices, albedo, emission;
     LWGeometry geometry{};
 
     void quad(glm::dvec3 corner, glm::dvec3 u, glm::dvec3 v, double reflects = 0.5, double emits = 0.0) {
-        for (const glm::dvec3& p : {corner, corner + u, corner + u + v, corner, corner + u + v, corner + v})
+        for (const glm::dvec3& p : {corner, corner + v, corner + u + v, corner, corner + u + v, corner + u})
             for (int a = 0; a < 3; ++a) vertices.push_back(float(p[a]));
         for (int k = 0; k < 6; ++k) {
             albedo.push_back(float(reflects));

@@ -1,0 +1,214 @@
+// What a host relies on with technique cone_tracing: refusals, memory, nothing compiled after lwPrewarm, nothing made anew in a static
+// scene, outputs of each kind, points.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <functional>
+
+#include "support/choices.h"
+#include "support/cone_box.h"
+#include "support/points_rig.h"
+
+using namespace lightwell::test;
+using Catch::Matchers::Contains;
+
+namespace {
+
+constexpr std::uint32_t kWidth = 37, kHeight = 26;
+const TestCamera kInside = lookAt({0.2, 0.1, 0.9}, {0, 0, -1}, 1.2);
+
+struct Outputs {
+    PlanarPixels irradiance{kWidth, kHeight, 3}, specular{kWidth, kHeight, 3}, refracted{kWidth, kHeight, 3}, validity{kWidth, kHeight, 1},
+        open{kWidth, kHeight, 1}, shadow{kWidth, kHeight, 1};
+    LWOutput output{};
+    Outputs() {
+        output.structSize = sizeof output;
+        output.irradiance = irradiance.image();
+        output.validity = validity.image();
+        output.ambientOcclusion = open.image();
+        output.specularRadiance = specular.image();
+        output.refractedRadiance = refracted.image();
+        output.shadow = shadow.image();
+    }
+};
+
+void render(LWDevice device, LWTechnique technique, const TestView& view, const LWGBuffer& gbuffer, const LWOutput& output) {
+    const LWStatus status = lwRender(technique, view, &gbuffer, &output);
+    INFO(lastError(device));
+    REQUIRE(status == LW_SUCCESS);
+    REQUIRE(lwFinish(device) == LW_SUCCESS);
+}
+
+}  // namespace
+
+TEST_CASE("cones: all outputs at once are each as alone, and as wide as they are known to be", "[cone_tracing]") {
+    TestDevice device(16);
+    const auto resolution = GENERATE(LW_CONE_RESOLUTION_FULL, LW_CONE_RESOLUTION_QUARTER, LW_CONE_RESOLUTION_INTERLEAVED);
+    const ConeBox box(2.0, false, 1.0, 0.5, 64);
+    const DrawnView drawn(box.walls, kInside, kWidth, kHeight);
+    LWConeTracingDesc desc = coneDesc(32, LW_VOXEL_MODE_ANISOTROPIC, resolution);
+    TestTechnique technique(device, "cone_tracing", &desc);
+    TestView view(device, kWidth, kHeight);
+    technique.update(box.frame);
+    Outputs all;
+    render(device, technique, view, drawn.gbuffer, all.output);
+    using Image = LWImage LWOutput::*;
+    const std::pair<Image, PlanarPixels Outputs::*> each[] = {{&LWOutput::irradiance, &Outputs::irradiance},
+                                                              {&LWOutput::validity, &Outputs::validity},
+                                                              {&LWOutput::ambientOcclusion, &Outputs::open},
+                                                              {&LWOutput::specularRadiance, &Outputs::specular},
+                                                              {&LWOutput::refractedRadiance, &Outputs::refracted},
+                                                              {&LWOutput::shadow, &Outputs::shadow}};
+    for (const auto& [image, pixels] : each) {
+        Outputs one;
+        LWOutput output{};
+        output.structSize = sizeof output;
+        output.*image = one.output.*image;
+        render(device, technique, view, drawn.gbuffer, output);
+        CHECK((one.*pixels).packed() == (all.*pixels).packed());
+    }
+    // Inside of the box nothing lies outside of the grid; a mirror shows the walls' radiance, but for what cones let through.
+    for (const float v : all.validity.packed()) REQUIRE(v == Approx(1.0).margin(1e-4));
+    for (const PlanarPixels* share : {&all.open, &all.shadow})
+        for (const float v : const_cast<PlanarPixels*>(share)->packed()) REQUIRE((v >= 0.0f && v <= 1.0f));
+    CHECK(meanOf(all.specular.packed()) > 0.5 * 2.0 / ConeBox::kPi);
+    CHECK(meanOf(all.specular.packed()) < 1.2 * 2.0 / ConeBox::kPi);
+    CHECK(meanOf(all.open.packed()) < 0.95);
+}
+
+TEST_CASE("cones compile nothing after lwPrewarm, and take no more memory than was estimated", "[cone_tracing]") {
+    TestDevice device(16);
+    const ConeBox box(2.0, false, 1.0, 0.5, 32);
+    const DrawnView drawn(box.walls, kInside, kWidth, kHeight);
+    LWConeTracingDesc desc = coneDesc(32, GENERATE(LW_VOXEL_MODE_ANISOTROPIC, LW_VOXEL_MODE_SH2),
+                                      GENERATE(LW_CONE_RESOLUTION_HALF, LW_CONE_RESOLUTION_INTERLEAVED));
+    desc.bounces = desc.mode == LW_VOXEL_MODE_SH2 ? 1 : 0;
+    desc.cascades = desc.mode == LW_VOXEL_MODE_SH2 ? 2 : 1;
+    desc.occlusion = desc.bounces ? LW_CONE_OCCLUSION_ALL : LW_CONE_OCCLUSION_NEAR;
+    TestTechnique technique(device, "cone_tracing", &desc);
+    TestView view(device, kWidth, kHeight);
+    REQUIRE(lwPrewarm(technique, view) == LW_SUCCESS);
+    const LWDeviceInfo before = device.info();
+    LWViewDesc size{};
+    size.structSize = sizeof size;
+    size.maxWidth = kWidth;
+    size.maxHeight = kHeight;
+    std::uint64_t estimate = 0;
+    REQUIRE(lwEstimateFrameMemory(device, "cone_tracing", &desc, &size, &box.frame, &estimate) == LW_SUCCESS);
+    Outputs all;
+    for (int frame = 0; frame < 3; ++frame) {
+        technique.update(box.frame);
+        render(device, technique, view, drawn.gbuffer, all.output);
+        CHECK(technique.stats().deviceBytes <= estimate);
+    }
+    LWFrame dark = box.frame;
+    dark.geometry = nullptr;
+    technique.update(dark);
+    technique.render(view, drawn.gbuffer);
+    CHECK(device.info().programsBuilt == before.programsBuilt);
+    CHECK(device.info().kernelsSpecialised == before.kernelsSpecialised);
+}
+
+TEST_CASE("cones: nothing is made anew in a static scene, and what moves within a grid's units changes nothing", "[cone_tracing]") {
+    TestDevice device(16);
+    const ConeBox box(2.0, false, 1.0, 0.5, 64);
+    const DrawnView drawn(box.walls, kInside, kWidth, kHeight);
+    LWConeTracingDesc desc = coneDesc(32);
+    desc.cascades = 2;
+    desc.extent = 4.0f;  // units of a finer grid's eighth: a quarter
+    TestTechnique technique(device, "cone_tracing", &desc);
+    TestView view(device, kWidth, kHeight);
+    float focus[3] = {0.05f, 0.02f, 0.01f};
+    LWFrame frame = box.frame;
+    frame.focus = focus;
+    technique.update(frame);
+    const std::vector<float> first = technique.render(view, drawn.gbuffer);
+    CHECK(meanOf(first) > 0.5);
+    CHECK(technique.count("changed_bricks") > 0);
+    technique.update(frame);
+    CHECK(technique.render(view, drawn.gbuffer) == first);
+    CHECK(technique.count("changed_bricks") == 0);
+    focus[0] = -0.1f;
+    focus[2] = 0.11f;
+    technique.update(frame);
+    CHECK(technique.render(view, drawn.gbuffer) == first);
+    CHECK(technique.count("changed_bricks") == 0);
+    focus[0] = 0.3f;
+    technique.update(frame);
+    CHECK(technique.render(view, drawn.gbuffer) != first);
+    CHECK(technique.count("changed_bricks") > 0);
+}
+
+TEST_CASE("cones at points are those at pixels, to the bit, at full resolution", "[cone_tracing]") {
+    TestDevice device(GENERATE(1u, 16u));
+    const ConeBox box(2.0, false, 1.0, 0.5, 64);
+    const DrawnView drawn(box.walls, kInside, kWidth, kHeight);
+    const LWConeTracingDesc desc = coneDesc(32);
+    TestTechnique technique(device, "cone_tracing", &desc);
+    TestView view(device, kWidth, kHeight);
+    technique.update(box.frame);
+    const std::vector<float> picture = technique.render(view, drawn.gbuffer);
+    const PointLights points = renderPoints(device, technique, PointList::ofScene(drawn));
+    std::vector<float> pixels(picture.size());
+    const std::size_t n = picture.size() / 3;
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t c = 0; c < 3; ++c) pixels[3 * i + c] = picture[c * n + i];
+    CHECK(points.irradiance == pixels);
+}
+
+TEST_CASE("cones: what a frame does not bring is refused, and what is not used is told", "[cone_tracing]") {
+    TestDevice device(16);
+    const ConeBox box(2.0, false, 1.0, 0.5, 32);
+    const DrawnView drawn(box.walls, kInside, kWidth, kHeight);
+    LWConeTracingDesc desc = coneDesc(32);
+    const auto refused = [&](const LWConeTracingDesc& d, const LWFrame& frame, const char* word) {
+        TestTechnique technique(device, "cone_tracing", &d);
+        CHECK(lwUpdate(technique, &frame) == LW_ERROR_INVALID_ARGUMENT);
+        CHECK_THAT(lastError(device), Contains(word));
+    };
+    LWFrame bare = box.frame;
+    bare.geometry = nullptr;
+    desc.source = LW_VOXEL_SOURCE_TRIANGLES;
+    refused(desc, bare, "source=triangles");
+    desc.source = LW_VOXEL_SOURCE_SURFELS;
+    refused(desc, box.frame, "source=surfels");
+    desc.source = LW_VOXEL_SOURCE_AUTO;
+    LWFrame bright = box.frame;
+    bright.environment[1] = 1e30f;
+    refused(desc, bright, "frame.environment[1]");
+    TestTechnique technique(device, "cone_tracing", &desc);
+    technique.update(bare);
+    CHECK(reasonOf(technique, "source").find("RSM texels") != std::string::npos);
+    LWVpl vpl{};
+    vpl.normal[1] = vpl.flux[0] = 1.0f;
+    bare.vpls = &vpl;
+    bare.vplCount = 1;
+    bare.lightCount = 0;
+    technique.update(bare);
+    CHECK(reasonOf(technique, "frame.vpls").find("not used") != std::string::npos);
+    Outputs all;
+    TestView view(device, kWidth, kHeight);
+    LWOutput shadow{};
+    shadow.structSize = sizeof shadow;
+    shadow.shadow = all.output.shadow;
+    CHECK(lwRender(technique, view, &drawn.gbuffer, &shadow) == LW_ERROR_INVALID_ARGUMENT);
+    CHECK_THAT(lastError(device), Contains("output.shadow") && Contains("shadow_light"));
+    LWTechnique none = nullptr;
+    for (const auto& spoil : std::vector<std::function<void(LWConeTracingDesc&)>>{
+             [](LWConeTracingDesc& d) { d.size = 48; }, [](LWConeTracingDesc& d) { d.cones = 8; }, [](LWConeTracingDesc& d) { d.cascades = 5; },
+             [](LWConeTracingDesc& d) { d.nudge = NAN; }, [](LWConeTracingDesc& d) { d.step = 0.0f; },
+             [](LWConeTracingDesc& d) { d.refractiveIndex = 0.5f; }, [](LWConeTracingDesc& d) { d.bounces = 2; }}) {
+        LWConeTracingDesc bad = coneDesc(32);
+        spoil(bad);
+        CHECK(lwCreateConeTracing(device, &bad, &none) == LW_ERROR_INVALID_ARGUMENT);
+    }
+}
+
+TEST_CASE("cones: dense grids and sparse ones have the same light", "[cone_tracing]") {
+    TestDevice device(16);
+    const ConeBox box(2.0, false, 1.0, 0.5, 64);
+    const DrawnView drawn(box.walls, kInside, kWidth, kHeight);
+    LWConeTracingDesc desc = coneDesc(64);
+    const std::vector<float> sparse = renderCones(device, desc, box.frame, drawn.gbuffer, kWidth, kHeight);
+    desc.sparse = 0;
+    CHECK(renderCones(device, desc, box.frame, drawn.gbuffer, kWidth, kHeight) == sparse);
+}
