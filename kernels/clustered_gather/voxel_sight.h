@@ -45,7 +45,7 @@ LW_FN real share_inside(real at, float eye, float size) {
 
 // The share of the light of eye number `eye` that reaches the surfaces: of the eight voxels about the place one clearance off the
 // surface, those that hold nothing count. 1 exactly where all of these are lit fully. Where something else holds the place's own
-// voxel, another wall beside an edge, what arrives at that voxel may count instead: some of the others may lie behind the wall. Beyond the grid nothing is known to block:
+// voxel, another wall beside an edge, what arrives at that voxel counts instead: some of the others may lie behind the wall. Beyond the grid nothing is known to block:
 // there counts what reaches the place where the light leaves it.
 LW_FN real voxel_sight(__global const uchar* sights, __global const LwVoxelEye* eyes, __global const LwVoxelSight* grid, int eye,
                        const lw_surface s) {
@@ -83,7 +83,7 @@ LW_FN real voxel_sight(__global const uchar* sights, __global const LwVoxelEye* 
     const real around = missing / ((float)LW_SIGHT_FULL * sum);
     const real here = to_real(LW_SIGHT_FULL - (own & LW_SIGHT_FULL)) * (1.0f / LW_SIGHT_FULL);
     // Rounding may take a little more away than there is.
-    return fmax(1.0f - select_(around, fmin(around, here), own >= LW_SIGHT_SOLID), (real)0.0f);
+    return fmax(1.0f - select_(around, here, own >= LW_SIGHT_SOLID), (real)0.0f);
 }
 
 #endif
