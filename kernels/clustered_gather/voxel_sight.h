@@ -44,7 +44,8 @@ LW_FN real share_inside(real at, float eye, float size) {
 }
 
 // The share of the light of eye number `eye` that reaches the surfaces: of the eight voxels about the place one clearance off the
-// surface, those that hold nothing count. 1 exactly where all of these are lit fully. Beyond the grid nothing is known to block:
+// surface, those that hold nothing count. 1 exactly where all of these are lit fully. Where something else holds the place's own
+// voxel, another wall beside an edge, what arrives at that voxel counts instead: some of the others may lie behind the wall. Beyond the grid nothing is known to block:
 // there counts what reaches the place where the light leaves it.
 LW_FN real voxel_sight(__global const uchar* sights, __global const LwVoxelEye* eyes, __global const LwVoxelSight* grid, int eye,
                        const lw_surface s) {
@@ -67,15 +68,22 @@ LW_FN real voxel_sight(__global const uchar* sights, __global const LwVoxelEye* 
     const lanei x = sight_cell(px - 0.5f, size, &tx), y = sight_cell(py - 0.5f, size, &ty), z = sight_cell(pz - 0.5f, size, &tz);
     __global const uchar* sight = sights + LW_SIGHT_PAD + (long)eye * size * size * size;
     const lanei first = x + size * (y + size * z);
+    const mask isUpX = tx >= 0.5f, isUpY = ty >= 0.5f, isUpZ = tz >= 0.5f;
     real sum = (real)0.0f, missing = (real)0.0f;
+    lanei own = (lanei)0;  // of the voxel that the place lies in
     LW_UNROLL for (int i = 0; i < 4; ++i) {
         const real w = ((i & 1) ? ty : 1.0f - ty) * ((i & 2) ? tz : 1.0f - tz);
-        const lanei at = first + ((i & 1) * size + (i >> 1) * size * size);
-        const lanei pair = gather_pairs(sight, at);
-        add_sight(&sum, &missing, w * (1.0f - tx), pair & 255);
-        add_sight(&sum, &missing, w * tx, pair >> 8);
+        const lanei pair = gather_pairs(sight, first + ((i & 1) * size + (i >> 1) * size * size));
+        const lanei lower = pair & 255, upper = pair >> 8;
+        add_sight(&sum, &missing, w * (1.0f - tx), lower);
+        add_sight(&sum, &missing, w * tx, upper);
+        const mask isOwn = and_((i & 1) ? isUpY : not_(isUpY), (i & 2) ? isUpZ : not_(isUpZ));
+        own = selecti_(own, selecti_(lower, upper, isUpX), isOwn);
     }
-    return 1.0f - missing / ((float)LW_SIGHT_FULL * sum);
+    const real around = missing / ((float)LW_SIGHT_FULL * sum);
+    const real here = to_real(LW_SIGHT_FULL - (own & LW_SIGHT_FULL)) * (1.0f / LW_SIGHT_FULL);
+    // Rounding may take a little more away than there is.
+    return fmax(1.0f - select_(around, here, own >= LW_SIGHT_SOLID), (real)0.0f);
 }
 
 #endif

@@ -122,10 +122,15 @@ __kernel void voxel_sweep_across(__global const LwVoxelEye* eyes, int count, int
     for (int z = first; z < min(first + LW_SWEEP_ROWS, min(s.z + shell, size)); ++z) sweep_across(s, side, x, z);
 }
 
-// What goes on from a row of voxels, and from the next ones along it.
-LW_FN void load_onward(__global const uchar* sight, int first, mask isUp, real* near, real* far) {
-    *near = onward(load_bytes(sight, first));
-    *far = onward(selecti_(load_bytes(sight, first + 1), load_bytes(sight, first - 1), isUp));
+// What goes on from the voxels of a row from x on, and from the next ones along it. (Vectors also load what lies beyond the row's
+// ends, which no lane takes: another row that a shell's other work-items may be writing. They take shells whole.)
+LW_FN void load_onward(__global const uchar* row, int x, lanei next, real* near, real* far) {
+    *near = onward(load_bytes(row, x));
+#if LW_WIDTH == 1
+    *far = onward(load_bytes(row, next));
+#else
+    *far = onward(selecti_(load_bytes(row, x + 1), load_bytes(row, x - 1), next < lanei_iota() + x));
+#endif
 }
 
 // Row `other` of a side across z or y, at `main` along that axis.
@@ -141,10 +146,9 @@ LW_FN void sweep_along(const lw_shell s, bool isZ, int side, int main, int other
         const lanei column = lanei_iota() + x;
         lanei next;
         const real t = shares_of(column, s.eye.x, s.x, perVoxel, s.shell, &next);
-        const mask isUp = next < column;
         real nn, fn, nf, ff;
-        load_onward(s.sight, near + x, isUp, &nn, &fn);
-        load_onward(s.sight, far + x, isUp, &nf, &ff);
+        load_onward(s.sight + near, x, next, &nn, &fn);
+        load_onward(s.sight + far, x, next, &nf, &ff);
         store_bytes(sight_of(nn, fn, nf, ff, t, (real)u, load_bytes(s.solid, own + x)), s.sight, own + x);
     }
 }
