@@ -17,9 +17,13 @@ LW_FN lw_int voxel_record(lw_int planes) {
     return planes > LW_LIGHT_DIRECTION ? LW_LIGHT_RECORD : LW_LIGHT_RECORD / 2;
 }
 
-// Runs of texels that make lists of their own. Fewer: some cores have nothing to do; more: settling
-// reads more heads of lists that are empty.
+// Runs of texels, each sorted by itself, and a run's first. Fewer: some cores have nothing to do; more:
+// settling looks for a brick's texels in more places.
 #define LW_LIGHT_ROWS 32
+LW_FN lw_int voxel_light_row(lw_int row, lw_int texels) {
+    const lw_int run = (texels + LW_LIGHT_ROWS - 1) / LW_LIGHT_ROWS;
+    return row * run < texels ? row * run : texels;
+}
 #define LW_LIGHT_LIT_WORDS (LW_VOXEL_BRICK_VOXELS / 32)  // bits of a slot's voxels that hold light
 
 // How words are made of surfaces and light.

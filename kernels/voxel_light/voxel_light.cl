@@ -19,12 +19,12 @@ typedef struct {
     uint lit[LW_LIGHT_LIT_WORDS];
 } light_sums;
 
-// A list's texels.
-LW_FN void add_list(int head, LwVoxelContents contents, float first, float second,
-                    __global const uint* records, __global const int* next, light_sums* sums) {
+// Texels `from` to `to` of the sorted ones.
+LW_FN void add_texels(int from, int to_, LwVoxelContents contents, float first, float second,
+                      __global const uint* records, __global const int* order, light_sums* sums) {
     const int stride = voxel_record(contents.planes);
-    for (int i = head; i; i = next[i - 1]) {
-        __global const uint* record = records + (i - 1) * stride;
+    for (int i = from; i < to_; ++i) {
+        __global const uint* record = records + order[i] * stride;
         const int voxel = (int)((record[0] - 1u) % LW_VOXEL_BRICK_VOXELS), group = voxel >> 5;
         if (sums->lit[group] == 0)
             for (int p = 0; p < contents.planes; ++p)
@@ -41,38 +41,36 @@ LW_FN void add_list(int head, LwVoxelContents contents, float first, float secon
     }
 }
 
-// One slot's light, of its lists of texels, which are empty then. lit: voxels that held some, and hold
-// some; what holds none is 0. True: something has changed.
-LW_FN int settle_light(int slot, LwVoxelContents contents, float first, float second,
-                       __global const uint* records, __global const int* next, __global int* heads,
-                       __global uint* lit, __global float* light) {
+// One slot's light, of its texels. lit: voxels that held some, and hold some; what holds none is 0.
+// True: something has changed.
+LW_FN int settle_light(int slot, LwVoxelContents contents, int texels, float first, float second,
+                       __global const uint* records, __global const int* order,
+                       __global const int* ends, __global uint* lit, __global float* light) {
     light_sums sums;
     for (int w = 0; w < LW_LIGHT_LIT_WORDS; ++w) sums.lit[w] = 0;
-    for (int row = 0; row < LW_LIGHT_ROWS; ++row) {
-        const int head = heads[row * contents.slots + slot];
-        if (head == 0) continue;
-        add_list(head, contents, first, second, records, next, &sums);
-        heads[row * contents.slots + slot] = 0;
+    for (int row = 0; texels && row < LW_LIGHT_ROWS; ++row) {
+        __global const int* end = ends + row * contents.slots + slot;
+        const int from = slot ? end[-1] : voxel_light_row(row, texels);
+        add_texels(from, *end, contents, first, second, records, order, &sums);
     }
     const float perFirst = 1.0f / first, perSecond = 1.0f / second;
-    int differs = 0;
+    mask differs = splat_mask(0);
     for (int w = 0; w < LW_LIGHT_LIT_WORDS; ++w) {
         __global uint* was = lit + slot * LW_LIGHT_LIT_WORDS + w;
         if (*was == 0 && sums.lit[w] == 0) continue;
         *was = sums.lit[w];
         for (int p = 0; p < contents.planes; ++p) {
-            __global float* to =
-                light + (p * contents.slots + slot) * LW_VOXEL_BRICK_VOXELS + 32 * w;
+            __global float* to = light + (p * contents.slots + slot) * LW_VOXEL_BRICK_VOXELS + 32 * w;
             const long* from = sums.of + p * LW_VOXEL_BRICK_VOXELS + 32 * w;
-            for (int v = 0; v < 32; ++v) {
-                const float value =
-                    sums.lit[w] ? convert_float(from[v]) * perFirst * perSecond : 0.0f;
-                differs |= to[v] != value;
-                to[v] = value;
+            for (int v = 0; v < 32; v += LW_WIDTH) {
+                real value = (real)(0.0f);
+                if (sums.lit[w]) value = to_real(load(from, v)) * perFirst * perSecond;
+                differs = or_(differs, load(to, v) != value);
+                store(value, to, v);
             }
         }
     }
-    return differs;
+    return any_(differs);
 }
 
 // The largest premultiplied colour of a slot's voxels.
@@ -105,8 +103,9 @@ LW_FN float largest_of(int slot, LwVoxelContents contents, __global const float*
 __kernel void voxel_light_settle(__global const LwGridPlace* grid, LwVoxelContents contents, int all,
                                  __global const int* bricks, __global const float* surfaces,
                                  __global const int* changed, __global const LwVoxelGrid* gridState,
-                                 __global const LwVoxelTexels* texels, __global const uint* records,
-                                 __global const int* next, __global int* heads, __global uint* lit,
+                                 __global const LwVoxelTexels* texels, int count,
+                                 __global const uint* records, __global const int* order,
+                                 __global const int* ends, __global uint* lit,
                                  __global int* touched, __global float* light,
                                  __global const float* arriving, __global float* largest,
                                  __global int* marks, __global LwVoxelState* states, int cascade) {
@@ -120,8 +119,8 @@ __kernel void voxel_light_settle(__global const LwGridPlace* grid, LwVoxelConten
         const int was = touched[slot];
         const int isOther = texels->first != place.cell.y || texels->second != place.cell.z;
         if (isOther || was & LW_LIGHT_TOUCHED)
-            mark |= settle_light(slot, contents, place.cell.y * LIGHT_QUARTER, place.cell.z, records,
-                                 next, heads, lit, light);
+            mark |= settle_light(slot, contents, count, place.cell.y * LIGHT_QUARTER, place.cell.z,
+                                 records, order, ends, lit, light);
         mark |= (was & LW_LIGHT_HEARD) != 0;
         if (was) touched[slot] = 0;
         if (mark)

@@ -1,5 +1,5 @@
-// Texels of the reflective shadow maps in voxels: which voxel each lies in, and each brick's texels as
-// lists.
+// Texels of the reflective shadow maps in voxels: which voxel each lies in, and texels in the order of
+// bricks.
 //
 // A texel on a wall along a voxel's border may lie beside the wall's voxel. One whose voxel holds no
 // surface lies half a voxel below itself, or above; or, where there is none either (a normal map's
@@ -7,9 +7,8 @@
 // to it that holds some.
 //
 // What the last frame had of a texel is kept: only bricks that a texel has come to, left or lit otherwise
-// are added up again. Lists instead of sums in memory, as atomic additions of single texels took thirty
-// times what reading them does; LW_LIGHT_ROWS lists a brick, each of one work-item's texels, so that
-// nothing is written by two.
+// are added up again. By a sort instead of sums in memory: atomic additions of single texels took ten
+// times as long. LW_LIGHT_ROWS runs of texels are sorted for themselves, each by one work-item.
 #include "shared/grid_types.h"
 #include "shared/rsm_types.h"
 #include "shared/voxel_light_types.h"
@@ -173,25 +172,34 @@ __kernel void voxel_light_locate(__global const float* texels, int4 layout, int 
     if (lost) atomic_add(&state->lost, lost);
 }
 
-// One work-item = one of LW_LIGHT_ROWS runs of texels: those of bricks that are to be added up, as lists
-// in the texels' order. next: of each texel the one after it, and 1.
-__kernel void voxel_light_chain(__global const LwGridPlace* grid, LwVoxelContents contents, int count,
-                                __global const uint* records, __global const int* touched,
-                                __global const LwVoxelTexels* state, __global int* heads,
-                                __global int* next) {
+// One work-item = one of LW_LIGHT_ROWS runs of texels: those of bricks that are to be added up, in the
+// order of these (a counting sort). ends: behind each slot's last texel in `order`.
+__kernel void voxel_light_sort(__global const LwGridPlace* grid, LwVoxelContents contents, int count,
+                               __global const uint* records, __global const int* touched,
+                               __global const LwVoxelTexels* state, __global int* ends,
+                               __global int* order) {
     const int row = lw_list_index();
     if (row >= LW_LIGHT_ROWS) return;
     const int all = state->first != grid->cell.y || state->second != grid->cell.z;
     if (!all && !state->changed) return;
-    const int run = (count + LW_LIGHT_ROWS - 1) / LW_LIGHT_ROWS, first = row * run,
+    const int first = voxel_light_row(row, count), last = voxel_light_row(row + 1, count),
               stride = voxel_record(contents.planes);
-    __global int* head = heads + row * contents.slots;
-    for (int i = min(first + run, count) - 1; i >= first; --i) {
+    __global int* to = ends + row * contents.slots;
+    for (int s = 0; s < contents.slots; ++s) to[s] = 0;
+    for (int i = first; i < last; ++i) {
+        const uint key = records[i * stride];
+        if (key) ++to[(key - 1u) / LW_VOXEL_BRICK_VOXELS];
+    }
+    int sum = first;
+    for (int s = 0; s < contents.slots; ++s) {
+        const int begin = sum;
+        if (all || touched[s] & LW_LIGHT_TOUCHED) sum += to[s];
+        to[s] = begin;
+    }
+    for (int i = first; i < last; ++i) {
         const uint key = records[i * stride];
         if (key == 0) continue;
         const int slot = (int)((key - 1u) / LW_VOXEL_BRICK_VOXELS);
-        if (!all && !(touched[slot] & LW_LIGHT_TOUCHED)) continue;
-        next[i] = head[slot];
-        head[slot] = i + 1;
+        if (all || touched[slot] & LW_LIGHT_TOUCHED) order[to[slot]++] = i;
     }
 }

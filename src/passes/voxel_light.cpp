@@ -36,7 +36,7 @@ VoxelLight::VoxelLight(Device& device, std::uint32_t size, std::uint32_t cascade
       size_(size),
       cascade_(cascade),
       locate_(device.programs().kernel(kTexels, "voxel_light_locate")),
-      chain_(device.programs().kernel(kTexels, "voxel_light_chain")),
+      sort_(device.programs().kernel(kTexels, "voxel_light_sort")),
       settle_(device.programs().kernel(kProgram, "voxel_light_settle")),
       unit_(device.programs().kernel(kProgram, "voxel_light_unit")),
       resolve_(device.programs().kernel(kResolve, "voxel_resolve")) {}
@@ -60,12 +60,12 @@ void VoxelLight::reserve(Executor& executor, std::uint32_t slots, std::size_t te
     const std::size_t kept = std::max<std::size_t>(texels, 1);  // kernels take some memory
     records_.reserve(device_, kept * std::size_t(voxel_record(contents.planes)) * sizeof(cl_uint),
                      "texels in voxels");
-    next_.reserve(device_, kept * sizeof(cl_int), "lists of texels in bricks");
-    heads_.reserve(device_, slots * LW_LIGHT_ROWS * sizeof(cl_int), "lists of texels in bricks");
+    order_.reserve(device_, kept * sizeof(cl_int), "order of texels in voxels");
+    ends_.reserve(device_, slots * LW_LIGHT_ROWS * sizeof(cl_int), "order of texels in voxels");
     lit_.reserve(device_, slots * LW_LIGHT_LIT_WORDS * sizeof(cl_uint), "voxels that hold light");
     light_.reserve(device_, std::size_t(contents.planes) * planeBytes(slots), "light in voxels");
     touched_.reserve(device_, slots * sizeof(cl_int), "bricks whose light changes");
-    for (const Buffer* buffer : {&records_, &heads_, &lit_, &light_, &touched_, &state_})
+    for (const Buffer* buffer : {&records_, &lit_, &light_, &touched_, &state_})
         executor.fill("voxel_light.clear", *buffer, 0, 0, buffer->bytes());
     slots_ = slots;
     texels_ = texels;
@@ -99,14 +99,14 @@ void VoxelLight::record(Executor& executor, const RsmInput& rsms, const VoxelSur
         executor.run("voxel_light.inject", locate_, gridOver((texels + kRun - 1) / kRun), kListGroup,
                      rsms.texels, cl_int(texels), place, contents, surfaces.bricks, surfaces.surfaces,
                      records_, touched_, state_);
-        executor.run("voxel_light.inject", chain_, {LW_LIGHT_ROWS, 1}, {1, 1}, place, contents,
-                     cl_int(texels), records_, touched_, state_, heads_, next_);
+        executor.run("voxel_light.inject", sort_, {LW_LIGHT_ROWS, 1}, {1, 1}, place, contents,
+                     cl_int(texels), records_, touched_, state_, ends_, order_);
     }
     const Buffer& heard = hears ? irradiance_ : light_;  // a kernel's argument must be some memory
     const Range bricks = gridOver(bricksOf(size_));
     executor.run("voxel_light.settle", settle_, bricks, kBrickGroup, place, contents,
                  cl_int(isSame ? 0 : 1), surfaces.bricks, surfaces.surfaces, surfaces.changed,
-                 surfaces.state, state_, records_, next_, heads_, lit_, touched_, light_, heard, largest_, mips.marks(), volume.state,
+                 surfaces.state, state_, cl_int(texels), records_, order_, ends_, lit_, touched_, light_, heard, largest_, mips.marks(), volume.state,
                  cl_int(cascade_));
     executor.run("voxel_light.settle", unit_, {1, 1}, {1, 1}, place, state_, volume.state,
                  cl_int(cascade_), mips.work());
@@ -125,7 +125,7 @@ void VoxelLight::report(Device& device, Report& report) const {
 
 std::uint64_t VoxelLight::bytes() const {
     std::uint64_t total = 0;
-    for (const Buffer* buffer : {&records_, &next_, &heads_, &lit_, &light_, &irradiance_, &touched_,
+    for (const Buffer* buffer : {&records_, &order_, &ends_, &lit_, &light_, &irradiance_, &touched_,
                                  &largest_, &state_})
         total += buffer->bytes();
     return total;

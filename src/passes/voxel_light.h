@@ -64,8 +64,8 @@ private:
     Device& device_;
     std::uint32_t size_, cascade_, slots_ = 0;
     std::size_t texels_ = 0;
-    Kernel &locate_, &chain_, &settle_, &unit_, &resolve_;
-    Buffer records_, next_, heads_, lit_, light_, irradiance_, touched_, largest_, state_;
+    Kernel &locate_, &sort_, &settle_, &unit_, &resolve_;
+    Buffer records_, order_, ends_, lit_, light_, irradiance_, touched_, largest_, state_;
     LwVoxelContents contents_{};  // of the last record()
     bool isKept_ = false;
 };
