@@ -9,10 +9,14 @@
 LW_FN void store_words(laneu word, int first, __global uint* to) {
     uint lanes[LW_WIDTH];
     store(word, lanes, 0);
-    for (int i = 0; i < LW_WIDTH; ++i) {
+#if LW_WIDTH == 1
+    to[(first & 7) + 9 * (first >> 3 & 7) + 81 * (first >> 6)] = lanes[0];
+#else
+    for (int i = 0; i < LW_WIDTH; i += 4) {
         const int v = first + i;
-        to[(v & 7) + 9 * (v >> 3 & 7) + 81 * (v >> 6)] = lanes[i];
+        vstore4(vload4(0, lanes + i), 0, to + (v & 7) + 9 * (v >> 3 & 7) + 81 * (v >> 6));
     }
+#endif
 }
 
 LW_FN laneu packed_value(const real* value, float perUnit, laneu dither) {

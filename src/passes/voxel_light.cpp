@@ -1,5 +1,6 @@
 #include "passes/voxel_light.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstring>
 
@@ -10,6 +11,7 @@ namespace lightwell {
 namespace {
 
 constexpr const char* kProgram = "voxel_light/voxel_light";
+constexpr const char* kTexels = "voxel_light/voxel_texels";
 constexpr const char* kResolve = "voxel_light/voxel_resolve";
 constexpr std::size_t kRun = 64;  // LIGHT_RUN of the kernels
 constexpr Range kListGroup{16, 1};
@@ -33,7 +35,8 @@ VoxelLight::VoxelLight(Device& device, std::uint32_t size, std::uint32_t cascade
     : device_(device),
       size_(size),
       cascade_(cascade),
-      inject_(device.programs().kernel(kProgram, "voxel_light_inject")),
+      locate_(device.programs().kernel(kTexels, "voxel_light_locate")),
+      sort_(device.programs().kernel(kTexels, "voxel_light_sort")),
       settle_(device.programs().kernel(kProgram, "voxel_light_settle")),
       unit_(device.programs().kernel(kProgram, "voxel_light_unit")),
       resolve_(device.programs().kernel(kResolve, "voxel_resolve")) {}
@@ -44,22 +47,28 @@ void VoxelLight::reserveHeard(Executor& executor, std::uint32_t slots) {
     executor.fill("voxel_light.clear", irradiance_, 0, 0, irradiance_.bytes());
 }
 
-void VoxelLight::reserve(Executor& executor, std::uint32_t slots, const LwVoxelContents& contents) {
+void VoxelLight::reserve(Executor& executor, std::uint32_t slots, std::size_t texels,
+                         const LwVoxelContents& contents) {
     if (!state_) {
         state_ = Buffer(device_, sizeof(LwVoxelTexels), "texels in voxels");
         largest_ = Buffer(device_, bricksOf(size_) * sizeof(cl_float), "brightest voxels of bricks");
         executor.fill("voxel_light.clear", largest_, 0, 0, largest_.bytes());
     }
-    executor.fill("voxel_light.clear", state_, 0, 0, state_.bytes());
+    executor.fill("voxel_light.clear", state_, 0, 0, offsetof(LwVoxelTexels, first));
     if (contents.feedback) reserveHeard(executor, slots);
-    if (isKept_ && slots == slots_ && contents.planes == contents_.planes) return;
-    const std::size_t light = std::size_t(contents.planes) * planeBytes(slots);
-    sums_.reserve(device_, 2 * light, "sums of light in voxels");
-    light_.reserve(device_, light, "light in voxels");
-    touched_.reserve(device_, slots * sizeof(cl_int), "bricks that light has reached");
-    for (const Buffer* buffer : {&sums_, &light_, &touched_})
+    if (isKept_) return;
+    const std::size_t kept = std::max<std::size_t>(texels, 1);  // kernels take some memory
+    records_.reserve(device_, kept * std::size_t(voxel_record(contents.planes)) * sizeof(cl_uint),
+                     "texels in voxels");
+    order_.reserve(device_, kept * sizeof(cl_int), "order of texels in voxels");
+    ends_.reserve(device_, slots * LW_LIGHT_ROWS * sizeof(cl_int), "order of texels in voxels");
+    lit_.reserve(device_, slots * LW_LIGHT_LIT_WORDS * sizeof(cl_uint), "voxels that hold light");
+    light_.reserve(device_, std::size_t(contents.planes) * planeBytes(slots), "light in voxels");
+    touched_.reserve(device_, slots * sizeof(cl_int), "bricks whose light changes");
+    for (const Buffer* buffer : {&records_, &lit_, &light_, &touched_, &state_})
         executor.fill("voxel_light.clear", *buffer, 0, 0, buffer->bytes());
     slots_ = slots;
+    texels_ = texels;
 }
 
 void VoxelLight::record(Executor& executor, const RsmInput& rsms, const VoxelSurfaces& surfaces,
@@ -74,9 +83,11 @@ void VoxelLight::record(Executor& executor, const RsmInput& rsms, const VoxelSur
     contents.slots = cl_int(surfaces.slots);
     contents.planeWords = cl_int(volume.baseSlots * LW_VOXEL_STRIDE);
     contents.planes = planesOf(volume.mode, volume.sides);
-    const bool isSame = isKept_ && std::memcmp(&contents, &contents_, sizeof contents) == 0;
+    const std::size_t texels = rsms.texels ? rsms.texels.width : 0;
+    const bool isSame =
+        isKept_ && texels == texels_ && std::memcmp(&contents, &contents_, sizeof contents) == 0;
     if (!isSame) isKept_ = false;  // until all is enqueued
-    reserve(executor, surfaces.slots, contents);
+    reserve(executor, surfaces.slots, texels, contents);
     contents_ = contents;
     isKept_ = false;
 
@@ -84,19 +95,21 @@ void VoxelLight::record(Executor& executor, const RsmInput& rsms, const VoxelSur
         offsetof(LwVoxelState, largest);  // and what follows: of this frame alone
     executor.fill("voxel_light.clear", volume.state, 0, cascade_ * sizeof(LwVoxelState) + kFrame,
                   sizeof(LwVoxelState) - kFrame);
-    const std::size_t texels = rsms.texels ? rsms.texels.width : 0;
-    if (texels)
-        executor.run("voxel_light.inject", inject_, gridOver((texels + kRun - 1) / kRun), kListGroup,
+    if (texels) {
+        executor.run("voxel_light.inject", locate_, gridOver((texels + kRun - 1) / kRun), kListGroup,
                      rsms.texels, cl_int(texels), place, contents, surfaces.bricks, surfaces.surfaces,
-                     sums_, touched_, state_);
+                     records_, touched_, state_);
+        executor.run("voxel_light.inject", sort_, {LW_LIGHT_ROWS, 1}, {1, 1}, place, contents,
+                     cl_int(texels), records_, touched_, state_, ends_, order_);
+    }
     const Buffer& heard = hears ? irradiance_ : light_;  // a kernel's argument must be some memory
     const Range bricks = gridOver(bricksOf(size_));
     executor.run("voxel_light.settle", settle_, bricks, kBrickGroup, place, contents,
                  cl_int(isSame ? 0 : 1), surfaces.bricks, surfaces.surfaces, surfaces.changed,
-                 surfaces.state, sums_, touched_, light_, heard, largest_, mips.marks(), volume.state,
+                 surfaces.state, state_, cl_int(texels), records_, order_, ends_, lit_, touched_, light_, heard, largest_, mips.marks(), volume.state,
                  cl_int(cascade_));
-    executor.run("voxel_light.settle", unit_, {1, 1}, {1, 1}, volume.state, cl_int(cascade_),
-                 mips.work());
+    executor.run("voxel_light.settle", unit_, {1, 1}, {1, 1}, place, state_, volume.state,
+                 cl_int(cascade_), mips.work());
     executor.run("voxel_light.resolve", resolve_, bricks, kBrickGroup, place, contents, surfaces.bricks,
                  surfaces.surfaces, surfaces.state, light_, heard, volume.table,
                  cl_int(cascade_ * volume.tableSize()), mips.work(), volume.state, cl_int(cascade_),
@@ -111,14 +124,20 @@ void VoxelLight::report(Device& device, Report& report) const {
 }
 
 std::uint64_t VoxelLight::bytes() const {
-    return sums_.bytes() + light_.bytes() + irradiance_.bytes() + touched_.bytes() + largest_.bytes() +
-           state_.bytes();
+    std::uint64_t total = 0;
+    for (const Buffer* buffer : {&records_, &order_, &ends_, &lit_, &light_, &irradiance_, &touched_,
+                                 &largest_, &state_})
+        total += buffer->bytes();
+    return total;
 }
 
 std::uint64_t VoxelLight::estimateBytes(std::uint32_t size, LWVoxelMode mode, bool sides, bool hears,
-                                        std::uint32_t slots) {
-    const auto planes = std::uint64_t(planesOf(mode, sides));
-    return (3 * planes + (hears ? 3 : 0)) * planeBytes(slots) + slots * sizeof(cl_int) +
+                                        std::uint32_t slots, std::uint64_t texels) {
+    const cl_int planes = planesOf(mode, sides);
+    const std::uint64_t words = 1 + LW_LIGHT_ROWS + LW_LIGHT_LIT_WORDS;  // a slot's
+    return (std::uint64_t(planes) + (hears ? 3 : 0)) * planeBytes(slots) +
+           slots * words * sizeof(cl_int) +
+           std::max<std::uint64_t>(texels, 1) * std::uint64_t(voxel_record(planes) + 1) * sizeof(cl_uint) +
            bricksOf(size) * sizeof(cl_float) + sizeof(LwVoxelTexels);
 }
 

@@ -53,17 +53,19 @@ public:
     void report(Device& device, Report& report) const;
     std::uint64_t bytes() const;
     static std::uint64_t estimateBytes(std::uint32_t size, LWVoxelMode mode, bool sides, bool hears,
-                                       std::uint32_t slots);
+                                       std::uint32_t slots, std::uint64_t texels);
     // Memory for irradiance() of so many slots, 0 where it is new.
     void reserveHeard(Executor& executor, std::uint32_t slots);
 
 private:
-    void reserve(Executor& executor, std::uint32_t slots, const LwVoxelContents& contents);
+    void reserve(Executor& executor, std::uint32_t slots, std::size_t texels,
+                 const LwVoxelContents& contents);
 
     Device& device_;
     std::uint32_t size_, cascade_, slots_ = 0;
-    Kernel &inject_, &settle_, &unit_, &resolve_;
-    Buffer sums_, light_, irradiance_, touched_, largest_, state_;
+    std::size_t texels_ = 0;
+    Kernel &locate_, &sort_, &settle_, &unit_, &resolve_;
+    Buffer records_, order_, ends_, lit_, light_, irradiance_, touched_, largest_, state_;
     LwVoxelContents contents_{};  // of the last record()
     bool isKept_ = false;
 };

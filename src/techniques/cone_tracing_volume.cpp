@@ -177,7 +177,8 @@ std::uint64_t ConeTracingVolume::estimateBytes(const LWConeTracingDesc& desc, co
     const VoxelVolume volume = volumeOf(desc);
     const std::uint64_t words = bricks * volume.basePlanes() + mipBricks * volume.mipPlanes();
     std::uint64_t grid = VoxelGrid::estimateBytes(desc.size, false) + VoxelMips::estimateBytes(desc.size) +
-                         VoxelLight::estimateBytes(desc.size, desc.mode, volume.sides, isEndless(desc), std::uint32_t(bricks)) +
+                         VoxelLight::estimateBytes(desc.size, desc.mode, volume.sides, isEndless(desc), std::uint32_t(bricks),
+                                                  shape.paddedTexels) +
                          words * LW_VOXEL_STRIDE * sizeof(cl_uint) + volume.tableSize() * sizeof(cl_int) + sizeof(LwVoxelState);
     if (isEndless(desc)) grid += VoxelReceivers::estimateBytes(desc.size, std::uint32_t(bricks));
     return ConeTracingSurfaces::estimateBytes(desc, shape) + GridPlaces::estimateBytes(desc.cascades, 0) + desc.cascades * grid +

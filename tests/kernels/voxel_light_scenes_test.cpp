@@ -25,8 +25,8 @@ const char* const kPasses[] = {"voxel_mips.tables",   "voxel_light.inject", "vox
                                "voxel_light.resolve", "voxel_mips.apron",   "voxel_mips.filter"};
 
 // Texels as many as an RSM has, spread over the triangles by area in the order of these: flux that
-// differs from texel to texel.
-std::vector<float> texelsOver(const std::vector<float>& vertices) {
+// differs from texel to texel. isInRows: a triangle's in rows, as a map's are; or in no order.
+std::vector<float> texelsOver(const std::vector<float>& vertices, bool isInRows) {
     std::vector<double> upTo;
     double sum = 0.0;
     const auto edge = [&](std::size_t t, std::size_t k, std::size_t a) {
@@ -47,6 +47,13 @@ std::vector<float> texelsOver(const std::vector<float>& vertices) {
         const double length = normal(t, n);
         double u = std::fmod(double(i) * 0.7548776662466927, 1.0),
                v = std::fmod(double(i) * 0.5698402909980532, 1.0);
+        if (isInRows) {
+            const double begin = (t ? upTo[t - 1] : 0.0) / sum * double(kTexels),
+                         many = std::max(1.0, upTo[t] / sum * double(kTexels) - begin),
+                         row = std::floor((double(i) + 0.5 - begin) / std::sqrt(many));
+            v = std::min(0.999, std::max(0.0, (row + 0.5) / std::sqrt(many)));
+            u = std::min(0.999, std::max(0.0, (double(i) + 0.5 - begin) / std::sqrt(many) - row));
+        }
         if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
         for (std::size_t a = 0; a < 3; ++a) {
             planes[(LW_RSM_POSITION + a) * kTexels + i] =
@@ -96,7 +103,8 @@ TEST_CASE("times of light in scenes' voxels", "[.times]") {
         low[i % 3] = std::min(low[i % 3], triangles.vertices[i]);
         high[i % 3] = std::max(high[i % 3], triangles.vertices[i]);
     }
-    const std::vector<float> planes = texelsOver(triangles.vertices);
+    const bool isInRows = std::getenv("LIGHTWELL_TIMES_ROWS") != nullptr;
+    const std::vector<float> planes = texelsOver(triangles.vertices, isInRows);
     std::vector<float> dim = planes;
     for (std::size_t i = LW_RSM_FLUX * kTexels; i < LW_RSM_AREA * kTexels; ++i) dim[i] *= 0.7f;
     const Guarded bright = rig.upload(planes), dimmed = rig.upload(dim);
