@@ -13,7 +13,7 @@ constexpr double kSizeSweep[] = {32, 64, 128};
 constexpr const char* kModes[] = {"isotropic", "anisotropic", "sh2", nullptr};
 constexpr double kModeSweep[] = {LW_VOXEL_MODE_ISOTROPIC, LW_VOXEL_MODE_ANISOTROPIC, LW_VOXEL_MODE_SH2};
 constexpr double kConeValues[] = {6, 9, 16, 64, 256};
-constexpr double kConeSweep[] = {9, 16};
+constexpr double kConeSweep[] = {9, 16, 64};
 constexpr const char* kResolutions[] = {"full", "half", "quarter", "interleaved", nullptr};
 constexpr double kResolutionSweep[] = {LW_CONE_RESOLUTION_HALF, LW_CONE_RESOLUTION_INTERLEAVED};
 constexpr const char* kSources[] = {"auto", "triangles", "surfels", "screen", nullptr};
@@ -77,7 +77,7 @@ std::vector<LWParameter> ofCones() {
         swept(allowing(parameter("cones",
                                  "that a pixel's light comes in: 6 or 9 of 60 degrees, more and narrower ones of the same weight; time "
                                  "grows with their number and, slowly, with how narrow they are",
-                                 LW_PARAMETER_UINT, offsetof(LWConeTracingDesc, cones), 6, 256, 9),
+                                 LW_PARAMETER_UINT, offsetof(LWConeTracingDesc, cones), 6, 256, 16),
                        kConeValues),
               kConeSweep),
         swept(choosing(parameter("resolution",
@@ -130,13 +130,17 @@ const std::vector<LWParameter>& coneTracingParameters() {
     return table;
 }
 
-// "thesis": the rows of Spaapen-like tables in docs/techniques/cone_tracing.md.
+// Of ten Brug 2017: one radiance for all directions or SH, nine cones, and what faces away counts.
 const std::vector<LWSetting>& coneTracingSettings() {
     static const std::vector<LWSetting> settings = {
         {"fast", "size=32 resolution=half"},
         {"fine", "size=128"},
         {"all bounces", "bounces=0"},
         {"cascaded", "cascades=4 size=32"},
+        {"thesis 32", "size=32 mode=isotropic cones=9 resolution=full nudge=3.5 normal_aware=off"},
+        {"thesis 128", "size=128 mode=isotropic cones=9 resolution=full nudge=3.5 normal_aware=off"},
+        {"thesis 128 sh", "size=128 mode=sh2 cones=9 resolution=full nudge=3.5 normal_aware=off"},
+        {"thesis 128 sh vao", "size=128 mode=sh2 cones=9 resolution=full nudge=3.5 normal_aware=off occlusion=all"},
     };
     return settings;
 }
@@ -149,7 +153,7 @@ extern "C" void lwDefaultConeTracing(LWConeTracingDesc* desc) {
     desc->structSize = sizeof *desc;
     desc->size = 64;
     desc->mode = LW_VOXEL_MODE_ANISOTROPIC;
-    desc->cones = 9;
+    desc->cones = 16;
     desc->resolution = LW_CONE_RESOLUTION_INTERLEAVED;
     desc->cascades = 1;
     desc->source = LW_VOXEL_SOURCE_AUTO;
