@@ -11,10 +11,11 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kWide = kPi / 6.0;
 
-// Height above the surface, in voxels of the finest level, from which a sample has nothing of a flat surface's own voxels: they reach
-// up to one voxel above it, and half a voxel more where interpolated.
+// Height above the surface, in voxels of the finest level, from which a sample has nothing of a flat
+// surface's own voxels: they reach up to one voxel above it, and half a voxel more where interpolated.
 constexpr double kNearHeight = 1.5;
-// How nearly a cone may touch its own surface before apertureOffset moves it no further: of the six, five touch it.
+// How nearly a cone may touch its own surface before apertureOffset moves it no further: of the six,
+// five touch it.
 constexpr double kLeastGap = 0.1;
 
 void addWide(std::vector<ConeDirection>& set, double x, double y, double z) {
@@ -25,30 +26,38 @@ void addWide(std::vector<ConeDirection>& set, double x, double y, double z) {
 // The square [-1, 1]^2 to the unit disc, areas to areas in proportion (Shirley and Chiu 1997).
 std::array<double, 2> onDisc(double u, double v) {
     if (u == 0.0 && v == 0.0) return {0.0, 0.0};
-    if (std::abs(u) > std::abs(v)) return {u * std::cos(kPi / 4.0 * v / u), u * std::sin(kPi / 4.0 * v / u)};
+    if (std::abs(u) > std::abs(v))
+        return {u * std::cos(kPi / 4.0 * v / u), u * std::sin(kPi / 4.0 * v / u)};
     return {v * std::cos(kPi / 2.0 - kPi / 4.0 * u / v), v * std::sin(kPi / 2.0 - kPi / 4.0 * u / v)};
 }
 
 // Half the aperture of a cone of this solid angle.
-double angleOf(double solid) { return std::acos(std::max(0.0, 1.0 - solid / (2.0 * kPi))); }
+double angleOf(double solid) {
+    return std::acos(std::max(0.0, 1.0 - solid / (2.0 * kPi)));
+}
 
-// A cell of the square holds 1 / n^2 of the cosine. Its solid angle is the integral of 1 / cos over its part of the disc; where |u| > |v|,
-// r = |u| and dphi = pi/4 dv / |u|, so that of |u| from a to b and |v| as far it is pi/4 (b - a) (asin b - asin a). A cell on the
-// diagonal has twice what lies on one side of it.
+// A cell of the square holds 1 / n^2 of the cosine. Its solid angle is the integral of 1 / cos over its
+// part of the disc; where |u| > |v|, r = |u| and dphi = pi/4 dv / |u|, so that of |u| from a to b and
+// |v| as far it is pi/4 (b - a) (asin b - asin a). A cell on the diagonal has twice what lies on one
+// side of it.
 double solidAngle(std::uint32_t i, std::uint32_t j, std::uint32_t n) {
-    const double cell = 2.0 / n, u = std::abs((i + 0.5) * cell - 1.0) - 0.5 * cell, v = std::abs((j + 0.5) * cell - 1.0) - 0.5 * cell;
-    const double low = std::max(u, v), high = std::min(1.0, low + cell), turned = std::asin(high) - std::asin(low);
+    const double cell = 2.0 / n, u = std::abs((i + 0.5) * cell - 1.0) - 0.5 * cell,
+                 v = std::abs((j + 0.5) * cell - 1.0) - 0.5 * cell;
+    const double low = std::max(u, v), high = std::min(1.0, low + cell),
+                 turned = std::asin(high) - std::asin(low);
     if (std::abs(u - v) > 0.5 * cell) return kPi / 4.0 * cell * turned;
     return kPi / 2.0 * (std::sqrt(1.0 - low * low) - std::sqrt(1.0 - high * high) - low * turned);
 }
 
-// The mean of a cell's directions by their cosines: with the cell's middle instead, 16 cones bring 7 % too much of light from straight above.
+// The mean of a cell's directions by their cosines: with the cell's middle instead, 16 cones bring 7 %
+// too much of light from straight above.
 std::array<double, 3> meanDirection(std::uint32_t i, std::uint32_t j, std::uint32_t n) {
     constexpr std::uint32_t kParts = 32;
     std::array<double, 3> sum{0.0, 0.0, 0.0};
     for (std::uint32_t b = 0; b < kParts; ++b)
         for (std::uint32_t a = 0; a < kParts; ++a) {
-            const auto p = onDisc(2.0 * (i + (a + 0.5) / kParts) / n - 1.0, 2.0 * (j + (b + 0.5) / kParts) / n - 1.0);
+            const auto p = onDisc(2.0 * (i + (a + 0.5) / kParts) / n - 1.0,
+                                  2.0 * (j + (b + 0.5) / kParts) / n - 1.0);
             sum[0] += p[0];
             sum[1] += p[1];
             sum[2] += std::sqrt(1.0 - p[0] * p[0] - p[1] * p[1]);
@@ -57,7 +66,9 @@ std::array<double, 3> meanDirection(std::uint32_t i, std::uint32_t j, std::uint3
     return {sum[0] / length, sum[1] / length, sum[2] / length};
 }
 
-std::uint32_t sideOf(std::uint32_t count) { return std::uint32_t(std::lround(std::sqrt(double(count)))); }
+std::uint32_t sideOf(std::uint32_t count) {
+    return std::uint32_t(std::lround(std::sqrt(double(count))));
+}
 
 }  // namespace
 
@@ -74,7 +85,8 @@ std::vector<ConeDirection> coneHemisphere(std::uint32_t count) {
     if (count == 9) {
         addWide(set, 0, 0, 1);
         for (int k = 0; k < 4; ++k) addWide(set, k & 1 ? 1 : -1, k & 2 ? 1 : -1, 1);
-        for (int k = 0; k < 4; ++k) addWide(set, k == 0 ? 1 : k == 1 ? -1 : 0, k == 2 ? 1 : k == 3 ? -1 : 0, 1);
+        for (int k = 0; k < 4; ++k)
+            addWide(set, k == 0 ? 1 : k == 1 ? -1 : 0, k == 2 ? 1 : k == 3 ? -1 : 0, 1);
         double sum = 0.0;
         for (const ConeDirection& cone : set) sum += cone.weight;
         for (ConeDirection& cone : set) cone.weight /= sum;
@@ -82,14 +94,16 @@ std::vector<ConeDirection> coneHemisphere(std::uint32_t count) {
     }
     const std::uint32_t n = sideOf(count);
     for (std::uint32_t j = 0; j < n; ++j)
-        for (std::uint32_t i = 0; i < n; ++i) set.push_back({meanDirection(i, j, n), 1.0 / count, angleOf(solidAngle(i, j, n))});
+        for (std::uint32_t i = 0; i < n; ++i)
+            set.push_back({meanDirection(i, j, n), 1.0 / count, angleOf(solidAngle(i, j, n))});
     return set;
 }
 
 std::vector<ConeDirection> coneSphere(std::uint32_t count) {
     std::vector<ConeDirection> set;
     if (count <= 9) {
-        // The corners of an icosahedron: means of five bands of harmonics are exact (Delsarte, Goethals and Seidel 1977).
+        // The corners of an icosahedron: means of five bands of harmonics are exact (Delsarte, Goethals
+        // and Seidel 1977).
         const double golden = (1.0 + std::sqrt(5.0)) / 2.0, length = std::sqrt(1.0 + golden * golden);
         for (std::size_t axis = 0; axis < 3; ++axis)
             for (int k = 0; k < 4; ++k) {
@@ -107,7 +121,9 @@ std::vector<ConeDirection> coneSphere(std::uint32_t count) {
             for (std::uint32_t i = 0; i < n; ++i) {
                 const auto p = onDisc(2.0 * (i + 0.5) / n - 1.0, 2.0 * (j + 0.5) / n - 1.0);
                 const double r2 = p[0] * p[0] + p[1] * p[1], z = 1.0 - r2, wide = std::sqrt(2.0 - r2);
-                set.push_back({{p[0] * wide, p[1] * wide, half ? -z : z}, 0.5 / count, angleOf(2.0 * kPi / count)});
+                set.push_back({{p[0] * wide, p[1] * wide, half ? -z : z},
+                               0.5 / count,
+                               angleOf(2.0 * kPi / count)});
             }
     return set;
 }
@@ -121,11 +137,16 @@ ConeWindow coneWindow(std::uint32_t count) {
 
 std::vector<LwConeStep> coneSteps(double halfAngle, double cosine, const ConeSchedule& schedule) {
     const double tangent = std::tan(halfAngle);
-    const double height = schedule.apertureOffset ? std::max(cosine - std::sin(halfAngle), kLeastGap) : cosine;
+    const double height =
+        schedule.apertureOffset ? std::max(cosine - std::sin(halfAngle), kLeastGap) : cosine;
     const double begin = schedule.nudge / height;
-    // A whole number of samples each time the distance doubles, so that the levels come in turn and each sample takes but one.
-    const auto perDoubling = [tangent](double step) { return std::ceil(std::log(2.0) / std::log1p(2.0 * tangent * step) - 1e-9); };
-    const double count = perDoubling(schedule.step), ratio = std::exp2(1.0 / count), widening = perDoubling(1.0) / count;
+    // A whole number of samples each time the distance doubles, so that the levels come in turn and each
+    // sample takes but one.
+    const auto perDoubling = [tangent](double step) {
+        return std::ceil(std::log(2.0) / std::log1p(2.0 * tangent * step) - 1e-9);
+    };
+    const double count = perDoubling(schedule.step), ratio = std::exp2(1.0 / count),
+                 widening = perDoubling(1.0) / count;
     const auto add = [&](std::vector<LwConeStep>& steps, double d, double cells, double light) {
         const double level = std::round(std::log2(std::max(1.0, 2.0 * tangent * d)));
         LwConeStep step{};
@@ -133,21 +154,27 @@ std::vector<LwConeStep> coneSteps(double halfAngle, double cosine, const ConeSch
         step.exponent = schedule.corrected ? lw_float(cells) : 1.0f;
         step.light = lw_float(light);
         // 1 / (1 + lambda d), lambda so that a fifth is left at the reach.
-        step.dimming = d <= schedule.openReach ? lw_float(1.0 / (1.0 + 4.0 * d / schedule.openReach)) : 0.0f;
+        step.dimming =
+            d <= schedule.openReach ? lw_float(1.0 / (1.0 + 4.0 * d / schedule.openReach)) : 0.0f;
         step.level = lw_int(std::min(level, double(schedule.levels - 1)));
+        // Not before the last one's, where the level rises faster than the distance: a cone that has left does not come back.
         step.begins = lw_float(d - 0.5 * std::exp2(double(step.level)));
+        if (!steps.empty()) step.begins = std::max(step.begins, steps.back().begins);
         steps.push_back(step);
     };
     std::vector<LwConeStep> steps;
     if (schedule.near) {
         const double from = kNearHeight / cosine, length = begin - from;
-        const auto parts = length > 0.0 ? std::size_t(std::ceil(length / std::min(1.0, schedule.step))) : 0;
-        for (std::size_t i = 0; i < parts; ++i) add(steps, from + length * double(i) / double(parts), length / double(parts), 0.0);
+        const auto parts =
+            length > 0.0 ? std::size_t(std::ceil(length / std::min(1.0, schedule.step))) : 0;
+        for (std::size_t i = 0; i < parts; ++i)
+            add(steps, from + length * double(i) / double(parts), length / double(parts), 0.0);
     }
     for (double d = begin; steps.empty() || d <= schedule.reach;) {
         const bool widens = 2.0 * tangent * d >= 1.0;
-        // A voxel's opacity is that of a step of one diameter, and a medium the same however it is cut into steps: a part of the
-        // doubling, or of the voxel, counts as that part of the whole step's exponent.
+        // A voxel's opacity is that of a step of one diameter, and a medium the same however it is cut
+        // into steps: a part of the doubling, or of the voxel, counts as that part of the whole step's
+        // exponent.
         add(steps, d, widens ? widening : schedule.step, 1.0);
         d = widens ? d * ratio : d + schedule.step;
     }
@@ -155,7 +182,9 @@ std::vector<LwConeStep> coneSteps(double halfAngle, double cosine, const ConeSch
 }
 
 void ConeTable::add(const ConeDirection& direction, double cosine, const ConeSchedule& schedule) {
-    const auto same = [&](const Known& k) { return std::abs(k.halfAngle - direction.halfAngle) < 1e-9 && std::abs(k.cosine - cosine) < 1e-9; };
+    const auto same = [&](const Known& k) {
+        return std::abs(k.halfAngle - direction.halfAngle) < 1e-9 && std::abs(k.cosine - cosine) < 1e-9;
+    };
     auto found = std::find_if(known_.begin(), known_.end(), same);
     if (found == known_.end()) {
         const std::vector<LwConeStep> more = coneSteps(direction.halfAngle, cosine, schedule);

@@ -1,4 +1,5 @@
-// Light of a voxel volume along a few cones at a view's pixels or at points (kernels/cone_gather). docs/techniques/cone_gather.md.
+// Light of a voxel volume along a few cones at a view's pixels or at points (kernels/cone_gather).
+// docs/techniques/cone_gather.md.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +22,7 @@ struct ConeGatherOptions {
     double step = 1.0;      // diameters
     double distance = 1.0;  // sides of the largest grid
     bool opacityCorrection = true, apertureOffset = false;
-    bool near = false;            // light is dimmed by what stands nearer than where cones begin
+    bool near = false;               // light is dimmed by what stands nearer than where cones begin
     double occlusionDistance = 1.0;  // sides of the largest grid
 };
 
@@ -36,26 +37,33 @@ class ConeGather {
 public:
     ConeGather(Device& device, const ConeGatherOptions& options);
 
-    // Pass "cone_gather.trace" (".trace_open" of ambient occlusion alone). irradiance, validity, open: none where not wanted; interleaved,
-    // `irradiance` has kGathered planes, which recordFilter makes the three of, and the others are left. counts: kCounts ints,
-    // raised by the number of pixels that are neither surface nor background, of those whose light was brought down, and of surfaces
-    // that the grid does not have. wantsOpen: interleaved, whether ambient occlusion is among what is gathered.
+    // Pass "cone_gather.trace" (".trace_open" of ambient occlusion alone). irradiance, validity, open:
+    // none where not wanted; interleaved, `irradiance` has kGathered planes, which recordFilter makes
+    // the three of, and the others are left. counts: kCounts ints, raised by the number of pixels that
+    // are neither surface nor background, of those whose light was brought down, and of surfaces that
+    // the grid does not have. wantsOpen: interleaved, whether ambient occlusion is among what is
+    // gathered.
     static constexpr std::size_t kCounts = 3;
     static constexpr std::uint32_t kGathered = 6;  // the last one of ambient occlusion alone
-    void recordTrace(Executor& executor, const Planes& position, const Planes& normal, const ConeWorld& world, const Planes& irradiance,
-                     const Planes& validity, const Planes& open, const Buffer& counts, bool wantsOpen = false);
+    void recordTrace(Executor& executor, const Planes& position, const Planes& normal,
+                     const ConeWorld& world, const Planes& irradiance, const Planes& validity,
+                     const Planes& open, const Buffer& counts, bool wantsOpen = false);
     // Pass "cone_gather.filter". Interleaved only. Of the results each may be empty.
-    void recordFilter(Executor& executor, const Planes& position, const Planes& normal, const Planes& gathered, const Planes& irradiance,
-                      const Planes& validity, const Planes& open);
+    void recordFilter(Executor& executor, const Planes& position, const Planes& normal,
+                      const Planes& gathered, const Planes& irradiance, const Planes& validity,
+                      const Planes& open);
 
-    // Pass "cone_gather.harmonics": the light that arrives at points, in two bands of spherical harmonics, from cones over the sphere.
-    // `normal` may be empty; points with one begin off their surface. harmonics, validity: none where not wanted. counts: the second and
-    // third of those.
-    void recordHarmonics(Executor& executor, const Planes& position, const Planes& normal, const ConeWorld& world, const Harmonics& harmonics,
-                         const Planes& validity, const Buffer& counts);
+    // Pass "cone_gather.harmonics": the light that arrives at points, in two bands of spherical
+    // harmonics, from cones over the sphere. `normal` may be empty; points with one begin off their
+    // surface. harmonics, validity: none where not wanted. counts: the second and third of those.
+    void recordHarmonics(Executor& executor, const Planes& position, const Planes& normal,
+                         const ConeWorld& world, const Harmonics& harmonics, const Planes& validity,
+                         const Buffer& counts);
 
     const ConeGatherOptions& options() const { return options_; }
-    std::uint64_t bytes() const { return cones_.bytes() + steps_.bytes() + sphereCones_.bytes() + sphereSteps_.bytes(); }
+    std::uint64_t bytes() const {
+        return cones_.bytes() + steps_.bytes() + sphereCones_.bytes() + sphereSteps_.bytes();
+    }
     static std::uint64_t estimateBytes(const ConeGatherOptions& options);
 
 private:

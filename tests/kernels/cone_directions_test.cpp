@@ -26,10 +26,12 @@ double meanOver(const ConeDirection& cone, const std::function<double(const Dire
     double sum = 0;
     for (int i = 0; i < kRings; ++i)
         for (int j = 0; j < kTurns; ++j) {
-            const double z = 1 - (i + 0.5) / kRings * (1 - std::cos(cone.halfAngle)), r = std::sqrt(1 - z * z);
+            const double z = 1 - (i + 0.5) / kRings * (1 - std::cos(cone.halfAngle)),
+                         r = std::sqrt(1 - z * z);
             const double turn = 2 * kPi * (j + 0.5) / kTurns;
             Direction d;
-            for (std::size_t a = 0; a < 3; ++a) d[a] = z * w[a] + r * (std::cos(turn) * u[a] + std::sin(turn) * v[a]);
+            for (std::size_t a = 0; a < 3; ++a)
+                d[a] = z * w[a] + r * (std::cos(turn) * u[a] + std::sin(turn) * v[a]);
             sum += f(d);
         }
     return sum / (kRings * kTurns);
@@ -45,7 +47,9 @@ double gathered(std::uint32_t count, const std::function<double(const Direction&
 // An infinite wall up to 45 degrees that stands towards `turn`, over the exact value.
 double wallError(std::uint32_t count, double turn) {
     const double c = std::cos(turn), s = std::sin(turn);
-    return gathered(count, [=](const Direction& d) { return d[0] * c + d[1] * s > d[2] ? 1.0 : 0.0; }) / ((1 - std::sqrt(0.5)) / 2) - 1;
+    return gathered(count, [=](const Direction& d) { return d[0] * c + d[1] * s > d[2] ? 1.0 : 0.0; }) /
+               ((1 - std::sqrt(0.5)) / 2) -
+           1;
 }
 
 }  // namespace
@@ -83,7 +87,8 @@ TEST_CASE("cones of the sphere have its first bands", "[cone_directions]") {
     for (std::size_t a = 0; a < 3; ++a) {
         CHECK(mean[a] == Approx(0.0).margin(1e-9));
         // Exact for an icosahedron; cells' middles have the z of their middles.
-        for (std::size_t b = 0; b < 3; ++b) CHECK(sum[a][b] == Approx(a == b ? 1.0 / 3.0 : 0.0).margin(count <= 9 ? 1e-9 : 0.03));
+        for (std::size_t b = 0; b < 3; ++b)
+            CHECK(sum[a][b] == Approx(a == b ? 1.0 / 3.0 : 0.0).margin(count <= 9 ? 1e-9 : 0.03));
     }
 }
 
@@ -116,7 +121,8 @@ TEST_CASE("nine cones have the weights of their cosines", "[cone_directions]") {
     for (std::size_t k = 5; k < 9; ++k) CHECK(kPi * set[k].weight == Approx(0.36193).margin(5e-6));
 }
 
-TEST_CASE("samples double their distance, level by level, whatever they are cut into", "[cone_directions]") {
+TEST_CASE("samples double their distance, level by level, whatever they are cut into",
+          "[cone_directions]") {
     ConeSchedule schedule;
     schedule.nudge = 1.0;
     schedule.reach = 128.0;
@@ -140,7 +146,8 @@ TEST_CASE("samples double their distance, level by level, whatever they are cut 
             sums[k] += double(steps[i].exponent);
             if (i > 0) CHECK(double(steps[i].distance) > double(steps[i - 1].distance));
             // At most `step` diameters, of one voxel at least.
-            const double next = i + 1 < steps.size() ? double(steps[i + 1].distance) : 0.0, d = double(steps[i].distance);
+            const double next = i + 1 < steps.size() ? double(steps[i + 1].distance) : 0.0,
+                         d = double(steps[i].distance);
             CHECK(next - d <= schedule.step * std::max(1.0, 2 * std::tan(halfAngle) * d) * 1.0001);
         }
     }

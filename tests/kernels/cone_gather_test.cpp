@@ -31,7 +31,8 @@ DeviceVoxels deviceVoxels(KernelRig& rig, const std::vector<HostVoxels>& grids, 
     packVoxels(d, grids, scale);
     for (std::size_t c = 0; c < grids.size(); ++c) {
         // Nested about the same middle.
-        const double voxel = kVoxel * std::ldexp(1.0, int(c)), half = 0.5 * grids[0].size * (voxel - kVoxel);
+        const double voxel = kVoxel * std::ldexp(1.0, int(c)),
+                     half = 0.5 * grids[0].size * (voxel - kVoxel);
         d.place.push_back(conePlace(voxel, kOrigin - Vec{half, half, half}));
     }
     uploadVoxels(rig, d);
@@ -45,7 +46,8 @@ HostVoxels someVoxels(int size, int mode, bool sides, unsigned seed = 5) {
     HostVoxels v{size, mode, sides, {}};
     for (int level = 0; level < voxel_levels(size); ++level) {
         const int n = v.sideOf(level);
-        std::vector<std::vector<Rgba>> planes(std::size_t(v.planesOf(level)), std::vector<Rgba>(std::size_t(n * n * n)));
+        std::vector<std::vector<Rgba>> planes(std::size_t(v.planesOf(level)),
+                                              std::vector<Rgba>(std::size_t(n * n * n)));
         for (int z = 0; z < n; ++z)
             for (int y = 0; y < n; ++y)
                 for (int x = 0; x < n; ++x) {
@@ -53,8 +55,10 @@ HostVoxels someVoxels(int size, int mode, bool sides, unsigned seed = 5) {
                     const bool filled = level > 2 || brick % 3 == 0;
                     for (auto& plane : planes) {
                         const double opacity = filled ? std::pow(unit(random), 3.0) : 0.0;
-                        Rgba c{opacity * unit(random), opacity * unit(random), opacity * unit(random), opacity};
-                        const bool isBands = mode == 2 && &plane != &planes[0] && !(level == 0 && sides && &plane < &planes[6]);
+                        Rgba c{opacity * unit(random), opacity * unit(random), opacity * unit(random),
+                               opacity};
+                        const bool isBands = mode == 2 && &plane != &planes[0] &&
+                                             !(level == 0 && sides && &plane < &planes[6]);
                         if (isBands)
                             for (std::size_t a = 0; a < 3; ++a) c[a] = unit(random) - 0.5;
                         plane[v.index(level, x, y, z)] = c;
@@ -72,12 +76,14 @@ ConeImage somePoints(std::uint32_t width, std::uint32_t height, double side) {
     for (std::uint32_t i = 0; i < width * height; ++i) {
         const Vec centre = kOrigin + Vec{1, 1, 1} * (0.5 * side);
         const Vec p = centre + Vec{unit(random), unit(random), unit(random)} * (0.55 * side);
-        image.points.push_back({p, i % 17 == 5 ? Vec{} : reference::unit({unit(random), unit(random), unit(random)})});
+        image.points.push_back(
+            {p, i % 17 == 5 ? Vec{} : reference::unit({unit(random), unit(random), unit(random)})});
     }
     return image;
 }
 
-void checkTwin(KernelRig& rig, const ConeGatherOptions& options, const DeviceVoxels& voxels, const ConeImage& image) {
+void checkTwin(KernelRig& rig, const ConeGatherOptions& options, const DeviceVoxels& voxels,
+               const ConeImage& image) {
     ConeGather pass(rig.device(), options);
     const std::array<float, 3> environment{0.5f, 0.25f, 0.125f};
     const ConeLight light = traceCones(rig, pass, voxels, image, environment);
@@ -93,8 +99,8 @@ void checkTwin(KernelRig& rig, const ConeGatherOptions& options, const DeviceVox
         validity[i] = float(g.validity);
         open[i] = float(g.open);
     }
-    // Places are known to 1e-6 of the grid, which moves samples by that times what changes between voxels. A cone that ends at
-    // the border may take one sample more or less.
+    // Places are known to 1e-6 of the grid, which moves samples by that times what changes between
+    // voxels. A cone that ends at the border may take one sample more or less.
     CHECK(disagreement(light.irradiance, irradiance, 1e-4, 2e-3) == "");
     CHECK(disagreement(light.validity, validity, 1e-5, 2e-3) == "");
     CHECK(disagreement(light.open, open, 1e-4, 2e-3) == "");
@@ -110,11 +116,13 @@ TEST_CASE("cones are what a loop over their samples makes of the same words", "[
         bool sides;
         std::uint32_t cascades;
     };
-    const Case c = GENERATE(Case{1, 0, false, 1}, Case{16, 0, false, 1}, Case{16, 0, true, 1}, Case{1, 1, true, 1}, Case{16, 1, false, 1},
-                            Case{1, 2, false, 1}, Case{16, 2, true, 1}, Case{1, 0, false, 3}, Case{16, 0, false, 3});
+    const Case c = GENERATE(Case{1, 0, false, 1}, Case{16, 0, false, 1}, Case{16, 0, true, 1},
+                            Case{1, 1, true, 1}, Case{16, 1, false, 1}, Case{1, 2, false, 1},
+                            Case{16, 2, true, 1}, Case{1, 0, false, 3}, Case{16, 0, false, 3});
     KernelRig rig(c.width);
     std::vector<HostVoxels> grids;
-    for (std::uint32_t k = 0; k < c.cascades; ++k) grids.push_back(someVoxels(c.cascades > 1 ? 16 : 32, c.mode, c.sides, 5 + k));
+    for (std::uint32_t k = 0; k < c.cascades; ++k)
+        grids.push_back(someVoxels(c.cascades > 1 ? 16 : 32, c.mode, c.sides, 5 + k));
     const DeviceVoxels voxels = deviceVoxels(rig, grids);
     ConeGatherOptions options = optionsOf(grids[0]);
     options.cascades = c.cascades;

@@ -31,11 +31,14 @@ struct ConeTwin {
     cl_uint word(int cascade, int level, int plane, const int* i, const int* corner) const {
         const int n = size() >> level, bricks = voxel_bricks(size(), level);
         const int brick = (corner[2] / 8 * bricks + corner[1] / 8) * bricks + corner[0] / 8;
-        const int slot = voxels.table[std::size_t(cascade * voxel_table_size(size()) + voxel_table(size(), level) + brick)];
+        const int slot = voxels.table[std::size_t(cascade * voxel_table_size(size()) +
+                                                  voxel_table(size(), level) + brick)];
         if (slot < 0 || i[0] >= n || i[1] >= n || i[2] >= n) return 0;
         const int slots = int(level == 0 ? voxels.volume.baseSlots : voxels.volume.mipSlots);
-        const int at = (i[0] - corner[0] / 8 * 8) + 9 * (i[1] - corner[1] / 8 * 8) + 81 * (i[2] - corner[2] / 8 * 8);
-        return (level == 0 ? voxels.base : voxels.mips)[std::size_t((plane * slots + slot) * LW_VOXEL_STRIDE + at)];
+        const int at = (i[0] - corner[0] / 8 * 8) + 9 * (i[1] - corner[1] / 8 * 8) +
+                       81 * (i[2] - corner[2] / 8 * 8);
+        return (level == 0 ? voxels.base
+                           : voxels.mips)[std::size_t((plane * slots + slot) * LW_VOXEL_STRIDE + at)];
     }
 
     void add(Sample& sum, cl_uint word, double weight) const {
@@ -48,7 +51,8 @@ struct ConeTwin {
     }
 
     Sample sample(int cascade, int level, Vec at, Vec d) const {
-        const double scale = std::ldexp(1.0, -level), most = (size() >> level) - 1, p[3] = {at.x, at.y, at.z}, way[3] = {d.x, d.y, d.z};
+        const double scale = std::ldexp(1.0, -level), most = (size() >> level) - 1,
+                     p[3] = {at.x, at.y, at.z}, way[3] = {d.x, d.y, d.z};
         int corner[3];
         double share[3];
         for (int a = 0; a < 3; ++a) {
@@ -66,15 +70,18 @@ struct ConeTwin {
             }
             if (level == 0 ? options.sides : options.mode == LW_VOXEL_MODE_ANISOTROPIC) {
                 for (int a = 0; a < 3; ++a)
-                    add(sum, word(cascade, level, 2 * a + (way[a] > 0), i, corner), weight * way[a] * way[a]);
+                    add(sum, word(cascade, level, 2 * a + (way[a] > 0), i, corner),
+                        weight * way[a] * way[a]);
             } else if (options.mode == LW_VOXEL_MODE_SH2) {
                 Sample one;
                 add(one, word(cascade, level, 0, i, corner), 1);
                 for (int c = 0; c < 3; ++c) {
                     const cl_uint bands = word(cascade, level, c + 1, i, corner);
                     double along = 0;
-                    for (int a = 0; a < 3; ++a) along -= way[a] * double(voxel_unpack_harmonic(bands, a, 1.0f));
-                    sum.colour[c] += weight * one.colour[c] * (0.28209479177387814 + 0.4886025119029199 * along);
+                    for (int a = 0; a < 3; ++a)
+                        along -= way[a] * double(voxel_unpack_harmonic(bands, a, 1.0f));
+                    sum.colour[c] +=
+                        weight * one.colour[c] * (0.28209479177387814 + 0.4886025119029199 * along);
                 }
                 sum.opacity += weight * one.opacity;
             } else {
@@ -88,7 +95,9 @@ struct ConeTwin {
     Vec placed(Vec world, int cascade) const {
         const LwGridPlace& place = voxels.place[std::size_t(cascade)];
         const double inverse = double(place.origin.s[3]);
-        return (world - Vec{double(place.origin.s[0]), double(place.origin.s[1]), double(place.origin.s[2])}) * inverse;
+        return (world -
+                Vec{double(place.origin.s[0]), double(place.origin.s[1]), double(place.origin.s[2])}) *
+               inverse;
     }
     bool holds(Vec at, double margin) const {
         const double n = size();
@@ -99,8 +108,10 @@ struct ConeTwin {
         Light light;
         for (const LwConeStep& step : steps) {
             const double distance = std::ldexp(double(step.distance), grid);
-            const Vec outermost = placed(world, cascades() - 1) + d * std::ldexp(double(step.begins), grid + 1 - cascades());
-            if (distance > reach || !holds(outermost, 0) || light.through <= double(LW_CONE_LEAST)) break;
+            const Vec outermost = placed(world, cascades() - 1) +
+                                  d * std::ldexp(double(step.begins), grid + 1 - cascades());
+            if (distance > reach || !holds(outermost, 0) || light.through <= double(LW_CONE_LEAST))
+                break;
             const int wanted = step.level + grid;
             int cascade = 0, level = 0;
             Vec at;
@@ -110,11 +121,17 @@ struct ConeTwin {
                 if (cascade + 1 == cascades() || holds(at, 0.5 * std::ldexp(1.0, level))) break;
             }
             const Sample s = sample(cascade, level, at, d);
-            const double exponent = double(step.exponent) * std::ldexp(1.0, std::min(0, wanted - cascade));
-            const double opacity = options.opacityCorrection ? 1 - std::pow(1 - std::min(1.0, s.opacity), exponent) : s.opacity;
+            const double exponent =
+                double(step.exponent) * std::ldexp(1.0, std::min(0, wanted - cascade));
+            const double opacity = options.opacityCorrection
+                                       ? 1 - std::pow(1 - std::min(1.0, s.opacity), exponent)
+                                       : s.opacity;
             // Voxels of next to no opacity may have some light.
-            const double ratio = s.opacity > 1e-6 ? opacity / s.opacity : options.opacityCorrection ? exponent : 1;
-            for (int c = 0; c < 3; ++c) light.colour[c] += light.through * double(step.light) * s.colour[c] * ratio;
+            const double ratio = s.opacity > 1e-6            ? opacity / s.opacity
+                                 : options.opacityCorrection ? exponent
+                                                             : 1;
+            for (int c = 0; c < 3; ++c)
+                light.colour[c] += light.through * double(step.light) * s.colour[c] * ratio;
             light.occluded += light.through * double(step.dimming) * opacity;
             light.through *= 1 - opacity;
         }
@@ -129,7 +146,7 @@ struct ConeTwin {
         s.step = options.step;
         s.reach = std::min(options.distance, std::sqrt(3.0)) * side;
         s.openReach = options.occlusionDistance * side;
-        s.levels = std::uint32_t(voxel_levels(size()));
+        s.levels = std::uint32_t(voxel_levels(size()) + cascades() - 1);
         s.apertureOffset = options.apertureOffset;
         s.near = options.near;
         s.corrected = options.opacityCorrection;
@@ -146,7 +163,8 @@ struct ConeTwin {
         if (!holds(placed(p, cascades() - 1), 0)) return g;
         // The frame of Duff et al. 2017.
         const double sign = n.z < 0 ? -1 : 1, a = -1 / (sign + n.z), b = n.x * n.y * a;
-        const Vec tangent{1 + sign * n.x * n.x * a, sign * b, -sign * n.x}, across{b, sign + n.y * n.y * a, -n.y};
+        const Vec tangent{1 + sign * n.x * n.x * a, sign * b, -sign * n.x},
+            across{b, sign + n.y * n.y * a, -n.y};
         for (const ConeDirection& cone : set) {
             const Vec d = tangent * cone.d[0] + across * cone.d[1] + n * cone.d[2];
             const std::vector<LwConeStep> steps = coneSteps(cone.halfAngle, cone.d[2], schedule());
@@ -154,7 +172,8 @@ struct ConeTwin {
             if (!holds(placed(p, cascades() - 1) + d * begin, 0)) continue;
             const Light l = march(p, d, grid, steps, schedule().reach);
             for (int c = 0; c < 3; ++c)
-                g.irradiance[c] += 3.14159265358979323846 * cone.weight * (l.colour[c] + l.through * environment[std::size_t(c)]);
+                g.irradiance[c] += 3.14159265358979323846 * cone.weight *
+                                   (l.colour[c] + l.through * environment[std::size_t(c)]);
             g.open += cone.weight * (1 - l.occluded);
             g.validity += cone.weight;
         }

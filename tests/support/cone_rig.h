@@ -32,13 +32,14 @@ struct HostVoxels {
     }
 };
 
-// Isotropic ones of a function of a voxel's place (finest level), each level the mean of the one before; or anisotropic: the two voxels
-// behind each other composited, then the mean of four.
+// Isotropic ones of a function of a voxel's place (finest level), each level the mean of the one before;
+// or anisotropic: the two voxels behind each other composited, then the mean of four.
 inline HostVoxels hostVoxels(int size, int mode, const std::function<Rgba(int, int, int)>& voxel) {
     HostVoxels v{size, mode, false, {}};
     for (int level = 0; level < voxel_levels(size); ++level) {
         const int n = v.sideOf(level);
-        std::vector<std::vector<Rgba>> planes(std::size_t(v.planesOf(level)), std::vector<Rgba>(std::size_t(n * n * n)));
+        std::vector<std::vector<Rgba>> planes(std::size_t(v.planesOf(level)),
+                                              std::vector<Rgba>(std::size_t(n * n * n)));
         for (int p = 0; p < v.planesOf(level); ++p)
             for (int z = 0; z < n; ++z)
                 for (int y = 0; y < n; ++y)
@@ -48,13 +49,18 @@ inline HostVoxels hostVoxels(int size, int mode, const std::function<Rgba(int, i
                             value = voxel(x, y, z);
                             continue;
                         }
-                        const auto& from = v.levels[std::size_t(level - 1)][std::size_t(level == 1 ? 0 : p)];
-                        const auto child = [&](int k) { return from[v.index(level - 1, 2 * x + (k & 1), 2 * y + (k >> 1 & 1), 2 * z + (k >> 2))]; };
+                        const auto& from =
+                            v.levels[std::size_t(level - 1)][std::size_t(level == 1 ? 0 : p)];
+                        const auto child = [&](int k) {
+                            return from[v.index(level - 1, 2 * x + (k & 1), 2 * y + (k >> 1 & 1),
+                                                2 * z + (k >> 2))];
+                        };
                         for (int c = 0; c < 4; ++c)
                             for (int k = 0; k < 8; ++k) {
                                 double part = child(k)[std::size_t(c)];
                                 if (mode == 1) {
-                                    // Seen by a ray that goes up the axis (odd planes), the lower one comes first.
+                                    // Seen by a ray that goes up the axis (odd planes), the lower one
+                                    // comes first.
                                     const int bit = 1 << (p / 2);
                                     const bool isBehind = bool(k & bit) == bool(p & 1);
                                     part *= 2.0 * (isBehind ? 1.0 - child(k ^ bit)[3] : 1.0);
@@ -97,27 +103,33 @@ inline void packVoxels(DeviceVoxels& d, const std::vector<HostVoxels>& grids, do
         for (int level = 0; level < int(v.levels.size()); ++level) {
             const int n = v.sideOf(level), bricks = voxel_bricks(v.size, level), which = level > 0;
             for (int brick = 0; brick < bricks * bricks * bricks; ++brick) {
-                std::vector<std::vector<cl_uint>> words(planes[which].size(), std::vector<cl_uint>(LW_VOXEL_STRIDE));
+                std::vector<std::vector<cl_uint>> words(planes[which].size(),
+                                                        std::vector<cl_uint>(LW_VOXEL_STRIDE));
                 bool holds = false;
                 for (std::size_t p = 0; p < words.size(); ++p)
                     for (int i = 0; i < LW_VOXEL_STORED_VOXELS; ++i) {
-                        const int x = 8 * (brick % bricks) + i % 9, y = 8 * (brick / bricks % bricks) + i / 9 % 9,
+                        const int x = 8 * (brick % bricks) + i % 9,
+                                  y = 8 * (brick / bricks % bricks) + i / 9 % 9,
                                   z = 8 * (brick / (bricks * bricks)) + i / 81;
                         if (x >= n || y >= n || z >= n) continue;
                         const auto& plane = v.levels[std::size_t(level)][p];
                         const Rgba c = plane[v.index(level, x, y, z)];
                         holds |= c[3] > 0.0;
                         if (v.mode == 2 && p > 0) {
-                            const double c0 = v.levels[std::size_t(level)][0][v.index(level, x, y, z)][p - 1];
-                            words[p][std::size_t(i)] = voxel_pack_harmonics(float(c0), float(c[0]), float(c[1]), float(c[2]), 1u << 31);
+                            const double c0 =
+                                v.levels[std::size_t(level)][0][v.index(level, x, y, z)][p - 1];
+                            words[p][std::size_t(i)] = voxel_pack_harmonics(
+                                float(c0), float(c[0]), float(c[1]), float(c[2]), 1u << 31);
                         } else {
-                            words[p][std::size_t(i)] = voxel_pack(float(c[0]), float(c[1]), float(c[2]), float(c[3]), perUnit,
-                                                                  voxel_dither(x, y, z, level, int(p)));
+                            words[p][std::size_t(i)] =
+                                voxel_pack(float(c[0]), float(c[1]), float(c[2]), float(c[3]), perUnit,
+                                           voxel_dither(x, y, z, level, int(p)));
                         }
                     }
                 d.table.push_back(holds ? slots[which]++ : LW_VOXEL_EMPTY);
                 if (!holds) continue;
-                for (std::size_t p = 0; p < words.size(); ++p) planes[which][p].insert(planes[which][p].end(), words[p].begin(), words[p].end());
+                for (std::size_t p = 0; p < words.size(); ++p)
+                    planes[which][p].insert(planes[which][p].end(), words[p].begin(), words[p].end());
             }
         }
     for (int which = 0; which < 2; ++which)
@@ -171,16 +183,18 @@ inline std::vector<float> conePlanes(const std::vector<ConePoint>& points, bool 
     return planes;
 }
 
-inline ConeLight traceCones(KernelRig& rig, ConeGather& pass, const DeviceVoxels& voxels, const ConeImage& image,
+inline ConeLight traceCones(KernelRig& rig, ConeGather& pass, const DeviceVoxels& voxels,
+                            const ConeImage& image,
                             std::array<float, 3> environment = {0.0f, 0.0f, 0.0f}) {
     const std::uint32_t w = image.width, h = image.height;
     const Guarded at = rig.uploadPlanes(conePlanes(image.points, false), w, h, 3, std::nanf("")),
                   facing = rig.uploadPlanes(conePlanes(image.points, true), w, h, 3, std::nanf(""));
-    const Guarded light = rig.makePlanes(w, h, 3), valid = rig.makePlanes(w, h, 1), open = rig.makePlanes(w, h, 1),
-                  gathered = rig.makePlanes(w, h, ConeGather::kGathered);
+    const Guarded light = rig.makePlanes(w, h, 3), valid = rig.makePlanes(w, h, 1),
+                  open = rig.makePlanes(w, h, 1), gathered = rig.makePlanes(w, h, ConeGather::kGathered);
     const Guarded counts = rig.upload(std::vector<cl_int>(ConeGather::kCounts));
-    const Planes position = rig.planes(at, w, h, 3), normal = rig.planes(facing, w, h, 3), e = rig.planes(light, w, h, 3),
-                 v = rig.planes(valid, w, h, 1), o = rig.planes(open, w, h, 1);
+    const Planes position = rig.planes(at, w, h, 3), normal = rig.planes(facing, w, h, 3),
+                 e = rig.planes(light, w, h, 3), v = rig.planes(valid, w, h, 1),
+                 o = rig.planes(open, w, h, 1);
     const ConeWorld world{voxels.volume, voxels.places, environment.data()};
     if (pass.options().interleaved) {
         const Planes g = rig.planes(gathered, w, h, ConeGather::kGathered);
@@ -190,7 +204,8 @@ inline ConeLight traceCones(KernelRig& rig, ConeGather& pass, const DeviceVoxels
         pass.recordTrace(rig.executor(), position, normal, world, e, v, o, counts);
     }
     rig.device().finish();
-    return {rig.downloadPlanes(e), rig.downloadPlanes(v), rig.downloadPlanes(o), rig.download<cl_int>(counts)};
+    return {rig.downloadPlanes(e), rig.downloadPlanes(v), rig.downloadPlanes(o),
+            rig.download<cl_int>(counts)};
 }
 
 }  // namespace lightwell::test
