@@ -28,12 +28,12 @@ def steps(cosine, size):
 def words_per_pixel(bench, scene):
     """By size and mode, of all nine cones: the mean over the pixels that show a surface."""
     planes = {}
-    for name, count in (("position", 3), ("normal", 3), ("places", 4)):
+    for name, channels in (("position", 3), ("normal", 3), ("places", 1)):
         path = bench.options.work / f"cones_{name}.exr"
         bench.render(scene, ["size=128"], SIZE, None, 0, 1, ["--debug-view", f"{name}={path}"])
-        planes[name] = exr_planes.read_planes(path, [f"c{i:02d}" for i in range(count)]).reshape(-1, count)
+        planes[name] = exr_planes.read_planes(path, [f"c{i:02d}" for i in range(channels)]).reshape(-1, channels)
     lit = (planes["normal"] ** 2).sum(axis=1) > 0.5
-    n, (low, per_unit) = planes["normal"][lit], (planes["places"][0, :3], planes["places"][0, 3])
+    n, low, per_unit = planes["normal"][lit], planes["places"][:3, 0], planes["places"][3, 0]
     share = (planes["position"][lit] - low) * per_unit / 128
     t = numpy.cross(n, numpy.where(abs(n[:, :1]) < 0.7, [1.0, 0, 0], [0, 1.0, 0]))
     t /= numpy.linalg.norm(t, axis=1, keepdims=True)
