@@ -20,8 +20,8 @@ import cone_tracing_samples
 from program import caller, read_options
 
 SIZES = [32, 64, 128, 256]
-MODES = ["anisotropic", "isotropic", "sh2"]
-RESOLUTIONS = ["interleaved", "full", "half", "quarter"]
+DENSE = [128, 256]
+TRACED = {"anisotropic": ["interleaved", "full", "half", "quarter"], "isotropic": ["interleaved", "full", "half"], "sh2": ["interleaved", "half"]}
 MEASURED = ["times", "errors", "cascades", "limit", "format", "pictures"]
 TIMED = ["cornell", "sponza_crytek"]
 STEP = 1 / 30  # s from frame to frame, of what moves
@@ -80,13 +80,13 @@ def times(bench):
         rows[" ".join([scene, kind, *settings])] = lambda: timed(bench, scene, kind, settings)
     for scene in TIMED:
         rows[f"samples {scene}"] = lambda scene=scene: cone_tracing_samples.words_per_pixel(bench, scene)
-        for mode in MODES:
-            for resolution in RESOLUTIONS:
+        for mode, resolutions in TRACED.items():
+            for resolution in resolutions:
                 add(scene, "rest", "size=128", f"mode={mode}", f"resolution={resolution}")
         for size in SIZES:
             for kind in ("first", "rest", "light", "object"):
                 add(scene, kind, f"size={size}")
-            for kind in ("first", "light"):
+            for kind in ("first", "light") if size in DENSE else ():
                 add(scene, kind, f"size={size}", "sparse=off")
     return rows
 
@@ -95,7 +95,7 @@ def timed(bench, scene, kind, settings):
     moves = kind in ("light", "object")
     file = moving(bench, scene, kind) if moves else scene
     # Frames at rest and moving ones come after those that made memory for the bricks.
-    warmup, frames = {"first": (0, 1), "rest": (3, 9)}.get(kind, (3, 5))
+    warmup, frames = {"first": (0, 1), "rest": (3, 7)}.get(kind, (3, 5))
     found = bench.render(file, settings, bench.options.size, None, warmup, frames, ["--time", 1, "--step", STEP] if moves else [])
     return {"passes": {p["name"]: p["ms"] for p in found["passes"]}, "total": found["total_ms"], "counts": found["counts"],
             "bytes": found["bytes"]["device"], "device": found["device"], "load": os.getloadavg()[0]}

@@ -15,7 +15,8 @@ EASY = {"cornell": 8, "rooms": 8}
 SETTINGS = ([[f"size={size}"] for size in (32, 64, 128, 256)] +
             [[f"size={size}", f"mode={mode}"] for mode in ("isotropic", "sh2") for size in (64, 128)] +
             [["size=128", f"cones={cones}"] for cones in (6, 16, 64)] +
-            [["size=128", f"resolution={resolution}"] for resolution in ("full", "half", "quarter")])
+            [["size=128", f"resolution={resolution}"] for resolution in ("full", "half", "quarter")] +
+            [["size=64", "normal_aware=off"]])
 CASCADES = [(size, cascades) for size in (32, 64) for cascades in (1, 2, 3, 4)]
 LIMIT_SIZES, LIMIT_CONES, LIMIT = [32, 64, 128, 256], [9, 64, 256], ["resolution=full", "step=0.5"]
 # What may be left at the limit, one at a time: where cones begin, and the side that larger voxels show.
