@@ -69,7 +69,7 @@ def main():
         if part in options.part:
             bench.measure(part, getattr(cone_tracing_errors, part)(bench))
     if "page" in options.part:
-        cone_tracing_page.write(bench)
+        cone_tracing_page.write(bench, times(bench))
 
 
 def times(bench):

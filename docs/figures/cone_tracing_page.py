@@ -13,12 +13,15 @@ BRICK, STORED, SURFACES, SIDES = 512, 736, 7, 6  # voxels of a brick, with its a
 SHARE = {"interleaved": 1 / 9, "full": 1, "half": 1 / 4, "quarter": 1 / 16}
 
 
-def write(bench):
+def write(bench, timed):
+    """timed: the names of all rows of times, without which their tables make no sense."""
     found = {part: bench.kept(part) for part in ("times", "errors", "cascades", "limit", "format", "pictures")}
+    if set(timed) - set(found["times"]):
+        found["times"] = {}
     lines = ["<!-- Made by docs/figures/cone_tracing.py; do not edit. -->", "", "# cone_tracing: figures", "",
              "What the technique's passes take, what its errors are, and what they come from. What they mean stands in [cone_tracing](cone_tracing.md).", ""]
     for part, make in (("times", times), ("errors", errors), ("pictures", pictures), ("limit", limit), ("format", words)):
-        lines += make(bench, found) if found[part] else [f"<!-- part {part} has not been measured -->", ""]
+        lines += make(bench, found) if found[part] else [f"<!-- part {part}: not measured, or not to its end -->", ""]
     PAGE.write_text("\n".join(lines).rstrip() + "\n", encoding="utf-8")
     print(PAGE)
 
@@ -28,6 +31,7 @@ def spent(row, group):
 
 
 def table(head, rows, left=1):
+    rows = [row for row in rows if any(row[left:])]
     return ["| " + " | ".join(head) + " |", "| " + " | ".join(["---"] * left + ["---:"] * (len(head) - left)) + " |",
             *("| " + " | ".join(row) + " |" for row in rows), ""]
 
