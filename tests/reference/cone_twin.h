@@ -60,7 +60,7 @@ struct ConeTwin {
             corner[a] = int(q);
             share[a] = q - corner[a];
         }
-        Sample sum;
+        Sample sum, side[3];
         for (int k = 0; k < 8; ++k) {
             int i[3];
             double weight = 1;
@@ -70,8 +70,7 @@ struct ConeTwin {
             }
             if (level == 0 ? options.sides : options.mode == LW_VOXEL_MODE_ANISOTROPIC) {
                 for (int a = 0; a < 3; ++a)
-                    add(sum, word(cascade, level, 2 * a + (way[a] > 0), i, corner),
-                        weight * way[a] * way[a]);
+                    add(side[a], word(cascade, level, 2 * a + (way[a] > 0), i, corner), weight);
             } else if (options.mode == LW_VOXEL_MODE_SH2) {
                 Sample one;
                 add(one, word(cascade, level, 0, i, corner), 1);
@@ -87,6 +86,17 @@ struct ConeTwin {
             } else {
                 add(sum, word(cascade, level, 0, i, corner), weight);
             }
+        }
+        // Surfaces that close a share of the voxel's side, whose layer a ray crosses in 1 / |d| steps.
+        double closed = 0, taken = 0;
+        for (int a = 0; a < 3; ++a) {
+            closed = std::max(closed, side[a].opacity);
+            taken += std::abs(way[a]) * side[a].opacity;
+        }
+        for (int a = 0; a < 3; ++a) {
+            const double part = std::abs(way[a]) / std::max(1 - closed + taken, 1e-6);
+            for (int c = 0; c < 3; ++c) sum.colour[c] += part * side[a].colour[c];
+            sum.opacity += part * side[a].opacity;
         }
         for (double& c : sum.colour) c = std::max(c, 0.0);
         return sum;
