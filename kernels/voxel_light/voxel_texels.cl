@@ -17,6 +17,8 @@
 
 // Texels of a work-item.
 #define LIGHT_RUN 64
+// Slots that a work-item remembers; a power of two.
+#define LIGHT_MARKED 16
 // Half a voxel: far enough from a wall on a voxel's border to the voxel that holds the wall, too near
 // for the voxel behind that one.
 #define LIGHT_NUDGE 0.5f
@@ -120,12 +122,13 @@ LW_FN void locate(__global const float* p, int stride, float4 origin, LwVoxelCon
     }
 }
 
-// The slot of a key's voxel holds other light now. last: what this work-item marked last.
-LW_FN void mark_slot(uint key, int* last, __global int* touched) {
-    const int slot = (int)((key - 1u) / LW_VOXEL_BRICK_VOXELS);
-    if (key == 0 || slot == *last) return;
-    *last = slot;
-    if (!(touched[slot] & LW_LIGHT_TOUCHED)) atomic_or(touched + slot, LW_LIGHT_TOUCHED);
+// The slot of a key's voxel holds other light now. marked: slots that this work-item has marked, each where
+// its number's last bits say; atomics of single texels would take longer than all else.
+LW_FN void mark_slot(uint key, int marked[LIGHT_MARKED], __global int* touched) {
+    const int slot = (int)((key - 1u) / LW_VOXEL_BRICK_VOXELS), at = slot & (LIGHT_MARKED - 1);
+    if (key == 0 || slot == marked[at]) return;
+    marked[at] = slot;
+    atomic_or(touched + slot, LW_LIGHT_TOUCHED);
 }
 
 // One work-item = LIGHT_RUN texels of all maps, rows of which are padded to 16. records: of the last
@@ -140,7 +143,8 @@ __kernel void voxel_light_locate(__global const float* texels, int4 layout, int 
     const float4 origin = grid->origin;
     __global const float* areas = surfaces + LW_SURFACE_AREA * contents.slots * LW_VOXEL_BRICK_VOXELS;
     uint lanes[LW_LIGHT_RECORD][LW_WIDTH];
-    int outside = 0, lost = 0, changed = 0, marked = -1;
+    int outside = 0, lost = 0, changed = 0, marked[LIGHT_MARKED];
+    for (int m = 0; m < LIGHT_MARKED; ++m) marked[m] = -1;
     store((laneu)(0u), lanes[LW_LIGHT_RECORD - 1], 0);
     for (int i = first; i < last; i += LW_WIDTH) {
         locate(texels + layout.x + i, layout.z, origin, contents, bricks, areas, lanes, &outside, &lost);
@@ -159,15 +163,15 @@ __kernel void voxel_light_locate(__global const float* texels, int4 layout, int 
             }
             if (!differs) continue;
             changed = 1;
-            mark_slot(was.x, &marked, touched);
-            mark_slot(light.x, &marked, touched);
+            mark_slot(was.x, marked, touched);
+            mark_slot(light.x, marked, touched);
             if (light.x)
                 vstore4(light, 0, record);
             else
                 record[0] = 0u;
         }
     }
-    if (changed && !state->changed) atomic_or(&state->changed, 1);
+    if (changed) atomic_or(&state->changed, 1);
     if (outside) atomic_add(&state->outside, outside);
     if (lost) atomic_add(&state->lost, lost);
 }

@@ -2,6 +2,7 @@
 // tests make.
 #pragma once
 
+#include <cmath>
 #include <random>
 #include <vector>
 
@@ -155,6 +156,44 @@ inline std::vector<VoxelTexel> texelsOn(const std::vector<VoxelTriangle>& triang
         }
     }
     return texels;
+}
+
+// Two triangles across all of a box along axis 0 of which `facing` says the way: a sheet.
+inline std::vector<VoxelTriangle> voxelSheet(double at, double lo, double hi, int facing) {
+    const std::array<double, 3> a = {at, lo, lo}, b = {at, hi, lo}, c = {at, hi, hi}, d = {at, lo, hi};
+    if (facing > 0) return {{{a, b, c}}, {{a, c, d}}};
+    return {{{a, c, b}}, {{a, d, c}}};
+}
+template <class T>
+void append(std::vector<T>& to, const std::vector<T>& more) {
+    to.insert(to.end(), more.begin(), more.end());
+}
+
+// The room, a slanted sheet in it, and light of 10^4 : 1 from wall to wall, coloured.
+struct LitRoom {
+    std::vector<VoxelTriangle> triangles = voxelRoom(2.3, 29.6);
+    std::vector<VoxelTexel> texels;
+    explicit LitRoom(std::size_t each) {
+        triangles.push_back(
+            {{std::array<double, 3>{8.0, 5.0, 9.0}, {20.0, 9.0, 11.0}, {14.0, 21.0, 17.0}}});
+        for (std::size_t t = 0; t < triangles.size(); ++t) {
+            const double bright = std::pow(10.0, -4.0 * double(t) / double(triangles.size() - 1));
+            append(texels,
+                   texelsOn({triangles[t]}, each, {bright, 0.5 * bright, 0.2 * bright}, unsigned(t)));
+        }
+    }
+};
+
+// Not for Catch to print.
+inline bool isSame(const std::vector<cl_uint>& a, const std::vector<cl_uint>& b) {
+    return !a.empty() && a == b;
+}
+
+inline std::array<double, 3> totalOf(const std::vector<VoxelTexel>& texels) {
+    std::array<double, 3> sum{};
+    for (const VoxelTexel& t : texels)
+        for (std::size_t c = 0; c < 3; ++c) sum[c] += t.flux[c];
+    return sum;
 }
 
 }  // namespace lightwell::test
