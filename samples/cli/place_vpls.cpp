@@ -115,8 +115,9 @@ void writePicture(const PlaceOptions& options, const studio::RayScene& scene,
     const studio::Camera camera = findCamera(scene.scene(), options.view);
     const studio::GBuffer gbuffer =
         studio::renderGBuffer(scene, camera, size.width, size.height, camera, scene.time());
-    studio::writePng(options.png,
-                     drawVpls(gbuffer, studio::posedVpls(vpls, scene.scene(), scene.time())));
+    studio::StaticVpls posed = studio::posedVpls(vpls, scene.scene(), scene.time());
+    studio::fillWeights(posed);
+    studio::writePng(options.png, drawVpls(gbuffer, posed));
 }
 
 studio::Placement placeWithProgress(const studio::RayScene& scene, studio::PlacementOptions options,

@@ -155,22 +155,6 @@ glm::mat4 poseOf(const Scene& scene, const std::string& object, float time) {
                                          scene.name, names.empty() ? "(it has none)" : names));
 }
 
-// Of VPLs in metres: a disc that reaches half-way to the nearest other one (docs/vpls-file.md).
-void fillWeights(StaticVpls& all) {
-    for (std::size_t i = 0; i < all.vpls.size(); ++i) {
-        if (all.vpls[i].weight) continue;
-        if (all.vpls.size() < 2)
-            throw std::runtime_error(
-                "static VPLs: vpls[0].weight: expected a weight, or another VPL to take it from");
-        double nearest2 = std::numeric_limits<double>::infinity();
-        for (std::size_t j = 0; j < all.vpls.size(); ++j) {
-            const glm::dvec3 way = glm::dvec3(all.vpls[j].position) - glm::dvec3(all.vpls[i].position);
-            if (j != i) nearest2 = std::min(nearest2, glm::dot(way, way));
-        }
-        all.vpls[i].weight = float(0.25 * double(kPi) * nearest2 / double(all.areaPerWeight));
-    }
-}
-
 }  // namespace
 
 StaticVpls readStaticVpls(const std::string& path) {
@@ -218,8 +202,22 @@ StaticVpls posedVpls(const StaticVpls& all, const Scene& scene, float time) {
             glm::vec3(poseOf(scene, blocker.object, time) * glm::vec4(blocker.center, 1.0f));
         blocker.object.clear();
     }
-    fillWeights(posed);
     return posed;
+}
+
+void fillWeights(StaticVpls& all) {
+    for (std::size_t i = 0; i < all.vpls.size(); ++i) {
+        if (all.vpls[i].weight) continue;
+        if (all.vpls.size() < 2)
+            throw std::runtime_error(
+                "static VPLs: vpls[0].weight: expected a weight, or another VPL to take it from");
+        double nearest2 = std::numeric_limits<double>::infinity();
+        for (std::size_t j = 0; j < all.vpls.size(); ++j) {
+            const glm::dvec3 way = glm::dvec3(all.vpls[j].position) - glm::dvec3(all.vpls[i].position);
+            if (j != i) nearest2 = std::min(nearest2, glm::dot(way, way));
+        }
+        all.vpls[i].weight = float(0.25 * double(kPi) * nearest2 / double(all.areaPerWeight));
+    }
 }
 
 }  // namespace studio

@@ -43,9 +43,12 @@ constexpr std::size_t kMostStaticVpls = 4096, kMostStaticBlockers = 1024;
 StaticVpls readStaticVpls(const std::string& path);
 void writeStaticVpls(const std::string& path, const StaticVpls& vpls);
 
-// In metres, and in the world where the scene's objects are at this time; `object` is empty then, and every
-// VPL has a weight: one without stands for a disc that reaches half-way to the nearest other VPL. Errors:
-// std::runtime_error naming an object that the scene has not, or a VPL without weight that has no other.
+// In metres, and in the world where the scene's objects are at this time; `object` is empty then. An object that
+// the scene has not: std::runtime_error naming it and those that there are.
 StaticVpls posedVpls(const StaticVpls& vpls, const Scene& scene, float time);
+
+// Gives each of posedVpls without a weight that of a disc that reaches half-way to the nearest other VPL.
+// std::runtime_error where there is no other.
+void fillWeights(StaticVpls& posed);
 
 }  // namespace studio

@@ -91,10 +91,7 @@ std::vector<SurfaceHit> Placer::findHits() {
 }
 
 std::vector<VplPlace> Placer::earlierPlaces() const {
-    // Where they are at this time; weights are not needed for that.
-    StaticVpls weighted = earlier_;
-    for (StaticVpl& vpl : weighted.vpls) vpl.weight = vpl.weight.value_or(0.0f);
-    const StaticVpls world = posedVpls(weighted, scene_.scene(), scene_.time());
+    const StaticVpls world = posedVpls(earlier_, scene_.scene(), scene_.time());
     std::vector<VplPlace> places;
     for (std::size_t i = 0; i < world.vpls.size(); ++i) {
         const StaticVpl& v = world.vpls[i];

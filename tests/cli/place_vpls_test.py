@@ -87,7 +87,10 @@ class PlaceVpls(CommandLine):
         # Once more: the same bytes. Another seed: others.
         self.place("cornell", "b.json", *QUICK)
         self.place("cornell", "c.json", *QUICK, "--seed", "2")
-        texts = [open(self.path(name), encoding="utf-8").read() for name in ("a.json", "b.json", "c.json")]
+        texts = []
+        for name in ("a.json", "b.json", "c.json"):
+            with open(self.path(name), encoding="utf-8") as file:
+                texts.append(file.read())
         self.assertEqual(texts[0], texts[1])
         self.assertNotEqual(texts[0], texts[2])
 

@@ -166,7 +166,9 @@ TEST_CASE("units and automatic weights: inches, and discs that reach half-way to
     }
     all.vpls[0].weight = 3.0f;
     all.blockers.push_back({{10, 0, 0}, 5.0f, "", ""});
-    const StaticVpls posed = posedVpls(all, Scene{}, 0.0f);
+    StaticVpls posed = posedVpls(all, Scene{}, 0.0f);
+    CHECK_FALSE(posed.vpls[1].weight.has_value());  // a technique may have its own way
+    fillWeights(posed);
     CHECK(posed.metresPerUnit == 1.0f);
     CHECK(double(posed.areaPerWeight) == Approx(2.0 * 0.0254 * 0.0254));
     CHECK(posed.vpls[0].weight == 3.0f);
@@ -178,7 +180,7 @@ TEST_CASE("units and automatic weights: inches, and discs that reach half-way to
 
     all.vpls.resize(1);
     all.vpls[0].weight.reset();
-    CHECK_THROWS_WITH(posedVpls(all, Scene{}, 0.0f), Catch::Contains("weight"));
+    CHECK_THROWS_WITH(fillWeights(all), Catch::Contains("weight"));
 }
 
 TEST_CASE("VPLs and blockers of an object move with it") {
