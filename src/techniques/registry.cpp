@@ -6,6 +6,7 @@
 #include "techniques/rsm.h"
 #include "techniques/screen_space.h"
 #include "techniques/ssvp.h"
+#include "techniques/static_vpl.h"
 #include "techniques/technique.h"
 
 namespace lightwell {
@@ -18,6 +19,7 @@ const std::vector<TechniqueEntry>& techniqueEntries() {
         horizonEntry(),
         aoEntry(),
         lpvEntry(),
+        staticVplEntry(),
         fallbackEntry(),
     };
     return entries;
