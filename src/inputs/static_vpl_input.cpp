@@ -80,6 +80,8 @@ void StaticVplInput::measure(const LWFrame& frame) {
 void StaticVplInput::packPlaces(const LWFrame& frame, float unitArea) {
     float* places = packed_.data() + frame_.places;
     const auto stride = std::size_t(frame_.stride);
+    // Padding has an area of its own: one by distance would be whatever memory holds, and no number times no light is no number.
+    std::fill(places + LW_PLACE_AREA * stride + frame.staticVplCount, places + (LW_PLACE_AREA + 1) * stride, 1.0f);
     for (std::size_t i = 0; i < frame.staticVplCount; ++i) {
         const LWStaticVpl& vpl = frame.staticVpls[i];
         const glm::dvec3 normal = glm::normalize(glm::dvec3(vpl.normal[0], vpl.normal[1], vpl.normal[2]));

@@ -249,7 +249,7 @@ TEST_CASE("phantoms: no hit, no light; without aim the static VPLs are lit; smoo
     StaticRig rig(16, desc);
     StaticScene scene;
     scene.vpls = roomOfPlaces(30, 9);
-    scene.lights = {torch({2, 2, 2.5}, {0, -1, 0})};
+    scene.lights = {spotLight({2, 2, 2.5}, {0, -1, 0}, {20, 20, 20}, 1.0, 1.4)};
     rig.update(scene);
     CHECK(rig.technique.count("phantom_vpls") == 0);
     CHECK(rig.technique.count("kept_vpls") > 0);

@@ -146,26 +146,23 @@ TEST_CASE("blockers dim softly what passes them", "[static_vpl]") {
 
 namespace {
 
-// A room behind a wall in the plane z = 0 with a doorway, x from 0 to 1; the sun comes along +z. The wall's and the door's spheres
-// overlap, as an author lays them.
+// A room behind a wall in the plane z = 0 with a doorway, x from 0 to 1; the sun comes along +z. The wall's and the door's spheres lie
+// half their radius apart: a path meets a dozen, which let e^-12 through on average (the mean of ln d^2/r^2 over a disc is -1).
 StaticScene doorway(double angle) {
     StaticScene scene;
     for (int y = 0; y < 3; ++y)
-        for (int x = 0; x < 5; ++x) scene.vpls.push_back(staticVpl({-1.0 + 0.75 * x, 0.3 + 0.7 * y, 4.0}, {0, 0, -1}, 0.5));
-    for (int x = 0; x < 5; ++x) scene.vpls.push_back(staticVpl({-1.0 + 0.75 * x, 0, 2.0}, {0, 1, -1e-3}, 0.5));
+        for (int x = 0; x < 15; ++x) scene.vpls.push_back(staticVpl({-1.0 + 0.2 * x, 0.3 + 0.5 * y, 4.0}, {0, 0, -1}, 0.2));
+    for (int x = 0; x < 15; ++x) scene.vpls.push_back(staticVpl({-1.0 + 0.2 * x, 0, 2.0}, {0, 1, -1e-3}, 0.2));
     // A place outside, which is the strongest when the door is shut.
     scene.vpls.push_back(staticVpl({0.5, 1, -3}, {0, 0, -1}, 0.5));
     scene.lights = {sunLight({0, -0.1, 1}, {10, 10, 10})};
-    for (int y = -1; y < 6; ++y)
-        for (int x = 0; x < 4; ++x) {
-            scene.block({-0.35 - 0.5 * x, 0.5 * y, 0}, 0.5);
-            scene.block({1.35 + 0.5 * x, 0.5 * y, 0}, 0.5);
+    for (int y = -2; y < 16; ++y) {
+        for (int x = 0; x < 9; ++x) {
+            scene.block({-0.25 - 0.15 * x, 0.15 * y, 0}, 0.3);
+            scene.block({1.25 + 0.15 * x, 0.15 * y, 0}, 0.3);
         }
-    for (int y = -1; y < 12; ++y)
-        for (int s = 0; s < 7; ++s) {
-            const double along = 0.0 + s / 6.0;
-            scene.block({along * std::cos(angle), 0.25 * y, along * std::sin(angle)}, 0.35);
-        }
+        for (int s = 0; s < 8; ++s) scene.block({s / 7.0 * std::cos(angle), 0.15 * y, s / 7.0 * std::sin(angle)}, 0.3);
+    }
     return scene;
 }
 
@@ -189,7 +186,8 @@ TEST_CASE("a shut door leaves a room dark; light grows as it opens", "[static_vp
     CAPTURE(total);
     CHECK(total.back() > 0.5);
     CHECK(total.front() <= 1e-3 * total.back());
-    for (std::size_t i = 1; i < total.size(); ++i) CHECK(total[i] >= total[i - 1]);
+    // But for what is as good as nothing: a door that swings brings its spheres closer together before it lets light past.
+    for (std::size_t i = 1; i < total.size(); ++i) CHECK(total[i] >= total[i - 1] - 1e-3 * total.back());
 }
 
 TEST_CASE("masks choose which lights light which places", "[static_vpl]") {
