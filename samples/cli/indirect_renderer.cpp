@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "cli.h"
+#include "host_techniques.h"
 #include "library_renderer.h"
 #include "open_device.h"
-#include "rival_renderer.h"
 
 namespace cli {
 namespace {
@@ -55,7 +55,7 @@ std::unique_ptr<IndirectRenderer> makeRenderer(const Parameters& parameters, con
 
 std::unique_ptr<IndirectRenderer> makeRenderer(const Parameters& parameters, const RenderInputs& inputs,
                                                const lightwell::Device* device) {
-    if (!parameters.needsDevice()) return makeRival(parameters, inputs);
+    if (const HostTechnique* own = findHostTechnique(parameters.technique())) return own->make(parameters, inputs);
     if (device == nullptr)
         throw std::runtime_error("technique " + parameters.technique() +
                                  ": expected a device, got none");

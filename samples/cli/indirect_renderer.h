@@ -1,5 +1,5 @@
 // Whatever makes indirect light of a view, behind one interface: the library's techniques on a device
-// and the host's own (the rival). Commands, charts and sequences drive either without knowing which it
+// and the host's own (host_techniques.h). Commands, charts and sequences drive either without knowing which it
 // is.
 //
 //     Parameters parameters("rsm");  parameters.set("vpls=1024");

@@ -8,8 +8,8 @@
 #include <stdexcept>
 
 #include "cli.h"
+#include "host_techniques.h"
 #include "open_device.h"
-#include "rival_renderer.h"
 
 namespace cli {
 namespace {
@@ -75,7 +75,7 @@ std::vector<LWTechniqueInfo> describeTechniques() {
     std::vector<LWTechniqueInfo> infos(lwCountTechniques(), lightwell::make<LWTechniqueInfo>());
     for (std::size_t i = 0; i < infos.size(); ++i)
         lightwell::check(lwDescribeTechnique(std::uint32_t(i), &infos[i]));
-    infos.push_back(rivalInfo());
+    for (const HostTechnique& technique : hostTechniques()) infos.push_back(*technique.info);
     return infos;
 }
 
@@ -110,7 +110,7 @@ Parameters::Parameters(const std::string& technique) : technique_(technique) {
 }
 
 bool Parameters::needsDevice() const {
-    return technique_ != rivalInfo().name;
+    return findHostTechnique(technique_) == nullptr;
 }
 
 const LWParameter* Parameters::find(const std::string& name) const {

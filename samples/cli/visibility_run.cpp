@@ -25,7 +25,7 @@ using Json = nlohmann::ordered_json;
 // technique has.
 constexpr std::pair<const char*, const char*> kFixed[] = {
     {"resolution", "full"}, {"interleave", "1"}, {"bounces", "1"}};
-constexpr std::uint32_t kVplChannels = 10, kClusterChannels = 16;
+constexpr std::uint32_t kClusterChannels = 16;
 constexpr double kPixelBytes = 1500.0;
 
 DebugPlanes requirePlanes(const IndirectRenderer& renderer, const char* name, std::uint32_t channels) {

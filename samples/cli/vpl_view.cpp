@@ -5,17 +5,12 @@
 #include <stdexcept>
 
 namespace cli {
-namespace {
-
-constexpr std::uint32_t kChannels = 10;  // position, normal, flux, area
-
-}  // namespace
 
 std::vector<studio::VplRecord> readVplView(const IndirectRenderer& renderer) {
     const DebugPlanes planes = renderer.readDebugView(kVplView);
-    if (planes.channels != kChannels)
+    if (planes.channels != kVplChannels)
         throw std::runtime_error(fmt::format("debug view {}: expected {} channels, got {}", kVplView,
-                                             kChannels, planes.channels));
+                                             kVplChannels, planes.channels));
     std::vector<studio::VplRecord> vpls;
     for (std::size_t i = 0; i < std::size_t(planes.width) * planes.height; ++i) {
         const auto vector = [&](std::uint32_t first) {

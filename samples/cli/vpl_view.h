@@ -10,6 +10,7 @@ namespace cli {
 
 // The name of the view, by which an instrument knows a VPL technique.
 constexpr const char* kVplView = "vpls";
+constexpr std::uint32_t kVplChannels = 10;  // position, normal, flux, area
 
 // Those that only fill the last group carry no flux and are left out. UsageError when the technique has
 // no such view.

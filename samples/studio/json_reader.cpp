@@ -1,6 +1,7 @@
 // See json_reader.h.
 #include "json_reader.h"
 
+#include <charconv>
 #include <cmath>
 #include <stdexcept>
 
@@ -49,6 +50,23 @@ int JsonValue::integer(int lowest, int highest) const {
     if (!json_->is_number_integer() || json_->get<double>() < lowest || json_->get<double>() > highest)
         fail(fmt::format("a whole number {} .. {}", lowest, highest));
     return json_->get<int>();
+}
+
+std::uint32_t JsonValue::bits() const {
+    constexpr const char* kExpected = "32 bits: a whole number 0 .. 4294967295, or a text as \"0xff\"";
+    if (json_->is_number_unsigned()) {
+        const std::uint64_t value = json_->get<std::uint64_t>();
+        if (value > 0xffffffffu) fail(kExpected);
+        return std::uint32_t(value);
+    }
+    if (!json_->is_string()) fail(kExpected);
+    const std::string& text = json_->get_ref<const std::string&>();
+    std::uint32_t value = 0;
+    if (text.compare(0, 2, "0x") != 0) fail(kExpected);
+    const char* const end = text.data() + text.size();
+    const auto read = std::from_chars(text.data() + 2, end, value, 16);
+    if (read.ec != std::errc() || read.ptr != end) fail(kExpected);
+    return value;
 }
 
 std::string JsonValue::text() const {

@@ -2,6 +2,7 @@
 // keys that nobody asked for are errors.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <set>
 #include <string>
@@ -28,6 +29,7 @@ public:
     float number(float above, float upTo) const;  // in (above, upTo]
     bool boolean() const;
     int integer(int lowest, int highest) const;
+    std::uint32_t bits() const;  // a whole number of 32 bits, or the same as text, "0xff"
     std::string text() const;
     glm::vec3 vector() const;     // three numbers
     glm::vec3 direction() const;  // three numbers, not all zero; returned as unit vector
