@@ -40,10 +40,12 @@ void checkFinite(const float* values, int count, const std::string& name, bool n
                  notNegative ? " of 0 or more" : "", ", got ", values[i]);
 }
 
-void checkReceivers(std::uint32_t receivers, const std::string& name) {
+// Names of elements are made only where one is refused: thousands of strings take longer than a frame's light.
+template <class Name>
+void checkReceivers(std::uint32_t receivers, Name name) {
     constexpr std::uint32_t kAll = LW_RECEIVERS_UNBAKED | LW_RECEIVERS_BAKED;
     if (receivers > kAll)
-        fail(LW_ERROR_INVALID_ARGUMENT, name, ".receivers: expected bits of LWReceivers (0 .. ", kAll, "), got ", receivers);
+        fail(LW_ERROR_INVALID_ARGUMENT, name(), ".receivers: expected bits of LWReceivers (0 .. ", kAll, "), got ", receivers);
 }
 
 void checkLight(const LWLight& light, const std::string& name) {
@@ -63,30 +65,33 @@ void checkLight(const LWLight& light, const std::string& name) {
         if (!(light.profile[i] >= 0.0f && light.profile[i] <= 1e6f))
             fail(LW_ERROR_INVALID_ARGUMENT, name, ".profile[", i, "]: expected 0 .. 1e6, got ", light.profile[i]);
     if (light.hit) checkFinite(light.hit, 3, name + ".hit");
-    checkReceivers(light.receivers, name);
+    checkReceivers(light.receivers, [&] { return name; });
 }
 
-void checkPosition(const float* p, const std::string& name) {
+template <class Name>
+void checkPosition(const float* p, Name name) {
     if (!(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] <= LW_LARGEST_DISTANCE * LW_LARGEST_DISTANCE))
-        fail(LW_ERROR_INVALID_ARGUMENT, name, ": expected at most ", LW_LARGEST_DISTANCE, " from the origin, got ", p[0], " ", p[1],
+        fail(LW_ERROR_INVALID_ARGUMENT, name(), ".position: expected at most ", LW_LARGEST_DISTANCE, " from the origin, got ", p[0], " ", p[1],
              " ", p[2]);
 }
 
-void checkUnit(const float* n, const std::string& name) {
+template <class Name>
+void checkUnit(const float* n, Name name) {
     const float squared = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
     // Two per cent: normals that a host stored in 8 bits per component.
     if (!(squared > 0.98f * 0.98f && squared < 1.02f * 1.02f))
-        fail(LW_ERROR_INVALID_ARGUMENT, name, ": expected unit length, got ", std::sqrt(squared));
+        fail(LW_ERROR_INVALID_ARGUMENT, name(), ".normal: expected unit length, got ", std::sqrt(squared));
 }
 
-void checkStaticVpl(const LWStaticVpl& vpl, const std::string& name) {
-    checkPosition(vpl.position, name + ".position");
-    checkUnit(vpl.normal, name + ".normal");
+void checkStaticVpl(const LWStaticVpl& vpl, std::uint32_t index) {
+    const auto name = [index] { return "frame.staticVpls[" + std::to_string(index) + "]"; };
+    checkPosition(vpl.position, name);
+    checkUnit(vpl.normal, name);
     if (!(vpl.weight >= 0.0f && vpl.weight <= kMaxArea))
-        fail(LW_ERROR_INVALID_ARGUMENT, name, ".weight: expected 0 .. ", kMaxArea, ", got ", vpl.weight);
+        fail(LW_ERROR_INVALID_ARGUMENT, name(), ".weight: expected 0 .. ", kMaxArea, ", got ", vpl.weight);
     for (const float part : vpl.reflectance)
         if (!(part >= 0.0f && part <= 1.0f))
-            fail(LW_ERROR_INVALID_ARGUMENT, name, ".reflectance: expected 0 .. 1, got ", part);
+            fail(LW_ERROR_INVALID_ARGUMENT, name(), ".reflectance: expected 0 .. 1, got ", part);
     checkReceivers(vpl.receivers, name);
 }
 
@@ -158,19 +163,22 @@ void FrameArgument::checkNumbers() const {
     if (frame_.focus) checkFinite(frame_.focus, 3, "frame.focus");
     for (std::uint32_t i = 0; i < frame_.vplCount; ++i) {
         const LWVpl& vpl = frame_.vpls[i];
-        const std::string name = "frame.vpls[" + std::to_string(i) + "]";
-        checkPosition(vpl.position, name + ".position");
+        const auto name = [i] { return "frame.vpls[" + std::to_string(i) + "]"; };
+        checkPosition(vpl.position, name);
         if (!(vpl.area >= 0.0f && std::isfinite(vpl.area)))
-            fail(LW_ERROR_INVALID_ARGUMENT, name, ".area: expected a finite number of 0 or more, got ", vpl.area);
+            fail(LW_ERROR_INVALID_ARGUMENT, name(), ".area: expected a finite number of 0 or more, got ", vpl.area);
         for (const float flux : vpl.flux)
             if (!(flux >= 0.0f && flux <= LW_LARGEST_FLUX))
-                fail(LW_ERROR_INVALID_ARGUMENT, name, ".flux: expected 0 .. ", LW_LARGEST_FLUX, ", got ", flux);
-        checkUnit(vpl.normal, name + ".normal");
+                fail(LW_ERROR_INVALID_ARGUMENT, name(), ".flux: expected 0 .. ", LW_LARGEST_FLUX, ", got ", flux);
+        checkUnit(vpl.normal, name);
     }
     for (std::uint32_t i = 0; i < frame_.staticVplCount; ++i)
-        checkStaticVpl(frame_.staticVpls[i], "frame.staticVpls[" + std::to_string(i) + "]");
+        checkStaticVpl(frame_.staticVpls[i], i);
     for (std::uint32_t i = 0; i < frame_.blockerCount; ++i) {
         const LWBlocker& blocker = frame_.blockers[i];
+        if (std::isfinite(blocker.center[0]) && std::isfinite(blocker.center[1]) && std::isfinite(blocker.center[2]) &&
+            blocker.radius >= 0.0f && std::isfinite(blocker.radius))
+            continue;
         checkFinite(blocker.center, 3, "frame.blockers[" + std::to_string(i) + "].center");
         checkFinite(&blocker.radius, 1, "frame.blockers[" + std::to_string(i) + "].radius", true);
     }
