@@ -243,3 +243,39 @@ TEST_CASE("static_vpl: memory is as estimated", "[static_vpl]") {
     const std::uint64_t unpacked = std::uint64_t(6 + 3 + 1) * 4 * 48 * kHeight;
     CHECK(held + unpacked >= most);
 }
+
+TEST_CASE("static_vpl: no number that is accepted puts anything but numbers into a picture", "[static_vpl]") {
+    LWStaticVplDesc desc = staticDesc();
+    desc.bounces = 2;
+    desc.automaticWeights = GENERATE(0u, 1u);
+    desc.variant = GENERATE(LW_STATIC_VPL_STATIC, LW_STATIC_VPL_PHANTOM);
+    StaticRig rig(16, desc);
+    WallAndCeiling view(kWidth, kHeight);
+    TestView target(rig.device, kWidth, kHeight);
+    const float far[3] = {3e38f, -3e38f, 1.0f}, near[3] = {0, 0, 0};
+    for (const double weight : {0.0, 1e-38, 1.0, 1e18})
+        for (const double bright : {0.0, 1e-38, 3e38})
+            for (const double place : {0.0, 1e-30, 1e8})
+                for (const float* hit : {far, near}) {
+                    CAPTURE(weight, bright, place, hit[0]);
+                    StaticScene scene;
+                    scene.vpls = {staticVpl({0, 0, 0.5}, {0, 1, 0}, weight, glm::dvec3(1.0)), staticVpl({place, place, place}, {0, -1, 0}, weight, {0, 1, 1}),
+                                  staticVpl({0, 0, 0.5}, {0, 1, 0}, weight)};
+                    scene.lights = {pointLight({0, 0, 0.5}, glm::dvec3(bright)), sunLight({0, 0, 0}, glm::dvec3(bright)),
+                                    spotLight({0, 1, 0.5}, {0, -1e-30, 0}, glm::dvec3(bright), 0.0, 0.0), sunLight({0, -1, 0}, glm::dvec3(bright)),
+                                    spotLight({3e38, 3e38, 3e38}, {3e38, 3e38, 3e38}, glm::dvec3(bright), 0.1, 0.4)};
+                    for (int i = 2; i < 5; i += 2) scene.lights[std::size_t(i)].hit = hit;
+                    scene.block({0, 0.5, 0.5}, 3e38);
+                    scene.block({0, 0.5, 0.5}, 1e-38);
+                    scene.block({3e38, -3e38, 3e38}, 1.0);
+                    rig.update(scene);
+                    bool finite = true;
+                    for (const float e : rig.technique.render(target, view.gbuffer)) finite = finite && std::isfinite(e) && e >= 0.0f;
+                    CHECK(finite);
+                    finite = true;
+                    for (const LWListedLight& light : rig.lights())
+                        for (const float* values : {light.position, light.axis, light.flux, light.spotIntensity})
+                            for (int a = 0; a < 3; ++a) finite = finite && std::isfinite(values[a]);
+                    CHECK(finite);
+                }
+}
