@@ -1,5 +1,12 @@
 #include "frame_vpls.h"
 
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <stdexcept>
+
+#include "vpl_placement.h"
+
 namespace cli {
 namespace {
 
@@ -24,6 +31,18 @@ bool describe(const studio::StaticVpl& from, float areaPerWeight, LWStaticVpl& t
 }  // namespace
 
 FrameVpls::FrameVpls(const std::string& file) : source_(studio::readStaticVpls(file)) {}
+
+FrameVpls::FrameVpls(const RenderInputs& inputs) {
+    studio::PlacementOptions options;
+    for (const studio::Light& light : inputs.scene().lights())
+        if (light.kind != studio::LightKind::Sun) options.from.push_back(light.position);
+    if (options.from.empty()) options.from.push_back(inputs.gbuffer().camera.position);
+    try {
+        source_ = studio::placeVpls(inputs.scene(), options, {}).vpls;
+    } catch (const std::runtime_error& error) {
+        fmt::print(stderr, "static_vpl: no VPLs without --set vpls_file=FILE, as none can be placed here: {}\n", error.what());
+    }
+}
 
 void FrameVpls::fill(const RenderInputs& inputs, LWFrame& frame) {
     const studio::StaticVpls posed = studio::posedVpls(source_, inputs.scene().scene(), inputs.time());

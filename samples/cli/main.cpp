@@ -11,6 +11,7 @@
 
 #include "cli.h"
 #include "interrupt.h"
+#include "place_vpls.h"
 
 namespace {
 
@@ -81,6 +82,7 @@ int main(int argc, char** argv) {
         cli::addVisibility(app);
         cli::addProbes(app);
         cli::addStability(app);
+        cli::addPlaceVpls(app);
         cli::addCheck(app);
         return parse(app, argc, argv);
     } catch (const cli::UsageError& error) {

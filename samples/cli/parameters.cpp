@@ -75,6 +75,10 @@ std::string defaultText(const LWParameter& parameter) {
 
 }  // namespace
 
+bool Parameters::takesVpls() const {
+    return cli::takesVpls(technique_) || std::any_of(parts_.begin(), parts_.end(), [](const auto& part) { return part.second.takesVpls(); });
+}
+
 std::string Parameters::vplsFile() const {
     if (!vplsFile_.empty()) return vplsFile_;
     for (const auto& [name, part] : parts_)
@@ -101,7 +105,7 @@ std::string describeParameters() {
     for (const LWTechniqueInfo& info : describeTechniques()) {
         text += fmt::format("  {}: {}\n", info.name, info.summary);
         if (takesVpls(info.name))
-            text += fmt::format("    {}=: a file; static VPLs and blockers, see place-vpls and docs/vpls-file.md\n", kVplsFile);
+            text += fmt::format("    {}=: a file; static VPLs and blockers (docs/vpls-file.md); without it placed as by place-vpls\n", kVplsFile);
         for (std::uint32_t i = 0; i < info.parameterCount; ++i) {
             const LWParameter& parameter = info.parameters[i];
             text += fmt::format("    {}={}: {}; {}\n", parameter.name, defaultText(parameter),
@@ -139,7 +143,7 @@ void Parameters::set(const std::string& assignment) {
         part->second.set(assignment.substr(dot + 1));
         return;
     }
-    if (takesVpls(technique_) && name == kVplsFile) {
+    if (cli::takesVpls(technique_) && name == kVplsFile) {
         if (value.empty()) throw UsageError("--set vpls_file: expected a file's name, got none");
         vplsFile_ = value;
         return;
@@ -147,7 +151,7 @@ void Parameters::set(const std::string& assignment) {
     const LWParameter* parameter = find(name);
     if (parameter == nullptr) {
         std::vector<std::string> names;
-        if (takesVpls(technique_)) names.emplace_back(kVplsFile);
+        if (cli::takesVpls(technique_)) names.emplace_back(kVplsFile);
         for (std::uint32_t i = 0; i < info_.parameterCount; ++i)
             names.emplace_back(info_.parameters[i].name);
         for (const auto& [part, parameters] : parts_) names.push_back(part + ".KEY");

@@ -37,6 +37,7 @@ public:
     bool hasAnywhere(const std::string& name) const;
     // Of a technique of the host's own.
     const void* descriptor() const { return bytes_.data(); }
+    bool takesVpls() const;  // it, or a part, is static_vpl
     // static_vpl: the file of VPLs and blockers (--set vpls_file=FILE), its own or of the first part that has one; "": none.
     std::string vplsFile() const;
     // Every parameter as it stands, in the table's order; those of a technique that is a parameter behind it.

@@ -21,12 +21,6 @@ constexpr int kVersion = 1;
 // few roundings of a float's 6e-8 stay far below it.
 constexpr float kUnitTolerance = 1e-6f;
 
-float readAtLeastZero(const JsonValue& value) {
-    const float number = value.number();
-    if (number < 0.0f) value.fail("a number of at least 0");
-    return number;
-}
-
 float readPositive(const JsonValue& value) {
     const float number = value.number();
     if (!(number > 0.0f)) value.fail("a number above 0");
@@ -49,6 +43,13 @@ std::string readText(JsonObject& o, const char* key) {
     return found ? found->text() : "";
 }
 
+// 0 would be a VPL for nobody.
+std::uint32_t readMask(const JsonValue& value) {
+    const std::uint32_t mask = value.bits();
+    if (mask == 0) value.fail("at least one bit");
+    return mask;
+}
+
 StaticVpl readVpl(const JsonValue& value) {
     JsonObject o = value.object();
     StaticVpl vpl;
@@ -57,9 +58,9 @@ StaticVpl readVpl(const JsonValue& value) {
     vpl.position = o.need("position", "three numbers").vector();
     vpl.normal = readNormal(o.need("normal", "a direction"));
     vpl.reflectance = readReflectance(o.need("reflectance", "reflectances 0 .. 1"));
-    if (const auto weight = o.find("weight")) vpl.weight = readAtLeastZero(*weight);
-    if (const auto mask = o.find("light_mask")) vpl.lightMask = mask->bits();
-    if (const auto mask = o.find("receiver_mask")) vpl.receiverMask = mask->bits();
+    if (const auto weight = o.find("weight")) vpl.weight = readPositive(*weight);
+    if (const auto mask = o.find("light_mask")) vpl.lightMask = readMask(*mask);
+    if (const auto mask = o.find("receiver_mask")) vpl.receiverMask = readMask(*mask);
     if (const auto population = o.find("population")) vpl.population = population->bits();
     o.finish();
     return vpl;

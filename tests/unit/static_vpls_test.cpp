@@ -53,7 +53,7 @@ StaticVpls someVpls(int count) {
         v.normal = glm::normalize(glm::vec3(anyFloat(sampler, -2, 1), anyFloat(sampler, -9, 1), 0.3f));
         v.reflectance = {sampler.next().x, sampler.next().y, i == 0 ? 1.0f : 0.0f};
         if (i % 3 != 0) v.weight = std::abs(anyFloat(sampler, -30, 59));
-        if (i % 2 != 0) v.lightMask = 0x80000001u, v.receiverMask = 0u;
+        if (i % 2 != 0) v.lightMask = 0x80000001u, v.receiverMask = 2u;
         v.population = std::uint32_t(i % 5);
         if (i % 4 == 0) v.name = "a \"name\" with \\ and \xc3\xa4";
         if (i % 7 == 0) v.object = "door";
@@ -99,7 +99,7 @@ TEST_CASE("static VPLs read back bit for bit") {
 
 TEST_CASE("a hand's file: defaults, one reflectance for all, masks in both forms, any length of normal") {
     const File file;
-    file.write(std::string(kHead) + kVpl + R"(, "light_mask": 5, "receiver_mask": "0xFFFFFFFE", "weight": 0}],)"
+    file.write(std::string(kHead) + kVpl + R"(, "light_mask": 5, "receiver_mask": "0xFFFFFFFE", "weight": 0.25}],)"
                                     R"("blockers": [{"center": [1, 1, 1], "radius": 0.5}]})");
     const StaticVpls all = readStaticVpls(file.name());
     REQUIRE(all.vpls.size() == 1);
@@ -107,7 +107,7 @@ TEST_CASE("a hand's file: defaults, one reflectance for all, masks in both forms
     CHECK(all.vpls[0].reflectance == glm::vec3(0.5f));
     CHECK(all.vpls[0].lightMask == 5u);
     CHECK(all.vpls[0].receiverMask == 0xfffffffeu);
-    CHECK(all.vpls[0].weight == 0.0f);
+    CHECK(all.vpls[0].weight == 0.25f);
     CHECK(all.vpls[0].population == 0u);
     CHECK(all.metresPerUnit == 1.0f);
     CHECK(all.areaPerWeight == 1.0f);
@@ -136,7 +136,9 @@ TEST_CASE("what is wrong with a file of static VPLs is named") {
             "vpls[0].normal", "a direction");
     refused(std::string(kHead) + R"({"position": [0, 1, 0], "normal": [0, 1, 0], "reflectance": [0, 1.5, 0]}]})",
             "vpls[0].reflectance", "reflectances 0 .. 1");
-    ofVpl(R"(, "weight": -1)", ".weight", "a number of at least 0, got -1");
+    ofVpl(R"(, "weight": 0)", ".weight", "a number above 0, got 0");
+    ofVpl(R"(, "light_mask": 0)", ".light_mask", "at least one bit, got 0");
+    ofVpl(R"(, "receiver_mask": "0x0")", ".receiver_mask", "at least one bit");
     ofVpl(R"(, "light_mask": 4294967296)", ".light_mask", "32 bits");
     ofVpl(R"(, "light_mask": "0x100000000")", ".light_mask", "32 bits");
     ofVpl(R"(, "light_mask": "12")", ".light_mask", "32 bits");

@@ -1,0 +1,12 @@
+// The command `place-vpls`.
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace cli {
+
+void addPlaceVpls(CLI::App& app);
+
+}  // namespace cli
