@@ -1,12 +1,13 @@
-// VPLs as no more than so many lights: each light stands for VPLs near it that face the same way, k-means by flux from where the
-// frame before left it (Lloyd's iteration, one step a frame). All flux is kept; a light that has lost its VPLs begins anew
-// at the VPL that is worst represented, and no other light's number changes.
+// VPLs as no more than so many lights: each light stands for VPLs near it that face the same way, k-means by flux
+// from where the frame before left it (Lloyd's iteration, one step a frame). All flux is kept; a light that has lost
+// its VPLs begins anew at the VPL that is worst represented, and no other light's number changes.
 #include "shared/static_vpl_types.h"
 #include "shared/subset_order.h"
 #include "shared/vpl_list.h"
 
-// What facing apart counts against lying apart, as squares of shares of the scene's diagonal: perpendicular normals are as far as half of
-// it. Smaller: lights stand in the air between walls. Larger: one light for each way of facing, however far apart.
+// What facing apart counts against lying apart, as squares of shares of the scene's diagonal: perpendicular normals
+// are as far as half of it. Smaller: lights stand in the air between walls. Larger: one light for each way of facing,
+// however far apart.
 #define LW_FACING 0.125f
 
 // Closer than this, squared, two places are one: what rounding leaves of a VPL that has a light to itself.
@@ -21,8 +22,8 @@ LW_FN float apart(float4 position, float4 normal, lw_listed_centre centre, float
     return (d.x * d.x + d.y * d.y + d.z * d.z) * scale + 2.0f * LW_FACING * fmax(facing, 0.0f);
 }
 
-// One work-item = one VPL of `order.count`: its light, or -1, and what is lost by that, its flux times the squared distance. alone: 1 where
-// each can have a light of its own number.
+// One work-item = one VPL of `order.count`: its light, or -1, and what is lost by that, its flux times the squared
+// distance. alone: 1 where each can have a light of its own number.
 __kernel void light_list_assign(__global const lw_vpl* vpls, __global const lw_vpl* baked, int lists, lw_subset_order order,
                                 float scale, int alone, __global const lw_listed_centre* centres, int most, __global int* assignment,
                                 __global float* losses) {

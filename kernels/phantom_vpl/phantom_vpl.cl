@@ -1,13 +1,13 @@
-// Phantom VPLs of spot lights, and VPLs that send a second bounce (Papaioannou 2025, sections 4.3 and 4.4), with the units and errata
-// of docs/techniques/static_vpl.md.
+// Phantom VPLs of spot lights, and VPLs that send a second bounce (Papaioannou 2025, sections 4.3 and 4.4), with the
+// units and errata of docs/techniques/static_vpl.md.
 #include "shared/input_limits.h"
 #include "shared/rsm_types.h"
 #include "shared/static_vpl_emission.h"
 #include "shared/subset_order.h"
 #include "shared/vpl_list.h"
 
-// The look of the places around x, by inverse squares of their distances: as shares of the nearest one's, which stay in range
-// wherever x lies.
+// The look of the places around x, by inverse squares of their distances: as shares of the nearest one's, which stay
+// in range wherever x lies.
 LW_FN void look_at(__global const float* inputs, lw_static_frame frame, __global const float* areas, const float4 x, float eps,
                    lw_phantom_state* state) {
     __global const float* p = inputs + frame.places;
@@ -58,8 +58,8 @@ LW_FN void put(lw_vpl vpl, int receivers, int lists, int slot, __global lw_vpl* 
     if (lists > 1) baked[slot] = receivers & LW_RECEIVER_BAKED ? vpl : no_vpl();
 }
 
-// One work-item = one spot light. Its phantom is number count + item of the list, the VPL opposite follows all phantoms. `lit`:
-// planes of the places. A light whose axis meets nothing has no phantom.
+// One work-item = one spot light. Its phantom is number count + item of the list, the VPL opposite follows all
+// phantoms. `lit`: planes of the places. A light whose axis meets nothing has no phantom.
 __kernel void phantom_vpl_make(__global const float* inputs, lw_static_frame frame, __global const float* lit,
                                __global const float* texels, int4 layout, lw_phantom_options options,
                                __global lw_phantom_state* states, lw_subset_order order, __global lw_vpl* vpls, __global lw_vpl* baked) {
@@ -110,9 +110,9 @@ __kernel void phantom_vpl_make(__global const float* inputs, lw_static_frame fra
         put(second, light->receivers, options.lists, lw_subset_slot(order, frame.count + frame.phantomCount + item), vpls, baked);
 }
 
-// One work-item in all: the VPL opposite the static ones that are kept, the last of the list. Its place is their mean by
-// intensity, moved along their mean normal; sums, so that splitting VPLs changes nothing. Light from all around has no mean normal
-// (shorter than 1e-3), and no VPL lies opposite it.
+// One work-item in all: the VPL opposite the static ones that are kept, the last of the list. Its place is their mean
+// by intensity, moved along their mean normal; sums, so that splitting VPLs changes nothing. Light from all around
+// has no mean normal (shorter than 1e-3), and no VPL lies opposite it.
 __kernel void phantom_vpl_opposite(lw_static_frame frame, lw_phantom_options options, lw_subset_order order, __global lw_vpl* vpls,
                                    __global lw_vpl* baked) {
     if (get_global_id(0) != 0) return;

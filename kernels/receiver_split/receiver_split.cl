@@ -1,5 +1,6 @@
-// A view's surfaces dealt out to two images by a mask, and two images of light put together again. Each is empty (zero normals) where the
-// other has surfaces, so that neither a gather nor a filter that knows edges ever mixes them.
+// A view's surfaces dealt out to two images by a mask, and two images of light put together again. Each is empty
+// (zero normals) where the other has surfaces, so that neither a gather nor a filter that knows edges ever mixes
+// them.
 #include "shared/wide.h"
 
 // One work-item = LW_WIDTH pixels: normals where the mask is zero to `first`, elsewhere to `second`.

@@ -5,8 +5,8 @@
 #include "static_vpl_types.h"
 #include "wide.h"
 
-// Share of the intensity at this cosine to the axis. The cone as glTF's KHR_lights_punctual has it; `profile`: even steps of the
-// angle from 0 to pi, linear in between.
+// Share of the intensity at this cosine to the axis. The cone as glTF's KHR_lights_punctual has it; `profile`: even
+// steps of the angle from 0 to pi, linear in between.
 LW_FN real sent_share(__global const float* inputs, lw_static_frame frame, __global const lw_static_light* light, real cosine) {
     const real ramp = clamp(fma_(cosine, light->position.w, light->axis.w), (real)0.0f, (real)1.0f);
     real share = ramp * ramp;

@@ -1,5 +1,5 @@
-// Static VPLs as kernels and host share them: what a frame brings lies in one array of floats, so that it goes to the device in one
-// copy (at a few microseconds a command, several would cost more than all of the light).
+// Static VPLs as kernels and host share them: what a frame brings lies in one array of floats, so that it goes to the
+// device in one copy (at a few microseconds a command, several would cost more than all of the light).
 #ifndef LW_STATIC_VPL_TYPES_H
 #define LW_STATIC_VPL_TYPES_H
 
@@ -46,7 +46,8 @@ LW_SIZE_CHECK(lw_static_frame, 48);
 
 typedef struct {
     lw_float4 emitted;   // E_perp (W/m^2) or intensity (W/sr), rgb; w unused
-    lw_float4 position;  // xyz; w: scale of the cone. A light's share of its intensity is clamp(scale * cosine + offset, 0, 1)^2
+    // w: scale of the cone. A light's share of its intensity is clamp(scale * cosine + offset, 0, 1)^2.
+    lw_float4 position;
     lw_float4 axis;      // unit, the way the light travels; w: offset of the cone
     lw_int kind;         // LW_STATIC_DIRECTIONAL, LW_STATIC_PUNCTUAL
     lw_int profile, profileCount;  // first float among the profiles, 0 floats: none

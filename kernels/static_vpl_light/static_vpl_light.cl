@@ -1,13 +1,14 @@
 // Flux of static VPLs from a frame's lights (Papaioannou 2025, sections 4.1 and 4.2), with the units and errata of
-// docs/techniques/static_vpl.md: E at a place by cosine, distance, cone and profile, times soft visibility; Phi = reflectance E A.
+// docs/techniques/static_vpl.md: E at a place by cosine, distance, cone and profile, times soft visibility; Phi =
+// reflectance E A.
 #include "shared/static_vpl_emission.h"
 #include "shared/input_limits.h"
 
 // What a light sends a place may be any number a host can write; sums of 4,096 of them stay finite.
 #define LW_LARGEST_SHARE 1e34f
 
-// Soft visibility along the segment from p over d: prod min(1, (distance to the centre / r)^2). `most`: 1, or far for segments
-// that go on without end; `scale`: 1 / |d|^2.
+// Soft visibility along the segment from p over d: prod min(1, (distance to the centre / r)^2). `most`: 1, or far for
+// segments that go on without end; `scale`: 1 / |d|^2.
 LW_FN real past_blockers(__global const float* blockers, int count, const real* p, const real* d, real scale, float most) {
     real visible = (real)1.0f;
     for (int b = 0; b < count; ++b, blockers += 4) {
@@ -20,8 +21,9 @@ LW_FN real past_blockers(__global const float* blockers, int count, const real* 
     return visible;
 }
 
-// One work-item = LW_WIDTH places. `nearest`: a plane of m^2, of those without an area of their own. The strongest intensity without blockers goes to the frame's first word:
-// bits of floats above 0 are ordered as whole numbers, so that the order of work-items does not matter.
+// One work-item = LW_WIDTH places. `nearest`: a plane of m^2, of those without an area of their own. The strongest
+// intensity without blockers goes to the frame's first word: bits of floats above 0 are ordered as whole numbers, so
+// that the order of work-items does not matter.
 __kernel void static_vpl_light_update(__global float* inputs, lw_static_frame frame, __global const float* nearest,
                                       __global float* lit) {
     const int i = (int)get_global_id(0) * LW_WIDTH;

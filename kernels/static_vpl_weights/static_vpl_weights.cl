@@ -1,10 +1,10 @@
-// Areas of static VPLs that have none of their own: a disc that reaches half-way to the nearest other place (Papaioannou 2025, section 5.1:
-// pi d^2 / 4, whose discs do not overlap, not section 4.1's).
+// Areas of static VPLs that have none of their own: a disc that reaches half-way to the nearest other place
+// (Papaioannou 2025, section 5.1: pi d^2 / 4, whose discs do not overlap, not section 4.1's).
 #include "shared/static_vpl_types.h"
 #include "shared/wide.h"
 
-// One work-item = LW_WIDTH places from `first` (a multiple of 16) on, up to `end`: each against all. Every place is compared whole in
-// one frame, so that one round at rest makes all exact, wherever in it they came to rest.
+// One work-item = LW_WIDTH places from `first` (a multiple of 16) on, up to `end`: each against all. Every place is
+// compared whole in one frame, so that one round at rest makes all exact, wherever in it they came to rest.
 __kernel void static_vpl_weights_nearest(__global const float* inputs, lw_static_frame frame, int first, int end,
                                          __global float* areas) {
     const int i = first + (int)get_global_id(0) * LW_WIDTH;

@@ -40,7 +40,9 @@ FrameVpls::FrameVpls(const RenderInputs& inputs) {
     try {
         source_ = studio::placeVpls(inputs.scene(), options, {}).vpls;
     } catch (const std::runtime_error& error) {
-        fmt::print(stderr, "static_vpl: no VPLs without --set vpls_file=FILE, as none can be placed here: {}\n", error.what());
+        fmt::print(stderr,
+                   "static_vpl: no VPLs without --set vpls_file=FILE, as none can be placed here: {}\n",
+                   error.what());
     }
 }
 
@@ -49,7 +51,8 @@ void FrameVpls::fill(const RenderInputs& inputs, LWFrame& frame) {
     vpls_.clear();
     blockers_.clear();
     for (const studio::StaticVpl& vpl : posed.vpls)
-        if (LWStaticVpl described; describe(vpl, posed.areaPerWeight, described)) vpls_.push_back(described);
+        if (LWStaticVpl described; describe(vpl, posed.areaPerWeight, described))
+            vpls_.push_back(described);
     for (const studio::StaticBlocker& blocker : posed.blockers) {
         LWBlocker described{};
         copyVector(blocker.center, described.center);

@@ -16,10 +16,15 @@ namespace lightwell {
 namespace {
 
 constexpr std::uint32_t kAllReceivers = LW_RECEIVERS_UNBAKED | LW_RECEIVERS_BAKED;
-static_assert(LW_RECEIVERS_UNBAKED == LW_RECEIVER_UNBAKED && LW_RECEIVERS_BAKED == LW_RECEIVER_BAKED, "kernels take LWReceivers");
+static_assert(LW_RECEIVERS_UNBAKED == LW_RECEIVER_UNBAKED && LW_RECEIVERS_BAKED == LW_RECEIVER_BAKED,
+              "kernels take LWReceivers");
 
-std::uint32_t receiversOf(std::uint32_t given) { return given == LW_RECEIVERS_ALL ? kAllReceivers : given; }
-std::uint32_t maskOf(std::uint32_t given) { return given == 0 ? ~0u : given; }
+std::uint32_t receiversOf(std::uint32_t given) {
+    return given == LW_RECEIVERS_ALL ? kAllReceivers : given;
+}
+std::uint32_t maskOf(std::uint32_t given) {
+    return given == 0 ? ~0u : given;
+}
 
 float asFloat(std::uint32_t bits) {
     float value;
@@ -28,9 +33,13 @@ float asFloat(std::uint32_t bits) {
 }
 
 // Float numbers of the parts, each on a border of 16.
-std::uint32_t padded(std::uint64_t floats) { return paddedWidth(std::uint32_t(floats)); }
+std::uint32_t padded(std::uint64_t floats) {
+    return paddedWidth(std::uint32_t(floats));
+}
 
-std::uint32_t strideOf(std::uint32_t places) { return paddedWidth(std::max(places, 1u)); }
+std::uint32_t strideOf(std::uint32_t places) {
+    return paddedWidth(std::max(places, 1u));
+}
 
 lw_static_light lightOf(const LWLight& light) {
     lw_static_light l{};
@@ -42,7 +51,8 @@ lw_static_light lightOf(const LWLight& light) {
     double scale = 0.0, offset = 1.0;
     if (light.kind == LW_LIGHT_SPOT && length > 0.0) {
         // KHR_lights_punctual, as coneFalloff of input_light.cpp has it.
-        const double inner = std::cos(double(light.innerConeAngle)), outer = std::cos(double(light.outerConeAngle));
+        const double inner = std::cos(double(light.innerConeAngle)),
+                     outer = std::cos(double(light.outerConeAngle));
         scale = 1.0 / std::max(1e-3, inner - outer);
         offset = -outer * scale;
     }
@@ -54,14 +64,16 @@ lw_static_light lightOf(const LWLight& light) {
     return l;
 }
 
-bool hasProfile(const LWLight& light) { return light.profileCount > 0 && light.kind != LW_LIGHT_DIRECTIONAL; }
+bool hasProfile(const LWLight& light) {
+    return light.profileCount > 0 && light.kind != LW_LIGHT_DIRECTIONAL;
+}
 
 }  // namespace
 
 void StaticVplInput::check(const LWFrame& frame) {
     if (frame.blockerCount > kMostBlockers)
-        fail(LW_ERROR_INVALID_ARGUMENT, "frame.blockerCount: expected at most ", kMostBlockers, " for technique static_vpl, got ",
-             frame.blockerCount);
+        fail(LW_ERROR_INVALID_ARGUMENT, "frame.blockerCount: expected at most ", kMostBlockers,
+             " for technique static_vpl, got ", frame.blockerCount);
 }
 
 void StaticVplInput::measure(const LWFrame& frame) {
@@ -72,7 +84,8 @@ void StaticVplInput::measure(const LWFrame& frame) {
             low[a] = i ? std::min(low[a], x) : x;
             high[a] = i ? std::max(high[a], x) : x;
         }
-    const glm::dvec3 size(double(high[0]) - double(low[0]), double(high[1]) - double(low[1]), double(high[2]) - double(low[2]));
+    const glm::dvec3 size(double(high[0]) - double(low[0]), double(high[1]) - double(low[1]),
+                          double(high[2]) - double(low[2]));
     diagonal_ = glm::length(size);
     meanSide_ = (size.x + size.y + size.z) / 3.0;
 }
@@ -80,17 +93,21 @@ void StaticVplInput::measure(const LWFrame& frame) {
 void StaticVplInput::packPlaces(const LWFrame& frame, float unitArea) {
     float* places = packed_.data() + frame_.places;
     const auto stride = std::size_t(frame_.stride);
-    // Padding has an area of its own: one by distance would be whatever memory holds, and no number times no light is no number.
-    std::fill(places + LW_PLACE_AREA * stride + frame.staticVplCount, places + (LW_PLACE_AREA + 1) * stride, 1.0f);
+    // Padding has an area of its own: one by distance would be whatever memory holds, and no number
+    // times no light is no number.
+    std::fill(places + LW_PLACE_AREA * stride + frame.staticVplCount,
+              places + (LW_PLACE_AREA + 1) * stride, 1.0f);
     for (std::size_t i = 0; i < frame.staticVplCount; ++i) {
         const LWStaticVpl& vpl = frame.staticVpls[i];
-        const glm::dvec3 normal = glm::normalize(glm::dvec3(vpl.normal[0], vpl.normal[1], vpl.normal[2]));
+        const glm::dvec3 normal =
+            glm::normalize(glm::dvec3(vpl.normal[0], vpl.normal[1], vpl.normal[2]));
         for (std::size_t a = 0; a < 3; ++a) {
             places[(LW_PLACE_POSITION + a) * stride + i] = vpl.position[a];
             places[(LW_PLACE_NORMAL + a) * stride + i] = float(normal[glm::length_t(a)]);
             places[(LW_PLACE_REFLECTANCE + a) * stride + i] = vpl.reflectance[a];
         }
-        places[LW_PLACE_AREA * stride + i] = float(std::min(double(vpl.weight) * double(unitArea), 1e18));
+        places[LW_PLACE_AREA * stride + i] =
+            float(std::min(double(vpl.weight) * double(unitArea), 1e18));
         places[LW_PLACE_LIGHTS * stride + i] = asFloat(maskOf(vpl.lightMask));
         places[LW_PLACE_RECEIVERS * stride + i] = asFloat(receiversOf(vpl.receivers));
         anyAutomatic_ |= vpl.weight == 0.0f;
@@ -107,15 +124,18 @@ void StaticVplInput::packLights(const LWFrame& frame, const std::vector<lw_phant
         if (hasProfile(given)) {
             light.profile = profile;
             light.profileCount = cl_int(given.profileCount);
-            std::copy(given.profile, given.profile + given.profileCount, packed_.data() + frame_.profiles + profile);
+            std::copy(given.profile, given.profile + given.profileCount,
+                      packed_.data() + frame_.profiles + profile);
             profile += light.profileCount;
         }
         for (const lw_phantom& phantom : phantoms)
             if (std::uint32_t(phantom.light) == i) light.mask = 0;
-        std::memcpy(packed_.data() + frame_.lights + std::size_t(i) * LW_STATIC_LIGHT_FLOATS, &light, sizeof light);
+        std::memcpy(packed_.data() + frame_.lights + std::size_t(i) * LW_STATIC_LIGHT_FLOATS, &light,
+                    sizeof light);
     }
     if (!phantoms.empty())
-        std::memcpy(packed_.data() + frame_.phantoms, phantoms.data(), phantoms.size() * sizeof(lw_phantom));
+        std::memcpy(packed_.data() + frame_.phantoms, phantoms.data(),
+                    phantoms.size() * sizeof(lw_phantom));
 }
 
 void StaticVplInput::import(Executor& executor, const LWFrame& frame, float unitArea, bool automatic,
@@ -156,14 +176,16 @@ void StaticVplInput::import(Executor& executor, const LWFrame& frame, float unit
         std::copy(blocker.center, blocker.center + 3, to);
         to[3] = inverse;
     }
-    executor.writeCopy("static_vpl_input.upload", memory_, 0, packed_.size() * sizeof(float), packed_.data());
+    executor.writeCopy("static_vpl_input.upload", memory_, 0, packed_.size() * sizeof(float),
+                       packed_.data());
 }
 
 std::uint64_t StaticVplInput::estimateBytes(const FrameShape& shape, bool phantoms) {
-    const std::uint64_t floats = LW_FRAME_WORDS + padded(std::uint64_t(shape.lightCount) * LW_STATIC_LIGHT_FLOATS) +
-                                 (phantoms ? padded(std::uint64_t(shape.aimedSpots) * LW_PHANTOM_FLOATS) : 0) +
-                                 padded(std::uint64_t(shape.blockerCount) * 4) + padded(shape.profileValues) +
-                                 padded(std::uint64_t(strideOf(shape.staticVplCount)) * LW_PLACE_PLANES);
+    const std::uint64_t floats =
+        LW_FRAME_WORDS + padded(std::uint64_t(shape.lightCount) * LW_STATIC_LIGHT_FLOATS) +
+        (phantoms ? padded(std::uint64_t(shape.aimedSpots) * LW_PHANTOM_FLOATS) : 0) +
+        padded(std::uint64_t(shape.blockerCount) * 4) + padded(shape.profileValues) +
+        padded(std::uint64_t(strideOf(shape.staticVplCount)) * LW_PLACE_PLANES);
     return floats * sizeof(float);
 }
 

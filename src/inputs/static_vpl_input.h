@@ -1,4 +1,5 @@
-// A frame's static VPLs, the lights that light them and the spheres that block, in one array on the device.
+// A frame's static VPLs, the lights that light them and the spheres that block, in one array on the
+// device.
 #pragma once
 
 #include <cstdint>
@@ -18,14 +19,16 @@ public:
 
     // Throws INVALID_ARGUMENT naming what a frame has too much of.
     static void check(const LWFrame& frame);
-    // Records the copy (pass "static_vpl_input.upload"). unitArea: of a weight of 1. automatic: no place has an area of its own.
-    // phantoms: of spot lights that then light no static VPL.
-    void import(Executor& executor, const LWFrame& frame, float unitArea, bool automatic, const std::vector<lw_phantom>& phantoms);
+    // Records the copy (pass "static_vpl_input.upload"). unitArea: of a weight of 1. automatic: no place
+    // has an area of its own. phantoms: of spot lights that then light no static VPL.
+    void import(Executor& executor, const LWFrame& frame, float unitArea, bool automatic,
+                const std::vector<lw_phantom>& phantoms);
 
     const Buffer& memory() const { return memory_; }
     const lw_static_frame& frame() const { return frame_; }
     bool anyAutomatic() const { return anyAutomatic_; }  // some place goes by its distance to others
-    // Some lights or places are not for all receivers: those with baked light have a list of VPLs of their own.
+    // Some lights or places are not for all receivers: those with baked light have a list of VPLs of
+    // their own.
     bool bakedReceivers() const { return bakedReceivers_; }
     double diagonal() const { return diagonal_; }  // of the places' bounding box, m
     double meanSide() const { return meanSide_; }

@@ -13,9 +13,10 @@ class StaticVplLight {
 public:
     explicit StaticVplLight(Device& device);
 
-    // Pass "static_vpl_light.update". inputs: StaticVplInput's memory, whose first word gets the strongest intensity.
-    // nearest: a plane of areas, m^2, of places without one of their own.
-    void record(Executor& executor, const Buffer& inputs, const lw_static_frame& frame, const Buffer& nearest);
+    // Pass "static_vpl_light.update". inputs: StaticVplInput's memory, whose first word gets the
+    // strongest intensity. nearest: a plane of areas, m^2, of places without one of their own.
+    void record(Executor& executor, const Buffer& inputs, const lw_static_frame& frame,
+                const Buffer& nearest);
 
     const Buffer& lit() const { return lit_; }  // LW_LIT_PLANES planes, frame.stride floats apart
     std::uint64_t bytes() const { return lit_.bytes(); }

@@ -7,17 +7,20 @@
 namespace lightwell {
 namespace {
 
-constexpr std::uint32_t kBlock = 16;      // places: lanes at the widest
+constexpr std::uint32_t kBlock = 16;  // places: lanes at the widest
 constexpr std::uint32_t kGroupLanes = 16;
 
-std::size_t areaBytes(std::uint32_t places) { return std::size_t(paddedWidth(std::max(places, 1u))) * sizeof(float); }
+std::size_t areaBytes(std::uint32_t places) {
+    return std::size_t(paddedWidth(std::max(places, 1u))) * sizeof(float);
+}
 
 }  // namespace
 
 StaticVplWeights::StaticVplWeights(Device& device, std::uint32_t comparisons)
     : device_(device),
       comparisons_(comparisons),
-      nearest_(device.programs().kernel("static_vpl_weights/static_vpl_weights", "static_vpl_weights_nearest")) {}
+      nearest_(device.programs().kernel("static_vpl_weights/static_vpl_weights",
+                                        "static_vpl_weights_nearest")) {}
 
 void StaticVplWeights::reserve(std::uint32_t places, bool wanted) {
     // Kernels take some memory, also where none is read.
@@ -36,10 +39,13 @@ void StaticVplWeights::record(Executor& executor, const Buffer& inputs, const lw
     next_ = all || end >= places ? 0 : end;
     if (end <= first) return;
     const std::uint32_t width = nearest_.width();
-    executor.run("static_vpl_weights.nearest", nearest_, {(end - first + width - 1) / width, 1}, {std::max(kGroupLanes / width, 1u), 1},
-                 inputs, frame, cl_int(first), cl_int(end), areas_);
+    executor.run("static_vpl_weights.nearest", nearest_, {(end - first + width - 1) / width, 1},
+                 {std::max(kGroupLanes / width, 1u), 1}, inputs, frame, cl_int(first), cl_int(end),
+                 areas_);
 }
 
-std::uint64_t StaticVplWeights::estimateBytes(std::uint32_t places) { return areaBytes(places); }
+std::uint64_t StaticVplWeights::estimateBytes(std::uint32_t places) {
+    return areaBytes(places);
+}
 
 }  // namespace lightwell

@@ -23,9 +23,10 @@
 namespace lightwell {
 namespace {
 
-// Squared distance within which one place's look prevails in a phantom, as a share of the places' squared diagonal. The source's code
-// has 0.005 m^2, which is this share in a room of 5 m. Smaller: a phantom that passes a place takes its look with a jerk. Larger:
-// the look of all places is mixed everywhere.
+// Squared distance within which one place's look prevails in a phantom, as a share of the places'
+// squared diagonal. The source's code has 0.005 m^2, which is this share in a room of 5 m. Smaller: a
+// phantom that passes a place takes its look with a jerk. Larger: the look of all places is mixed
+// everywhere.
 constexpr double kNearness = 2e-4;
 
 InterleavedOptions interleavedOptions(const LWStaticVplDesc& desc) {
@@ -47,9 +48,11 @@ LightListOptions listOptions(const LWStaticVplDesc& desc) {
     return options;
 }
 
-// What the host gave and this technique does not read: said in the stats, so that nobody waits for its light.
+// What the host gave and this technique does not read: said in the stats, so that nobody waits for its
+// light.
 std::vector<LWChoice> unusedInputs(const LWFrame& frame) {
-    constexpr const char* kReason = "not used: technique static_vpl takes light from the frame's lights by its static VPLs only";
+    constexpr const char* kReason =
+        "not used: technique static_vpl takes light from the frame's lights by its static VPLs only";
     std::vector<LWChoice> unused;
     if (frame.vplCount) unused.push_back({"frame.vpls", kReason});
     if (frame.sourceViewCount) unused.push_back({"frame.sourceViews", kReason});
@@ -78,7 +81,8 @@ public:
         phantoms_.check(device_, frame);
         const bool restart = continuity_.beginLost() || frame.reset != 0;
         phantoms_.import(executor, frame);
-        input_.import(executor, frame, desc_.unitArea, desc_.automaticWeights != 0, phantoms_.phantoms());
+        input_.import(executor, frame, desc_.unitArea, desc_.automaticWeights != 0,
+                      phantoms_.phantoms());
         const lw_static_frame& scene = input_.frame();
         weights_.reserve(frame.staticVplCount, input_.anyAutomatic());
         if (restart) {
@@ -87,10 +91,12 @@ public:
         }
         if (input_.anyAutomatic()) weights_.record(executor, input_.memory(), scene);
         light_.record(executor, input_.memory(), scene, weights_.areas());
-        list_.reserve(frame.staticVplCount, PhantomVpl::others(std::uint32_t(scene.phantomCount), desc_.bounces > 1),
+        list_.reserve(frame.staticVplCount,
+                      PhantomVpl::others(std::uint32_t(scene.phantomCount), desc_.bounces > 1),
                       input_.bakedReceivers() ? 2 : 1);
         list_.recordCull(executor, input_.memory(), scene, light_.lit(), restart);
-        phantom_.record(executor, input_.memory(), scene, light_.lit(), phantoms_.texels(), phantomOptions(), list_);
+        phantom_.record(executor, input_.memory(), scene, light_.lit(), phantoms_.texels(),
+                        phantomOptions(), list_);
         isListed_ = false;
 
         choices_ = unusedInputs(frame);
@@ -100,25 +106,31 @@ public:
         if (points_) points_->startFrame();
     }
 
-    void render(Executor& executor, const std::shared_ptr<View>& view, const LWGBuffer& gbuffer, const LWOutput& output) override {
+    void render(Executor& executor, const std::shared_ptr<View>& view, const LWGBuffer& gbuffer,
+                const LWOutput& output) override {
         checkLightOutputs(device_, *view, output, "static_vpl");
-        StaticVplView& state = states_.get(
-            view, [&] { return std::make_unique<StaticVplView>(device_, interleavedOptions(desc_), *view); });
-        state.render(executor, *view, gbuffer, output, gather_, bilateral_ ? &*bilateral_ : nullptr, list_);
+        StaticVplView& state = states_.get(view, [&] {
+            return std::make_unique<StaticVplView>(device_, interleavedOptions(desc_), *view);
+        });
+        state.render(executor, *view, gbuffer, output, gather_, bilateral_ ? &*bilateral_ : nullptr,
+                     list_);
     }
 
     void renderPoints(Executor& executor, const Points& points) override {
         checkPoints(device_, points);
         if (!points_) points_.emplace(device_);
-        points_->render(executor, points, points.output.baked ? list_.baked() : list_.vpls(), list_.order());
+        points_->render(executor, points, points.output.baked ? list_.baked() : list_.vpls(),
+                        list_.order());
     }
 
     std::uint32_t listedLights() const override { return desc_.lights; }
     void readLightList(Executor& executor, LWListedLight* lights) override {
-        static_assert(sizeof(LWListedLight) == sizeof(lw_listed_light), "LWListedLight is copied as it is");
+        static_assert(sizeof(LWListedLight) == sizeof(lw_listed_light),
+                      "LWListedLight is copied as it is");
         if (!isListed_) list_.recordLights(executor, input_.diagonal());
         isListed_ = true;
-        executor.read("light_list.read", list_.listed().get(), 0, desc_.lights * sizeof(LWListedLight), lights);
+        executor.read("light_list.read", list_.listed().get(), 0, desc_.lights * sizeof(LWListedLight),
+                      lights);
     }
 
     void lose() override { continuity_.lose(); }
@@ -154,11 +166,12 @@ private:
     std::optional<JointBilateral> bilateral_;  // half resolution only
     PerView<StaticVplView> states_;
     std::optional<StaticVplPoints> points_;  // from the first lwRenderPoints on
-    std::vector<LWChoice> choices_;  // of the last update
+    std::vector<LWChoice> choices_;          // of the last update
 };
 
 void StaticVplTechnique::prewarm(Executor& executor, const std::shared_ptr<View>&) {
-    // A twin, so that this technique's frame stays as it is; kernels belong to the device. Automatic weights depend on the frame.
+    // A twin, so that this technique's frame stays as it is; kernels belong to the device. Automatic
+    // weights depend on the frame.
     LWStaticVplDesc desc = desc_;
     desc.automaticWeights = 1;
     desc.bounces = 2;
@@ -183,7 +196,8 @@ Report StaticVplTechnique::report() {
     const lw_static_frame& scene = input_.frame();
     report.counts.push_back({"static_vpls", std::uint64_t(scene.count)});
     report.counts.push_back({"kept_vpls", 0});
-    if (input_.memory()) report.read(device_, "kept_vpls", input_.memory(), LW_FRAME_KEPT * sizeof(cl_int));
+    if (input_.memory())
+        report.read(device_, "kept_vpls", input_.memory(), LW_FRAME_KEPT * sizeof(cl_int));
     report.counts.push_back({"phantom_vpls", std::uint64_t(scene.phantomCount)});
     report.counts.push_back({"vpls", std::uint64_t(list_.order().count)});
     for (const LWChoice& choice : choices_) report.choose(choice.name, choice.reason);
@@ -198,26 +212,30 @@ Report StaticVplTechnique::report() {
 std::vector<DebugView> StaticVplTechnique::debugViews(const View* view) {
     std::vector<DebugView> views;
     if (list_.vpls()) {
-        views.push_back({"vpls", "one column per slot: position xyz (m), unit normal xyz, flux rgb (W), area (m^2)",
-                         VplSampling::debugShape(list_.order()), [this](Executor& executor, const Planes& planes) {
-                             VplSampling(device_, {}).recordPlanes(executor, list_.vpls(), planes);
-                         }});
+        views.push_back(
+            {"vpls", "one column per slot: position xyz (m), unit normal xyz, flux rgb (W), area (m^2)",
+             VplSampling::debugShape(list_.order()), [this](Executor& executor, const Planes& planes) {
+                 VplSampling(device_, {}).recordPlanes(executor, list_.vpls(), planes);
+             }});
         Planes lit;
         lit.memory = light_.lit().get();
         lit.width = std::uint32_t(input_.frame().count);
         lit.height = 1;
         lit.rowStride = lit.planeStride = input_.frame().stride;
         lit.count = LW_LIT_PLANES;
-        views.push_back({"static_vpls", "one column per static VPL, before culling: flux rgb (W), flux for baked receivers rgb (W), area (m^2)",
-                         lit, {}});
+        views.push_back({"static_vpls",
+                         "one column per static VPL, before culling: flux rgb (W), flux for baked "
+                         "receivers rgb (W), area (m^2)",
+                         lit,
+                         {}});
     }
     if (const StaticVplView* state = states_.find(view)) state->addDebugViews(views);
     return views;
 }
 
 std::uint64_t StaticVplTechnique::bytes() const {
-    std::uint64_t total = phantoms_.bytes() + input_.bytes() + weights_.bytes() + light_.bytes() + phantom_.bytes() + list_.bytes() +
-                          (points_ ? points_->bytes() : 0);
+    std::uint64_t total = phantoms_.bytes() + input_.bytes() + weights_.bytes() + light_.bytes() +
+                          phantom_.bytes() + list_.bytes() + (points_ ? points_->bytes() : 0);
     states_.each([&](const StaticVplView& state) { total += state.bytes(); });
     return total;
 }
@@ -227,21 +245,27 @@ std::uint64_t StaticVplTechnique::bytes() const {
 std::uint64_t estimateBytes(const void* desc, const LWViewDesc& view, const FrameShape& shape) {
     const LWStaticVplDesc& own = *static_cast<const LWStaticVplDesc*>(desc);
     const bool phantoms = own.variant == LW_STATIC_VPL_PHANTOM;
-    const std::uint32_t spots = phantoms ? shape.aimedSpots : 0, others = PhantomVpl::others(spots, own.bounces > 1);
+    const std::uint32_t spots = phantoms ? shape.aimedSpots : 0,
+                        others = PhantomVpl::others(spots, own.bounces > 1);
     const LightListOptions options = listOptions(own);
-    return StaticVplInput::estimateBytes(shape, phantoms) + StaticVplWeights::estimateBytes(shape.staticVplCount) +
+    return StaticVplInput::estimateBytes(shape, phantoms) +
+           StaticVplWeights::estimateBytes(shape.staticVplCount) +
            StaticVplLight::estimateBytes(shape.staticVplCount) + PhantomVpl::estimateBytes(spots) +
            (phantoms ? StaticVplPhantoms::estimateBytes(shape) : 0) +
-           LightList::estimateBytes(options, shape.staticVplCount, others, shape.bakedReceivers ? 2 : 1) +
-           StaticVplView::estimateBytes(interleavedOptions(own), view, shape, LightList::orderOf(options, shape.staticVplCount, others));
+           LightList::estimateBytes(options, shape.staticVplCount, others,
+                                    shape.bakedReceivers ? 2 : 1) +
+           StaticVplView::estimateBytes(interleavedOptions(own), view, shape,
+                                        LightList::orderOf(options, shape.staticVplCount, others));
 }
 
 }  // namespace
 
 const TechniqueEntry& staticVplEntry() {
-    static const TechniqueEntry entry = techniqueEntry<StaticVplTechnique, LWStaticVplDesc, lwDefaultStaticVpl>(
-        "static_vpl", "virtual point lights at places that the host chose, lit by its lights past soft spheres", 1, staticVplParameters(),
-        staticVplSettings(), estimateBytes);
+    static const TechniqueEntry entry =
+        techniqueEntry<StaticVplTechnique, LWStaticVplDesc, lwDefaultStaticVpl>(
+            "static_vpl",
+            "virtual point lights at places that the host chose, lit by its lights past soft spheres", 1,
+            staticVplParameters(), staticVplSettings(), estimateBytes);
     return entry;
 }
 

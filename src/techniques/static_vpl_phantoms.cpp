@@ -7,8 +7,12 @@
 namespace lightwell {
 namespace {
 
-bool isSpot(const LWLight& light) { return light.kind == LW_LIGHT_SPOT; }
-bool byMap(const LWLight& light) { return isSpot(light) && !light.hit && light.rsmCount > 0; }
+bool isSpot(const LWLight& light) {
+    return light.kind == LW_LIGHT_SPOT;
+}
+bool byMap(const LWLight& light) {
+    return isSpot(light) && !light.hit && light.rsmCount > 0;
+}
 
 // The frame's lights with those maps only that a phantom's place comes from.
 std::vector<LWLight> lightsByMap(const LWFrame& frame) {
@@ -23,7 +27,8 @@ LWImage middleOf(Device& device, const LWImage& image, const ImageRole& role, co
     if (imageAbsent(image)) return image;
     const CheckedImage checked = checkImage(device, image, role, image.width, image.height, name);
     LWImage middle = image;
-    middle.byteOffset = std::uint64_t(std::int64_t(checked.pixels.byteOffset) + std::int64_t(image.height / 2) * checked.pixels.byteRowStride +
+    middle.byteOffset = std::uint64_t(std::int64_t(checked.pixels.byteOffset) +
+                                      std::int64_t(image.height / 2) * checked.pixels.byteRowStride +
                                       std::int64_t(image.width / 2) * checked.pixels.bytePixelStride);
     middle.bytePixelStride = checked.pixels.bytePixelStride;
     middle.byteRowStride = 0;
@@ -42,8 +47,8 @@ void StaticVplPhantoms::check(Device& device, const LWFrame& frame) const {
     RsmInput::check(device, maps);
 }
 
-// Of a map only its middle is read. As an image of one texel it lies exactly on the camera's axis, also where it has an even
-// number of texels and none of them does: depth leads to a place on the axis.
+// Of a map only its middle is read. As an image of one texel it lies exactly on the camera's axis, also
+// where it has an even number of texels and none of them does: depth leads to a place on the axis.
 void StaticVplPhantoms::import(Executor& executor, const LWFrame& frame) {
     phantoms_.clear();
     fromMaps_ = false;
@@ -54,7 +59,8 @@ void StaticVplPhantoms::import(Executor& executor, const LWFrame& frame) {
         if (lights[l].rsmCount == 0) continue;
         const std::string name = "frame.lights[" + std::to_string(l) + "].rsms[0]";
         rsms[l] = lights[l].rsms[0];
-        rsms[l].position = middleOf(executor.device(), rsms[l].position, kPositionRole, name + ".position");
+        rsms[l].position =
+            middleOf(executor.device(), rsms[l].position, kPositionRole, name + ".position");
         rsms[l].depth = middleOf(executor.device(), rsms[l].depth, kDepthRole, name + ".depth");
         rsms[l].normal = middleOf(executor.device(), rsms[l].normal, kNormalRole, name + ".normal");
         rsms[l].flux = middleOf(executor.device(), rsms[l].flux, kRadianceRole, name + ".flux");
@@ -83,7 +89,9 @@ std::vector<LWChoice> StaticVplPhantoms::choices(const LWFrame& frame) const {
     if (!wanted_) return choices;
     for (std::uint32_t l = 0; l < frame.lightCount; ++l)
         if (isSpot(frame.lights[l]) && !frame.lights[l].hit && frame.lights[l].rsmCount == 0) {
-            choices.push_back({"frame.lights", "some spot lights have neither hit nor RSM: they light the static VPLs, not a phantom"});
+            choices.push_back({"frame.lights",
+                               "some spot lights have neither hit nor RSM: they light the static VPLs, "
+                               "not a phantom"});
             break;
         }
     return choices;

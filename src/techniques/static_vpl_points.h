@@ -18,10 +18,12 @@ public:
     std::uint64_t bytes() const { return light_.bytes() + tiles_.bytes(); }
 
 private:
-    void recordIrradiance(Executor& executor, const Planes& position, const Planes& normal, const Planes& irradiance,
-                          const Planes& validity, const Buffer& counts) override;
-    void recordHarmonics(Executor& executor, const Planes& position, const Planes& normal, const Harmonics& harmonics,
-                         const Planes& validity, const Buffer& counts) override;
+    void recordIrradiance(Executor& executor, const Planes& position, const Planes& normal,
+                          const Planes& irradiance, const Planes& validity,
+                          const Buffer& counts) override;
+    void recordHarmonics(Executor& executor, const Planes& position, const Planes& normal,
+                         const Harmonics& harmonics, const Planes& validity,
+                         const Buffer& counts) override;
 
     Device& device_;
     PointLight light_;

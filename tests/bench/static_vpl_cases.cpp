@@ -11,7 +11,9 @@ namespace {
 
 constexpr float kGolden = 0.618034f, kPlastic = 0.754878f;
 
-float part(float x) { return x - std::floor(x); }
+float part(float x) {
+    return x - std::floor(x);
+}
 
 struct Room {
     std::vector<LWStaticVpl> vpls;
@@ -24,9 +26,11 @@ struct Room {
             LWStaticVpl& vpl = vpls[i];
             const std::uint32_t axis = i % 3;
             const bool far = i / 3 % 2 != 0;
-            const float at[3] = {part(kGolden * float(i)), part(kPlastic * float(i)), part(0.5698403f * float(i))};
+            const float at[3] = {part(kGolden * float(i)), part(kPlastic * float(i)),
+                                 part(0.5698403f * float(i))};
             const float size[3] = {6.0f, 3.0f, 8.0f};
-            for (std::uint32_t a = 0; a < 3; ++a) vpl.position[a] = size[a] * (a == axis ? (far ? 1.0f : 0.0f) : at[a]);
+            for (std::uint32_t a = 0; a < 3; ++a)
+                vpl.position[a] = size[a] * (a == axis ? (far ? 1.0f : 0.0f) : at[a]);
             vpl.normal[axis] = far ? -1.0f : 1.0f;
             vpl.weight = 150.0f / float(count);
             for (float& rho : vpl.reflectance) rho = 0.6f;
@@ -111,8 +115,10 @@ void run(benchmark::State& state, LWDevice device, std::uint32_t count, bool lis
 void registerStaticVplCases(LWDevice device) {
     for (const bool lists : {false, true})
         for (const std::uint32_t count : {20u, 200u, 2000u})
-            benchmark::RegisterBenchmark(("static_vpl." + std::string(lists ? "lights" : "update") + ".n" + std::to_string(count)).c_str(),
-                                         [=](benchmark::State& state) { run(state, device, count, lists); })
+            benchmark::RegisterBenchmark(
+                ("static_vpl." + std::string(lists ? "lights" : "update") + ".n" + std::to_string(count))
+                    .c_str(),
+                [=](benchmark::State& state) { run(state, device, count, lists); })
                 ->UseRealTime()
                 ->Unit(benchmark::kMicrosecond);
 }

@@ -5,8 +5,9 @@
 
 namespace bench {
 
-// static_vpl.update.nN: lwUpdate and lwFinish, on the host's clock. static_vpl.lights.nN: lwUpdate and lwReadLightList, so from the host's
-// lights to its light list. N places in a room, a lamp, a torch and a sun, 50 blockers. device_us: what kernels and copies took.
+// static_vpl.update.nN: lwUpdate and lwFinish, on the host's clock. static_vpl.lights.nN: lwUpdate and
+// lwReadLightList, so from the host's lights to its light list. N places in a room, a lamp, a torch and
+// a sun, 50 blockers. device_us: what kernels and copies took.
 void registerStaticVplCases(LWDevice device);
 
 }  // namespace bench

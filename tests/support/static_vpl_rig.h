@@ -1,4 +1,5 @@
-// Scenes of static VPLs through the C API, and the serial double-precision twin of what lights make of them.
+// Scenes of static VPLs through the C API, and the serial double-precision twin of what lights make of
+// them.
 #pragma once
 
 #include <algorithm>
@@ -17,12 +18,15 @@ namespace lightwell::test {
 
 constexpr double kRigPi = 3.14159265358979323846;
 
-inline glm::dvec3 vec(const float* v) { return {double(v[0]), double(v[1]), double(v[2])}; }
+inline glm::dvec3 vec(const float* v) {
+    return {double(v[0]), double(v[1]), double(v[2])};
+}
 inline void put(float* to, const glm::dvec3& v) {
     for (int a = 0; a < 3; ++a) to[a] = float(v[a]);
 }
 
-inline LWStaticVpl staticVpl(const glm::dvec3& position, const glm::dvec3& normal, double weight = 1.0, const glm::dvec3& rho = glm::dvec3(0.5)) {
+inline LWStaticVpl staticVpl(const glm::dvec3& position, const glm::dvec3& normal, double weight = 1.0,
+                             const glm::dvec3& rho = glm::dvec3(0.5)) {
     LWStaticVpl vpl{};
     put(vpl.position, position);
     put(vpl.normal, glm::normalize(normal));
@@ -49,7 +53,8 @@ inline LWLight pointLight(const glm::dvec3& position, const glm::dvec3& intensit
     return light;
 }
 
-inline LWLight spotLight(const glm::dvec3& position, const glm::dvec3& direction, const glm::dvec3& intensity, double inner, double outer) {
+inline LWLight spotLight(const glm::dvec3& position, const glm::dvec3& direction,
+                         const glm::dvec3& intensity, double inner, double outer) {
     LWLight light = pointLight(position, intensity);
     light.kind = LW_LIGHT_SPOT;
     put(light.direction, direction);
@@ -85,7 +90,8 @@ struct StaticScene {
 };
 
 // Share of light along the segment from x to y, or on from x without end.
-inline double twinVisibility(const StaticScene& scene, const glm::dvec3& x, const glm::dvec3& d, bool endless) {
+inline double twinVisibility(const StaticScene& scene, const glm::dvec3& x, const glm::dvec3& d,
+                             bool endless) {
     double visible = 1.0;
     for (const LWBlocker& blocker : scene.blockers) {
         const glm::dvec3 c = vec(blocker.center) - x;
@@ -97,31 +103,43 @@ inline double twinVisibility(const StaticScene& scene, const glm::dvec3& x, cons
 }
 
 // Irradiance at a place from one light, W/m^2.
-inline glm::dvec3 twinIrradiance(const StaticScene& scene, const LWStaticVpl& vpl, const LWLight& light, bool blocked = true) {
+inline glm::dvec3 twinIrradiance(const StaticScene& scene, const LWStaticVpl& vpl, const LWLight& light,
+                                 bool blocked = true) {
     const glm::dvec3 x = vec(vpl.position), n = vec(vpl.normal);
     if (light.kind == LW_LIGHT_DIRECTIONAL) {
         const glm::dvec3 d = -glm::normalize(vec(light.direction));
-        return vec(light.irradiance) * (std::max(0.0, glm::dot(n, d)) * (blocked ? twinVisibility(scene, x, d, true) : 1.0));
+        return vec(light.irradiance) *
+               (std::max(0.0, glm::dot(n, d)) * (blocked ? twinVisibility(scene, x, d, true) : 1.0));
     }
     const glm::dvec3 d = vec(light.position) - x;
     const double h = glm::length(d);
     double share = std::max(0.0, glm::dot(n, d)) / (h * h * h);
-    const double angle = glm::length(vec(light.direction)) > 0.0 ? std::acos(std::min(1.0, std::max(-1.0, -glm::dot(d, glm::normalize(vec(light.direction))) / h))) : 0.0;
+    const double angle =
+        glm::length(vec(light.direction)) > 0.0
+            ? std::acos(
+                  std::min(1.0, std::max(-1.0, -glm::dot(d, glm::normalize(vec(light.direction))) / h)))
+            : 0.0;
     if (light.kind == LW_LIGHT_SPOT) {
-        const double inner = std::cos(double(light.innerConeAngle)), outer = std::cos(double(light.outerConeAngle));
-        share *= std::pow(std::min(1.0, std::max(0.0, (std::cos(angle) - outer) / std::max(1e-3, inner - outer))), 2.0);
+        const double inner = std::cos(double(light.innerConeAngle)),
+                     outer = std::cos(double(light.outerConeAngle));
+        share *= std::pow(
+            std::min(1.0, std::max(0.0, (std::cos(angle) - outer) / std::max(1e-3, inner - outer))),
+            2.0);
     }
     if (light.profileCount) {
         const double at = angle / kRigPi * (light.profileCount - 1);
         const auto below = std::min(std::size_t(at), std::size_t(light.profileCount - 2));
-        share *= double(light.profile[below]) + (double(light.profile[below + 1]) - double(light.profile[below])) * (at - double(below));
+        share *=
+            double(light.profile[below]) +
+            (double(light.profile[below + 1]) - double(light.profile[below])) * (at - double(below));
     }
     return vec(light.radiantIntensity) * (share * (blocked ? twinVisibility(scene, x, d, false) : 1.0));
 }
 
 class StaticRig {
 public:
-    StaticRig(std::uint32_t width, const LWStaticVplDesc& desc) : device(width), technique(device, "static_vpl", &desc) {}
+    StaticRig(std::uint32_t width, const LWStaticVplDesc& desc)
+        : device(width), technique(device, "static_vpl", &desc) {}
 
     void update(const StaticScene& scene) { technique.update(scene.frame()); }
     LWStatus tryUpdate(const StaticScene& scene) {
@@ -139,10 +157,13 @@ public:
             REQUIRE(lwDescribeDebugView(technique, nullptr, i, &view) == LW_SUCCESS);
             if (std::string(view.name) != name) continue;
             std::vector<float> values(std::size_t(view.width) * view.height * view.channels + 1);
-            REQUIRE(lwReadDebugView(technique, nullptr, name, values.data(), values.size()) == LW_SUCCESS);
+            REQUIRE(lwReadDebugView(technique, nullptr, name, values.data(), values.size()) ==
+                    LW_SUCCESS);
             std::vector<std::vector<double>> planes(view.channels);
             const std::size_t size = std::size_t(view.width) * view.height;
-            for (std::size_t c = 0; c < planes.size(); ++c) planes[c].assign(values.begin() + std::ptrdiff_t(c * size), values.begin() + std::ptrdiff_t((c + 1) * size));
+            for (std::size_t c = 0; c < planes.size(); ++c)
+                planes[c].assign(values.begin() + std::ptrdiff_t(c * size),
+                                 values.begin() + std::ptrdiff_t((c + 1) * size));
             return planes;
         }
         FAIL("no debug view of this name: " << name);
@@ -153,7 +174,8 @@ public:
         const auto all = planes("static_vpls");
         const std::size_t first = baked ? 3 : 0;
         std::vector<glm::dvec3> flux;
-        for (std::size_t i = 0; i < all[0].size(); ++i) flux.emplace_back(all[first][i], all[first + 1][i], all[first + 2][i]);
+        for (std::size_t i = 0; i < all[0].size(); ++i)
+            flux.emplace_back(all[first][i], all[first + 1][i], all[first + 2][i]);
         return flux;
     }
     std::vector<double> areas() { return planes("static_vpls")[6]; }
@@ -168,7 +190,10 @@ public:
         std::vector<Vpl> vpls;
         for (std::size_t i = 0; i < p[0].size(); ++i)
             if (p[6][i] + p[7][i] + p[8][i] > 0.0)
-                vpls.push_back({{p[0][i], p[1][i], p[2][i]}, {p[3][i], p[4][i], p[5][i]}, {p[6][i], p[7][i], p[8][i]}, p[9][i]});
+                vpls.push_back({{p[0][i], p[1][i], p[2][i]},
+                                {p[3][i], p[4][i], p[5][i]},
+                                {p[6][i], p[7][i], p[8][i]},
+                                p[9][i]});
         return vpls;
     }
 
@@ -193,7 +218,8 @@ inline LWStaticVplDesc staticDesc() {
 }
 
 // A bounded VPL's irradiance at a surface (conventions.md), double precision.
-inline double twinLight(const StaticRig::Vpl& vpl, const glm::dvec3& x, const glm::dvec3& n, int channel = 0) {
+inline double twinLight(const StaticRig::Vpl& vpl, const glm::dvec3& x, const glm::dvec3& n,
+                        int channel = 0) {
     const glm::dvec3 d = vpl.position - x;
     const double d2 = glm::dot(d, d), h = std::sqrt(d2);
     const double c = std::max(0.0, glm::dot(n, d) / h), cp = std::max(0.0, -glm::dot(vpl.normal, d) / h);
@@ -201,7 +227,9 @@ inline double twinLight(const StaticRig::Vpl& vpl, const glm::dvec3& x, const gl
 }
 
 // Places on the six walls of a room of these sides, facing inwards.
-inline std::vector<LWStaticVpl> roomOfPlaces(std::size_t count, std::uint32_t seed, const glm::dvec3& size = glm::dvec3(4, 3, 5), double weight = 1.0) {
+inline std::vector<LWStaticVpl> roomOfPlaces(std::size_t count, std::uint32_t seed,
+                                             const glm::dvec3& size = glm::dvec3(4, 3, 5),
+                                             double weight = 1.0) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> unit(0.0, 1.0);
     std::vector<LWStaticVpl> vpls;
@@ -211,7 +239,9 @@ inline std::vector<LWStaticVpl> roomOfPlaces(std::size_t count, std::uint32_t se
         glm::dvec3 p(unit(random), unit(random), unit(random)), n(0.0);
         p[axis] = far ? 1.0 : 0.0;
         n[axis] = far ? -1.0 : 1.0;
-        vpls.push_back(staticVpl(p * size, n, weight, {0.2 + 0.7 * unit(random), 0.2 + 0.7 * unit(random), 0.2 + 0.7 * unit(random)}));
+        vpls.push_back(
+            staticVpl(p * size, n, weight,
+                      {0.2 + 0.7 * unit(random), 0.2 + 0.7 * unit(random), 0.2 + 0.7 * unit(random)}));
     }
     return vpls;
 }

@@ -1,4 +1,5 @@
-// Technique static_vpl as a host uses it: pictures, several views, points, receivers with baked light, units, bits, nothing built late.
+// Technique static_vpl as a host uses it: pictures, several views, points, receivers with baked light,
+// units, bits, nothing built late.
 #include <catch2/catch.hpp>
 
 #include "support/kernel_rig.h"
@@ -17,15 +18,20 @@ constexpr double kRounding = 1e-5;
 StaticScene litFloor(std::size_t count, double scale = 1.0) {
     StaticScene scene;
     for (std::size_t i = 0; i < count; ++i) {
-        const double u = double(i) * 0.6180339887498949, x = u - std::floor(u) - 0.5, z = (double(i) + 0.5) / double(count);
-        scene.vpls.push_back(staticVpl({x * scale, 0, z * scale}, {0, 1, 0}, scale * scale / double(count), {0.8, 0.5 + 0.4 * x, 0.3}));
+        const double u = double(i) * 0.6180339887498949, x = u - std::floor(u) - 0.5,
+                     z = (double(i) + 0.5) / double(count);
+        scene.vpls.push_back(staticVpl({x * scale, 0, z * scale}, {0, 1, 0},
+                                       scale * scale / double(count), {0.8, 0.5 + 0.4 * x, 0.3}));
     }
-    scene.lights = {pointLight({0.1 * scale, 0.6 * scale, 0.4 * scale}, glm::dvec3(3, 2, 1) * scale * scale), sunLight({0.1, -1, 0}, {0.5, 1, 2})};
+    scene.lights = {
+        pointLight({0.1 * scale, 0.6 * scale, 0.4 * scale}, glm::dvec3(3, 2, 1) * scale * scale),
+        sunLight({0.1, -1, 0}, {0.5, 1, 2})};
     scene.block({-0.2 * scale, 0.3 * scale, 0.3 * scale}, 0.15 * scale);
     return scene;
 }
 
-std::vector<float> render(std::uint32_t width, const LWStaticVplDesc& desc, const StaticScene& scene, const WallAndCeiling& view) {
+std::vector<float> render(std::uint32_t width, const LWStaticVplDesc& desc, const StaticScene& scene,
+                          const WallAndCeiling& view) {
     StaticRig rig(width, desc);
     TestView target(rig.device, view.position.width(), view.position.height());
     rig.update(scene);
@@ -48,9 +54,11 @@ TEST_CASE("the picture is the VPLs' light", "[static_vpl]") {
                 double expected = 0.0;
                 const auto p = view.position.get(x, y), n = view.normal.get(x, y);
                 if (x > 0)
-                    for (const auto& vpl : vpls) expected += twinLight(vpl, {p.x, p.y, p.z}, {n.x, n.y, n.z}, int(c));
+                    for (const auto& vpl : vpls)
+                        expected += twinLight(vpl, {p.x, p.y, p.z}, {n.x, n.y, n.z}, int(c));
                 CAPTURE(x, y, c);
-                REQUIRE(double(e[c * size + y * kWidth + x]) == Approx(expected).epsilon(kRounding).margin(1e-7));
+                REQUIRE(double(e[c * size + y * kWidth + x]) ==
+                        Approx(expected).epsilon(kRounding).margin(1e-7));
             }
 }
 
@@ -88,7 +96,8 @@ TEST_CASE("static_vpl: interleaving and half resolution keep the light", "[stati
 TEST_CASE("static_vpl: one update serves two eyes", "[static_vpl]") {
     WallAndCeiling left(kWidth, kHeight), right(61, 40);
     const StaticScene scene = litFloor(60);
-    const auto leftAlone = render(16, staticDesc(), scene, left), rightAlone = render(16, staticDesc(), scene, right);
+    const auto leftAlone = render(16, staticDesc(), scene, left),
+               rightAlone = render(16, staticDesc(), scene, right);
     StaticRig rig(16, staticDesc());
     TestView leftView(rig.device, kWidth, kHeight), rightView(rig.device, 61, 40);
     rig.update(scene);
@@ -98,7 +107,8 @@ TEST_CASE("static_vpl: one update serves two eyes", "[static_vpl]") {
     // One update, however many views.
     const LWStats stats = rig.technique.stats();
     for (std::uint32_t i = 0; i < stats.passCount; ++i)
-        if (std::string(stats.passes[i].name) == "static_vpl_light.update") CHECK(stats.passes[i].launches == 1);
+        if (std::string(stats.passes[i].name) == "static_vpl_light.update")
+            CHECK(stats.passes[i].launches == 1);
 }
 
 TEST_CASE("static_vpl: points have the picture's light", "[static_vpl]") {
@@ -109,7 +119,8 @@ TEST_CASE("static_vpl: points have the picture's light", "[static_vpl]") {
     const auto picture = rig.technique.render(target, view.gbuffer);
     const PointList list = PointList::ofScene(view);
     std::vector<float> e(3 * std::size_t(list.count()));
-    const LWImage positions = listImage(list.positions, list.count(), 1, LW_FORMAT_FLOAT3), normals = listImage(list.normals, list.count(), 1, LW_FORMAT_FLOAT3);
+    const LWImage positions = listImage(list.positions, list.count(), 1, LW_FORMAT_FLOAT3),
+                  normals = listImage(list.normals, list.count(), 1, LW_FORMAT_FLOAT3);
     LWPointOutput output;
     LW_INIT(output);
     output.irradiance = listImage(e, list.count(), 1, LW_FORMAT_FLOAT3);
@@ -117,7 +128,9 @@ TEST_CASE("static_vpl: points have the picture's light", "[static_vpl]") {
     REQUIRE(lwFinish(rig.device) == LW_SUCCESS);
     const std::size_t size = kWidth * kHeight;
     for (std::size_t i = 0; i < size; ++i)
-        for (std::size_t c = 0; c < 3; ++c) REQUIRE(double(e[3 * i + c]) == Approx(double(picture[c * size + i])).epsilon(kRounding).margin(1e-7));
+        for (std::size_t c = 0; c < 3; ++c)
+            REQUIRE(double(e[3 * i + c]) ==
+                    Approx(double(picture[c * size + i])).epsilon(kRounding).margin(1e-7));
 }
 
 TEST_CASE("receivers with baked light get other lights' light only", "[static_vpl]") {
@@ -137,7 +150,8 @@ TEST_CASE("receivers with baked light get other lights' light only", "[static_vp
     StaticRig rig(16, desc);
     TestView target(rig.device, kWidth, kHeight);
     rig.update(both);
-    CHECK(bitDifference(rig.technique.render(target, view.gbuffer), all) == "");  // without a mask nothing is baked
+    CHECK(bitDifference(rig.technique.render(target, view.gbuffer), all) ==
+          "");  // without a mask nothing is baked
     LWGBuffer masked = view.gbuffer;
     masked.bakedMask = mask.image();
     const auto split = rig.technique.render(target, masked);
@@ -147,7 +161,8 @@ TEST_CASE("receivers with baked light get other lights' light only", "[static_vp
         // Beside the border the filter knows less.
         if (desc.interleave > 1 && x + 2 > kWidth / 2 && x < kWidth / 2 + 2) continue;
         CAPTURE(i, x);
-        REQUIRE(double(split[i]) == Approx(double((x < kWidth / 2 ? all : byLamp)[i])).epsilon(kRounding).margin(1e-7));
+        REQUIRE(double(split[i]) ==
+                Approx(double((x < kWidth / 2 ? all : byLamp)[i])).epsilon(kRounding).margin(1e-7));
     }
     // The same by the VPLs' own receivers, in the list of lights, and at points.
     const auto lights = rig.lights();
@@ -163,7 +178,8 @@ TEST_CASE("receivers with baked light get other lights' light only", "[static_vp
     }
     const PointList list = PointList::ofScene(view);
     std::vector<float> e(3 * std::size_t(list.count()));
-    const LWImage positions = listImage(list.positions, list.count(), 1, LW_FORMAT_FLOAT3), normals = listImage(list.normals, list.count(), 1, LW_FORMAT_FLOAT3);
+    const LWImage positions = listImage(list.positions, list.count(), 1, LW_FORMAT_FLOAT3),
+                  normals = listImage(list.normals, list.count(), 1, LW_FORMAT_FLOAT3);
     LWPointOutput output;
     LW_INIT(output);
     output.irradiance = listImage(e, list.count(), 1, LW_FORMAT_FLOAT3);
@@ -171,7 +187,8 @@ TEST_CASE("receivers with baked light get other lights' light only", "[static_vp
     REQUIRE(lwRenderPoints(rig.technique, &positions, &normals, list.count(), &output) == LW_SUCCESS);
     REQUIRE(lwFinish(rig.device) == LW_SUCCESS);
     if (desc.interleave == 1)
-        for (std::size_t i = 0; i < size; ++i) REQUIRE(double(e[3 * i]) == Approx(double(byLamp[i])).epsilon(kRounding).margin(1e-7));
+        for (std::size_t i = 0; i < size; ++i)
+            REQUIRE(double(e[3 * i]) == Approx(double(byLamp[i])).epsilon(kRounding).margin(1e-7));
 }
 
 TEST_CASE("static_vpl: places may be for one kind of receiver", "[static_vpl]") {
@@ -244,7 +261,8 @@ TEST_CASE("static_vpl: memory is as estimated", "[static_vpl]") {
     CHECK(held + unpacked >= most);
 }
 
-TEST_CASE("static_vpl: no number that is accepted puts anything but numbers into a picture", "[static_vpl]") {
+TEST_CASE("static_vpl: no number that is accepted puts anything but numbers into a picture",
+          "[static_vpl]") {
     LWStaticVplDesc desc = staticDesc();
     desc.bounces = 2;
     desc.automaticWeights = GENERATE(0u, 1u);
@@ -259,22 +277,28 @@ TEST_CASE("static_vpl: no number that is accepted puts anything but numbers into
                 for (const float* hit : {far, near}) {
                     CAPTURE(weight, bright, place, hit[0]);
                     StaticScene scene;
-                    scene.vpls = {staticVpl({0, 0, 0.5}, {0, 1, 0}, weight, glm::dvec3(1.0)), staticVpl({place, place, place}, {0, -1, 0}, weight, {0, 1, 1}),
+                    scene.vpls = {staticVpl({0, 0, 0.5}, {0, 1, 0}, weight, glm::dvec3(1.0)),
+                                  staticVpl({place, place, place}, {0, -1, 0}, weight, {0, 1, 1}),
                                   staticVpl({0, 0, 0.5}, {0, 1, 0}, weight)};
-                    scene.lights = {pointLight({0, 0, 0.5}, glm::dvec3(bright)), sunLight({0, 0, 0}, glm::dvec3(bright)),
-                                    spotLight({0, 1, 0.5}, {0, -1e-30, 0}, glm::dvec3(bright), 0.0, 0.0), sunLight({0, -1, 0}, glm::dvec3(bright)),
-                                    spotLight({3e38, 3e38, 3e38}, {3e38, 3e38, 3e38}, glm::dvec3(bright), 0.1, 0.4)};
+                    scene.lights = {
+                        pointLight({0, 0, 0.5}, glm::dvec3(bright)),
+                        sunLight({0, 0, 0}, glm::dvec3(bright)),
+                        spotLight({0, 1, 0.5}, {0, -1e-30, 0}, glm::dvec3(bright), 0.0, 0.0),
+                        sunLight({0, -1, 0}, glm::dvec3(bright)),
+                        spotLight({3e38, 3e38, 3e38}, {3e38, 3e38, 3e38}, glm::dvec3(bright), 0.1, 0.4)};
                     for (int i = 2; i < 5; i += 2) scene.lights[std::size_t(i)].hit = hit;
                     scene.block({0, 0.5, 0.5}, 3e38);
                     scene.block({0, 0.5, 0.5}, 1e-38);
                     scene.block({3e38, -3e38, 3e38}, 1.0);
                     rig.update(scene);
                     bool finite = true;
-                    for (const float e : rig.technique.render(target, view.gbuffer)) finite = finite && std::isfinite(e) && e >= 0.0f;
+                    for (const float e : rig.technique.render(target, view.gbuffer))
+                        finite = finite && std::isfinite(e) && e >= 0.0f;
                     CHECK(finite);
                     finite = true;
                     for (const LWListedLight& light : rig.lights())
-                        for (const float* values : {light.position, light.axis, light.flux, light.spotIntensity})
+                        for (const float* values :
+                             {light.position, light.axis, light.flux, light.spotIntensity})
                             for (int a = 0; a < 3; ++a) finite = finite && std::isfinite(values[a]);
                     CHECK(finite);
                 }

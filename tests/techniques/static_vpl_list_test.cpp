@@ -12,7 +12,8 @@ namespace {
 double lightAt(const std::vector<LWListedLight>& lights, const glm::dvec3& x, const glm::dvec3& n) {
     double sum = 0.0;
     for (const LWListedLight& light : lights)
-        sum += twinLight({vec(light.position), vec(light.axis), vec(light.flux), double(light.area)}, x, n);
+        sum +=
+            twinLight({vec(light.position), vec(light.axis), vec(light.flux), double(light.area)}, x, n);
     return sum;
 }
 
@@ -38,7 +39,7 @@ TEST_CASE("VPLs weaker than a share of the strongest are left out, with hysteres
         rig.update(scene);
         return rig.technique.count("kept_vpls") == 2;
     };
-    CHECK(kept(1.5e-3));        // the first frame: as if it had been there
+    CHECK(kept(1.5e-3));  // the first frame: as if it had been there
     CHECK(kept(1.01e-3));
     CHECK_FALSE(kept(0.99e-3));
     CHECK_FALSE(kept(1.5e-3));  // out: it must reach twice as much
@@ -95,7 +96,8 @@ TEST_CASE("the list of lights has all flux, and no more than so many lights", "[
             CHECK(vec(light.bakedFlux) == vec(light.flux));
             // A spot of 170 degrees, evenly bright, sends as much.
             CHECK(double(light.coneAngle) == Approx(85.0 * kRigPi / 180.0));
-            CHECK(double(light.spotIntensity[1]) * 2.0 * kRigPi * (1.0 - std::cos(double(light.coneAngle))) ==
+            CHECK(double(light.spotIntensity[1]) * 2.0 * kRigPi *
+                      (1.0 - std::cos(double(light.coneAngle))) ==
                   Approx(double(light.flux[1])).epsilon(1e-5));
         }
         for (const auto& vpl : vpls) {
@@ -133,8 +135,9 @@ TEST_CASE("few VPLs are lights of their own, exactly", "[static_vpl]") {
     for (const LWListedLight& light : rig.lights()) CHECK(light.vpls == 1);
 }
 
-// A light that sweeps by a twentieth of a degree a frame: lights keep their numbers and hardly move; what all of them send surfaces in the
-// room changes no more from frame to frame than what the VPLs themselves send, but for a VPL that changes its light now and then.
+// A light that sweeps by a twentieth of a degree a frame: lights keep their numbers and hardly move;
+// what all of them send surfaces in the room changes no more from frame to frame than what the VPLs
+// themselves send, but for a VPL that changes its light now and then.
 TEST_CASE("lights keep their numbers and change slowly", "[static_vpl]") {
     LWStaticVplDesc desc = staticDesc();
     desc.lights = 12;
@@ -158,7 +161,8 @@ TEST_CASE("lights keep their numbers and change slowly", "[static_vpl]") {
             error = std::max(error, std::abs(listed / exact - 1.0));
         }
         if (frame > 10)
-            for (std::size_t i = 0; i < now.size(); ++i) worst = std::max(worst, std::abs(now[i] / last[i] - 1.0));
+            for (std::size_t i = 0; i < now.size(); ++i)
+                worst = std::max(worst, std::abs(now[i] / last[i] - 1.0));
         last = now;
         for (const LWListedLight& light : lights) {
             const auto old = before.find(light.id);

@@ -45,7 +45,8 @@ LWStaticVplDesc phantomDesc() {
 
 }  // namespace
 
-TEST_CASE("automatic weights equal all pairs after a round at rest, and at once for new places", "[static_vpl]") {
+TEST_CASE("automatic weights equal all pairs after a round at rest, and at once for new places",
+          "[static_vpl]") {
     LWStaticVplDesc desc = staticDesc();
     desc.automaticWeights = 1;
     desc.comparisons = 1;  // 16 places a frame: a round of 7 for 100
@@ -63,7 +64,8 @@ TEST_CASE("automatic weights equal all pairs after a round at rest, and at once 
         rig.update(scene);
         const std::vector<double> areas = rig.areas();
         for (std::size_t i = 0; i < areas.size(); ++i)
-            CHECK((areas[i] == Approx(before[i]).epsilon(kRounding) || areas[i] == Approx(after[i]).epsilon(kRounding)));
+            CHECK((areas[i] == Approx(before[i]).epsilon(kRounding) ||
+                   areas[i] == Approx(after[i]).epsilon(kRounding)));
     }
     checkAreas(rig.areas(), after);
     // One frame is enough where nothing is known.
@@ -84,13 +86,15 @@ TEST_CASE("only places with a weight of 0 go by their distance", "[static_vpl]")
     for (std::size_t i = 0; i < 20; i += 3) scene.vpls[i].weight = 0.0f;
     rig.update(scene);
     const std::vector<double> areas = rig.areas();
-    for (std::size_t i = 0; i < 20; ++i) CHECK(areas[i] == (i % 3 == 0 ? Approx(brute[i]).epsilon(kRounding) : Approx(1.0)));
+    for (std::size_t i = 0; i < 20; ++i)
+        CHECK(areas[i] == (i % 3 == 0 ? Approx(brute[i]).epsilon(kRounding) : Approx(1.0)));
     scene.vpls.resize(1);  // one that is alone stands for nothing
     rig.update(scene);
     CHECK(rig.areas()[0] == 0.0);
 }
 
-TEST_CASE("a second bounce that catches all carries the average reflectance of the first", "[static_vpl]") {
+TEST_CASE("a second bounce that catches all carries the average reflectance of the first",
+          "[static_vpl]") {
     LWStaticVplDesc desc = staticDesc();
     desc.bounces = 2;
     desc.averageReflectance = 0.6f;
@@ -165,7 +169,8 @@ TEST_CASE("a phantom stands where the host says, and looks like the places aroun
     glm::dvec3 n(0.0), rho(0.0);
     double sum = 0.0, area = 0.0, low = 1e9, high = -1e9;
     glm::dvec3 least(1e9), most(-1e9);
-    for (const LWStaticVpl& vpl : scene.vpls) least = glm::min(least, vec(vpl.position)), most = glm::max(most, vec(vpl.position));
+    for (const LWStaticVpl& vpl : scene.vpls)
+        least = glm::min(least, vec(vpl.position)), most = glm::max(most, vec(vpl.position));
     const double eps = 2e-4 * glm::dot(most - least, most - least);
     for (const LWStaticVpl& vpl : scene.vpls) {
         const glm::dvec3 d = vec(vpl.position) - vec(hit);
@@ -179,7 +184,8 @@ TEST_CASE("a phantom stands where the host says, and looks like the places aroun
     n /= low;
     CHECK(glm::length(vpls[0].normal - n) < 1e-5);
     CHECK(vpls[0].area == Approx(area / sum).epsilon(1e-5));
-    for (int c = 0; c < 3; ++c) CHECK(vpls[0].flux[c] == Approx(rho[c] / sum * area / sum * 20.0 / 4.0 * n.y).epsilon(1e-5));
+    for (int c = 0; c < 3; ++c)
+        CHECK(vpls[0].flux[c] == Approx(rho[c] / sum * area / sum * 20.0 / 4.0 * n.y).epsilon(1e-5));
     // Most of its look is that of the place it lies on.
     CHECK(vpls[0].flux.x > 2.0 * vpls[0].flux.y);
     // Opposite: half the distance behind the lamp, facing the hit, all the light times 0.5.
@@ -208,7 +214,8 @@ TEST_CASE("a phantom lies at the middle of the light's map", "[static_vpl]") {
             flux.set(x, y, {1, 1, 1});
             const auto p = map.position.get(x, y);
             depth.at(x, y, 0) = float(glm::length(glm::dvec3(p.x, p.y, p.z) - eye));
-            for (std::uint32_t c = 0; c < 3; ++c) packed[(std::size_t(y) * size + x) * 3 + c] = map.position.at(x, y, c);
+            for (std::uint32_t c = 0; c < 3; ++c)
+                packed[(std::size_t(y) * size + x) * 3 + c] = map.position.at(x, y, c);
         }
     LWRsm rsm;
     LW_INIT(rsm);
@@ -237,13 +244,18 @@ TEST_CASE("a phantom lies at the middle of the light's map", "[static_vpl]") {
     const glm::dvec3 place = rig.vpls()[0].position;
     const auto middle = map.position.get(size / 2, size / 2);
     const glm::dvec3 texel(middle.x, middle.y, middle.z);
-    // Depth leads to a point of the axis as far away as the middle texel's surface; a map of positions has that texel's.
-    if (byDepth) CHECK(glm::length(place - (eye + glm::normalize(target - eye) * glm::length(texel - eye))) < 1e-5);
-    else CHECK(glm::length(place - texel) < 1e-6);
+    // Depth leads to a point of the axis as far away as the middle texel's surface; a map of positions
+    // has that texel's.
+    if (byDepth)
+        CHECK(glm::length(place - (eye + glm::normalize(target - eye) * glm::length(texel - eye))) <
+              1e-5);
+    else
+        CHECK(glm::length(place - texel) < 1e-6);
     if (size % 2) CHECK(glm::length(place - glm::dvec3(target.x, 0.2 * target.x, target.z)) < 1e-4);
 }
 
-TEST_CASE("phantoms: no hit, no light; without aim the static VPLs are lit; smoothing lags", "[static_vpl]") {
+TEST_CASE("phantoms: no hit, no light; without aim the static VPLs are lit; smoothing lags",
+          "[static_vpl]") {
     LWStaticVplDesc desc = phantomDesc();
     desc.smoothing = 0.75f;
     StaticRig rig(16, desc);

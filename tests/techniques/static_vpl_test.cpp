@@ -30,11 +30,13 @@ StaticScene furnished(const std::vector<float>& profile) {
     StaticScene scene;
     scene.vpls = roomOfPlaces(37, 5);
     scene.lights = {sunLight({0.3, -1.0, 0.4}, {3, 2, 1}), pointLight({2, 1.5, 2.5}, {10, 12, 14}),
-                    spotLight({1, 2.5, 1}, {0.5, -1, 0.7}, {40, 30, 20}, 0.3, 0.9), pointLight({3, 2, 4}, {5, 5, 5})};
+                    spotLight({1, 2.5, 1}, {0.5, -1, 0.7}, {40, 30, 20}, 0.3, 0.9),
+                    pointLight({3, 2, 4}, {5, 5, 5})};
     put(scene.lights[3].direction, {0, -1, 0.3});
     scene.lights[3].profile = profile.data();
     scene.lights[3].profileCount = std::uint32_t(profile.size());
-    for (int i = 0; i < 5; ++i) scene.block({0.6 + 0.7 * i, 0.4 + 0.45 * i, 4.2 - 0.75 * i}, 0.4 + 0.1 * i);
+    for (int i = 0; i < 5; ++i)
+        scene.block({0.6 + 0.7 * i, 0.4 + 0.45 * i, 4.2 - 0.75 * i}, 0.4 + 0.1 * i);
     return scene;
 }
 
@@ -53,7 +55,8 @@ TEST_CASE("flux of static VPLs is the serial twin's", "[static_vpl]") {
         glm::dvec3 e(0.0);
         for (const LWLight& light : scene.lights) e += twinIrradiance(scene, vpl, light);
         expected.push_back(e * vec(vpl.reflectance) * double(vpl.weight));
-        mean += (expected.back().x + expected.back().y + expected.back().z) / 3.0 / double(scene.vpls.size());
+        mean += (expected.back().x + expected.back().y + expected.back().z) / 3.0 /
+                double(scene.vpls.size());
     }
     for (std::size_t i = 0; i < flux.size(); ++i)
         for (int c = 0; c < 3; ++c) {
@@ -73,14 +76,16 @@ TEST_CASE("one place, one light: inverse squares, cosines, cones, pi", "[static_
     };
     // rho A I / d^2, and with the cosine of 60 degrees at the place.
     CHECK(flux(pointLight({0, 2, 0}, {12, 12, 12})) == Approx(0.8 * 0.5 * 12.0 / 4.0).epsilon(1e-6));
-    CHECK(flux(pointLight({std::sqrt(3.0), 1, 0}, {12, 12, 12})) == Approx(0.8 * 0.5 * 12.0 / 4.0 * 0.5).epsilon(1e-6));
+    CHECK(flux(pointLight({std::sqrt(3.0), 1, 0}, {12, 12, 12})) ==
+          Approx(0.8 * 0.5 * 12.0 / 4.0 * 0.5).epsilon(1e-6));
     CHECK(flux(pointLight({0, -2, 0}, {12, 12, 12})) == 0.0);  // behind
     CHECK(flux(sunLight({0, -3, 0}, {7, 7, 7})) == Approx(0.8 * 0.5 * 7.0).epsilon(1e-6));
     // Half-way between the cosines of its cones a spot sends a quarter.
     const double middle = std::acos(0.5 * (std::cos(0.2) + std::cos(0.8)));
     CHECK(flux(spotLight({0, 2, 0}, {std::sin(middle), -std::cos(middle), 0}, {12, 12, 12}, 0.2, 0.8)) ==
           Approx(0.25 * 0.8 * 0.5 * 3.0).epsilon(1e-5));
-    CHECK(flux(spotLight({0, 2, 0}, {0, -1, 0}, {12, 12, 12}, 0.2, 0.8)) == Approx(0.8 * 0.5 * 3.0).epsilon(1e-6));
+    CHECK(flux(spotLight({0, 2, 0}, {0, -1, 0}, {12, 12, 12}, 0.2, 0.8)) ==
+          Approx(0.8 * 0.5 * 3.0).epsilon(1e-6));
     CHECK(flux(spotLight({0, 2, 0}, {0, 1, 0}, {12, 12, 12}, 0.2, 0.8)) == 0.0);
     // A profile's steps at 0, 90 and 180 degrees: the place is seen at 45.
     LWLight lamp = pointLight({1, 1, 0}, {12, 12, 12});
@@ -129,13 +134,13 @@ TEST_CASE("blockers dim softly what passes them", "[static_vpl]") {
     };
     const double open = flux({50, 2, 0}, 1.0);
     CHECK(open == Approx(2.0).epsilon(1e-6));
-    CHECK(flux({0, 2, 0}, 0.5) == 0.0);               // through the centre
+    CHECK(flux({0, 2, 0}, 0.5) == 0.0);  // through the centre
     CHECK(flux({0.25, 2, 0}, 0.5) == Approx(open / 4.0).epsilon(1e-6));
-    CHECK(flux({0.6, 2, 0}, 0.5) == open);            // farther than its radius: the same bits
-    CHECK(flux({0, -1, 0}, 0.9) == open);             // behind the place
+    CHECK(flux({0.6, 2, 0}, 0.5) == open);  // farther than its radius: the same bits
+    CHECK(flux({0, -1, 0}, 0.9) == open);   // behind the place
     CHECK(flux({0, -1, 0}, 2.0) == Approx(open / 4.0).epsilon(1e-6));  // ... reaching half-way round it
     CHECK(flux({0, 5, 0}, 0.9) == (sun ? 0.0 : open));  // beyond a lamp, but not beyond the sun
-    CHECK(flux({0, 2, 0}, 0.0) == open);              // of no size
+    CHECK(flux({0, 2, 0}, 0.0) == open);                // of no size
     // Overlapping ones multiply.
     scene.blockers.clear();
     scene.block({0.25, 2, 0}, 0.5);
@@ -146,13 +151,16 @@ TEST_CASE("blockers dim softly what passes them", "[static_vpl]") {
 
 namespace {
 
-// A room behind a wall in the plane z = 0 with a doorway, x from 0 to 1; the sun comes along +z. The wall's and the door's spheres lie
-// half their radius apart: a path meets a dozen, which let e^-12 through on average (the mean of ln d^2/r^2 over a disc is -1).
+// A room behind a wall in the plane z = 0 with a doorway, x from 0 to 1; the sun comes along +z. The
+// wall's and the door's spheres lie half their radius apart: a path meets a dozen, which let e^-12
+// through on average (the mean of ln d^2/r^2 over a disc is -1).
 StaticScene doorway(double angle) {
     StaticScene scene;
     for (int y = 0; y < 3; ++y)
-        for (int x = 0; x < 15; ++x) scene.vpls.push_back(staticVpl({-1.0 + 0.2 * x, 0.3 + 0.5 * y, 4.0}, {0, 0, -1}, 0.2));
-    for (int x = 0; x < 15; ++x) scene.vpls.push_back(staticVpl({-1.0 + 0.2 * x, 0, 2.0}, {0, 1, -1e-3}, 0.2));
+        for (int x = 0; x < 15; ++x)
+            scene.vpls.push_back(staticVpl({-1.0 + 0.2 * x, 0.3 + 0.5 * y, 4.0}, {0, 0, -1}, 0.2));
+    for (int x = 0; x < 15; ++x)
+        scene.vpls.push_back(staticVpl({-1.0 + 0.2 * x, 0, 2.0}, {0, 1, -1e-3}, 0.2));
     // A place outside, which is the strongest when the door is shut.
     scene.vpls.push_back(staticVpl({0.5, 1, -3}, {0, 0, -1}, 0.5));
     scene.lights = {sunLight({0, -0.1, 1}, {10, 10, 10})};
@@ -161,7 +169,8 @@ StaticScene doorway(double angle) {
             scene.block({-0.25 - 0.15 * x, 0.15 * y, 0}, 0.3);
             scene.block({1.25 + 0.15 * x, 0.15 * y, 0}, 0.3);
         }
-        for (int s = 0; s < 8; ++s) scene.block({s / 7.0 * std::cos(angle), 0.15 * y, s / 7.0 * std::sin(angle)}, 0.3);
+        for (int s = 0; s < 8; ++s)
+            scene.block({s / 7.0 * std::cos(angle), 0.15 * y, s / 7.0 * std::sin(angle)}, 0.3);
     }
     return scene;
 }
@@ -186,17 +195,20 @@ TEST_CASE("a shut door leaves a room dark; light grows as it opens", "[static_vp
     CAPTURE(total);
     CHECK(total.back() > 0.5);
     CHECK(total.front() <= 1e-3 * total.back());
-    // But for what is as good as nothing: a door that swings brings its spheres closer together before it lets light past.
+    // But for what is as good as nothing: a door that swings brings its spheres closer together before
+    // it lets light past.
     for (std::size_t i = 1; i < total.size(); ++i) CHECK(total[i] >= total[i - 1] - 1e-3 * total.back());
 }
 
 TEST_CASE("masks choose which lights light which places", "[static_vpl]") {
     StaticRig rig(16, keepAll());
     StaticScene scene;
-    scene.vpls = {staticVpl({0, 0, 0}, {0, 1, 0}), staticVpl({1, 0, 0}, {0, 1, 0}), staticVpl({2, 0, 0}, {0, 1, 0})};
+    scene.vpls = {staticVpl({0, 0, 0}, {0, 1, 0}), staticVpl({1, 0, 0}, {0, 1, 0}),
+                  staticVpl({2, 0, 0}, {0, 1, 0})};
     scene.vpls[1].lightMask = 2;
     scene.vpls[2].lightMask = 5;
-    scene.lights = {sunLight({0, -1, 0}, {1, 1, 1}), sunLight({0, -1, 0}, {10, 10, 10}), sunLight({0, -1, 0}, {100, 100, 100})};
+    scene.lights = {sunLight({0, -1, 0}, {1, 1, 1}), sunLight({0, -1, 0}, {10, 10, 10}),
+                    sunLight({0, -1, 0}, {100, 100, 100})};
     scene.lights[0].mask = 1;
     scene.lights[1].mask = 2;
     rig.update(scene);
