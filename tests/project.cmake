@@ -69,7 +69,7 @@ target_compile_definitions(foreign_test PRIVATE
 # --- benchmarks: each runs once here; docs/performance.md says how to measure
 if(LIGHTWELL_BUILD_BENCH)
   find_package(benchmark REQUIRED)
-  add_executable(lightwell_bench bench/bench.cpp)
+  add_executable(lightwell_bench bench/bench.cpp bench/static_vpl_cases.cpp)
   target_link_libraries(lightwell_bench PRIVATE lightwell lightwell_warnings benchmark::benchmark)
   add_test(NAME bench_test COMMAND lightwell_bench --benchmark_min_time=0.001)
   set_tests_properties(bench_test PROPERTIES FAIL_REGULAR_EXPRESSION "ERROR OCCURRED")

@@ -27,12 +27,12 @@
  *    counts as rejected and is no surface (a depth beyond is background).
  *
  * VERSIONING: structs that may grow begin with `structSize`; set it to sizeof(struct), which lwDefault*
- * and the LW_INIT macro do. The others (LWImage, LWCamera, LWVpl, LWBlocker, LWSourceView, and what the
+ * and the LW_INIT macro do. The others (LWImage, LWCamera, LWVpl, LWStaticVpl, LWBlocker, LWSourceView, and what the
  * library hands out in arrays) keep their layout. Zero in any other field means "absent" or "the
  * default", unless the field says what else.
  *
  * THREADS: calls on one device are serialised by a lock of that device and may come from any thread;
- * devices are independent of each other. lwFinish, lwGetStats and lwReadDebugView wait with the lock open
+ * devices are independent of each other. lwFinish, lwGetStats, lwReadLightList and lwReadDebugView wait with the lock open
  * for what was enqueued before them, so that other threads' frames go on meanwhile; lwPrewarm, lwProbeDevice
  * and lwCheckInputs keep it to their end. A log callback must not call Lightwell (it gets LW_ERROR_REENTRANT), nor
  * throw.
@@ -269,6 +269,8 @@ typedef struct LWGBuffer {
                                   frame's, in pixels, +x right, +y down */
     LWImage receiveMask;     /**< 1 channel: nonzero pixels receive indirect light but send none */
     LWCamera camera, previousCamera;
+    LWImage bakedMask;       /**< 1 channel: nonzero pixels are LW_RECEIVERS_BAKED, others LW_RECEIVERS_UNBAKED (all, where it
+                                  is absent); "static_vpl" */
 } LWGBuffer;
 
 typedef enum LWLightKind {
@@ -276,6 +278,14 @@ typedef enum LWLightKind {
     LW_LIGHT_POINT = 1,
     LW_LIGHT_SPOT = 2
 } LWLightKind;
+
+/** Who gets a light's or a VPL's indirect light in technique "static_vpl", where a host has baked some of it for what stands still:
+ *  bits, joined by |; 0: all. A light in the baked maps has LW_RECEIVERS_UNBAKED, so that what has maps does not get it twice. */
+typedef enum LWReceivers {
+    LW_RECEIVERS_ALL = 0,
+    LW_RECEIVERS_UNBAKED = 1, /**< what has no baked light: mostly what moves */
+    LW_RECEIVERS_BAKED = 2    /**< what has (LWGBuffer::bakedMask, LWPointOutput::baked) */
+} LWReceivers;
 
 /** One reflective shadow map. Images of one size; rows and columns as the camera projects them. */
 typedef struct LWRsm {
@@ -303,6 +313,14 @@ typedef struct LWLight {
                                    glTF's KHR_lights_punctual says */
     uint32_t rsmCount;
     const LWRsm* rsms;
+    uint32_t mask;             /**< which static VPLs it lights: those whose lightMask has one of these bits; 0: all. "static_vpl" */
+    uint32_t receivers;        /**< LWReceivers of its indirect light */
+    uint32_t profileCount;     /**< 0, or 2 .. 1024 */
+    const float* profile;      /**< point, spot: factors on the intensity by the angle to `direction`, at even steps from 0 to pi,
+                                    linear in between, as an IES file's vertical angles give them for a lamp that is round about its
+                                    axis; host memory; or null (1). "static_vpl" */
+    const float* hit;          /**< spot: xyz of where its axis first meets the scene, host memory; or null. "static_vpl" takes the
+                                    middle of the light's RSM otherwise */
 } LWLight;
 
 /** A small Lambertian emitter made by the host: intensity flux / pi * cos. */
@@ -315,7 +333,19 @@ typedef struct LWVpl {
     float reserved2;
 } LWVpl;
 
-/** A sphere that dims the light passing it softly (static_vpl). */
+/** A place of the scene that reflects light: what technique "static_vpl" turns into a VPL by each frame's lights. */
+typedef struct LWStaticVpl {
+    float position[3];
+    float weight;         /**< how much surface it stands for, of LWStaticVplDesc::unitArea, to 1e18 m^2 in all; 0: a disc that reaches
+                               half-way to the nearest other one */
+    float normal[3];      /**< unit */
+    uint32_t lightMask;   /**< which lights light it, see LWLight::mask; 0: all */
+    float reflectance[3]; /**< diffuse, 0 .. 1 */
+    uint32_t receivers;   /**< LWReceivers of its light */
+} LWStaticVpl;
+
+/** A sphere that dims the light passing it softly ("static_vpl"): its share is (distance of the light's path from the
+ *  centre / radius)^2, all of it farther away. */
 typedef struct LWBlocker {
     float center[3];
     float radius;
@@ -359,6 +389,9 @@ typedef struct LWFrame {
     const LWSync* sync;
     const float* focus;        /**< xyz in world space, host memory: what grids that do not hold all of the scene lie around,
                                     the eye or a point ahead of it ("lpv", "cone_tracing"); or null */
+    const LWStaticVpl* staticVpls; /**< "static_vpl": the same places in every frame in the same order, moved or not; another
+                                    count is another scene */
+    uint32_t staticVplCount;   /**< 4096 at most */
 } LWFrame;
 
 /** Where results go; each image optional (format LW_FORMAT_NONE), at least one given. Writable host
@@ -390,6 +423,7 @@ typedef struct LWPointOutput {
                              max(0, pi Y0 c0 + (2 pi / 3) Y1 (c1 . n)) */
     LWImage validity;   /**< 1 channel in [0,1], count x 1 pixels */
     const LWSync* sync;
+    uint32_t baked;     /**< 1: the points are LW_RECEIVERS_BAKED; "static_vpl" */
 } LWPointOutput;
 
 /* ---------------------------------------------------------------------------------------- views */
@@ -703,6 +737,42 @@ typedef struct LWConeTracingDesc {
 
 LW_API void lwDefaultConeTracing(LWConeTracingDesc* desc);
 
+/** What spot lights light in technique "static_vpl"; lights of other kinds always light the static VPLs. */
+typedef enum LWStaticVplVariant {
+    LW_STATIC_VPL_STATIC = 0, /**< LWFrame::staticVpls */
+    LW_STATIC_VPL_PHANTOM = 1 /**< one VPL each, where its axis first meets the scene (LWLight::hit, else the middle texel of its
+                                   first RSM), with normal, reflectance and area of the static VPLs around. One that has
+                                   neither lights the static VPLs */
+} LWStaticVplVariant;
+
+/** Technique "static_vpl": places of the scene that the host chose (LWFrame::staticVpls) become VPLs by the frame's lights, past
+ *  soft spheres (LWFrame::blockers, 1024 at most). Needs no RSM. Also as a list of lights: lwReadLightList. */
+typedef struct LWStaticVplDesc {
+    uint32_t structSize;
+    LWStaticVplVariant variant;
+    uint32_t bounces;         /**< 1; or 2: the light of VPLs comes back once more, from one VPL opposite all of the static ones
+                                   and one opposite each phantom */
+    float averageReflectance; /**< of what lies opposite, 0 .. 1 */
+    float secondDistance;     /**< of the VPL opposite the static ones from their middle, m, to 1e9; 0: a mean side of their bounding box.
+                                   One opposite a phantom lies at 1.5 times its light's distance */
+    float secondArea;         /**< m^2 of what lies opposite, to 1e18: it catches min(1, secondArea / (pi distance^2)) of the light; 0: all */
+    float unitArea;           /**< m^2 that a weight of 1 stands for, above 0 .. 1e18 */
+    uint32_t automaticWeights; /**< 1: as if all weights were 0 */
+    uint32_t comparisons;     /**< of weights that are 0: distances looked at a frame, 1 .. 2^24. A whole number of VPLs is done in each
+                                   frame, 16 at least; after one round at rest all are exact. New VPLs are done at once */
+    float cullRelative;       /**< VPLs weaker than this share of the strongest are left out, the strongest as if nothing blocked
+                                   its light; 0 .. 1 */
+    float cullAbsolute;       /**< above 0: instead, those weaker than this, W/sr; to 1e30 */
+    float hysteresis;         /**< how much stronger than that a VPL must be to come back, a factor of 1 .. 100 */
+    float smoothing;          /**< share of its last frame's place and look that a phantom keeps; 0 .. 0.99 */
+    uint32_t lights;          /**< that lwReadLightList hands out at most, 1 .. 64 */
+    uint32_t interleave;      /**< as LWRsmDesc's */
+    uint32_t filter;          /**< as LWRsmDesc's */
+    LWResolution resolution;  /**< as LWRsmDesc's */
+} LWStaticVplDesc;
+
+LW_API void lwDefaultStaticVpl(LWStaticVplDesc* desc);
+
 /* A technique's parameters, described for tools: the command line's --set and every chart read them
  * here, so a new technique needs no other registration. */
 typedef enum LWParameterKind {
@@ -747,6 +817,7 @@ typedef struct LWTechniqueInfo {
     const LWSetting* settings; /**< beside the sweeps of the parameters; or null */
     uint32_t settingCount;
     uint32_t points;           /**< 1: lwRenderPoints can have its light */
+    uint32_t lightList;        /**< 1: lwReadLightList can have its light */
 } LWTechniqueInfo;
 
 LW_API uint32_t lwCountTechniques(void);
@@ -766,6 +837,7 @@ LW_API LWStatus lwCreateHorizon(LWDevice device, const LWHorizonDesc* desc, LWTe
 LW_API LWStatus lwCreateAo(LWDevice device, const LWAoDesc* desc, LWTechnique* technique);
 LW_API LWStatus lwCreateLpv(LWDevice device, const LWLpvDesc* desc, LWTechnique* technique);
 LW_API LWStatus lwCreateConeTracing(LWDevice device, const LWConeTracingDesc* desc, LWTechnique* technique);
+LW_API LWStatus lwCreateStaticVpl(LWDevice device, const LWStaticVplDesc* desc, LWTechnique* technique);
 LW_API LWStatus lwRetainTechnique(LWTechnique technique);
 LW_API LWStatus lwReleaseTechnique(LWTechnique technique);
 
@@ -799,6 +871,25 @@ LW_API LWStatus lwRender(LWTechnique technique, LWView view, const LWGBuffer* gb
  *  Errors: INVALID_*, UNSUPPORTED, NOT_UPDATED, OUT_OF_MEMORY. */
 LW_API LWStatus lwRenderPoints(LWTechnique technique, const LWImage* positions, const LWImage* normals, uint32_t count,
                                const LWPointOutput* output);
+
+/** A light that stands for VPLs of "static_vpl", for renderers that light with their own shaders. */
+typedef struct LWListedLight {
+    float position[3];      /**< mean of its VPLs' by flux */
+    float area;             /**< m^2 that they stand for together */
+    float axis[3];          /**< unit: mean of their normals by flux */
+    uint32_t id;            /**< below LWStaticVplDesc::lights; stays with a light from frame to frame */
+    float flux[3];          /**< W, for LW_RECEIVERS_UNBAKED; intensity on the axis flux / pi, falling with the cosine to it */
+    uint32_t vpls;          /**< how many */
+    float bakedFlux[3];     /**< W, for LW_RECEIVERS_BAKED */
+    float coneAngle;        /**< half angle of the spot light of 170 degrees: 85 degrees in radians */
+    float spotIntensity[3]; /**< W/sr: of an evenly bright spot light of that cone with flux `flux` */
+    float reserved;
+} LWListedLight;
+
+/** The light of the last lwUpdate as lights, no more than the technique's `lights`: VPLs beyond are merged with near ones that face the
+ *  same way, and all flux is kept. Waits for the update, and copies once. `lights`: room for `capacity` of them, LWStaticVplDesc::lights
+ *  always being enough. LWTechniqueInfo::lightList says who can. Errors: INVALID_*, UNSUPPORTED, NOT_UPDATED, OUT_OF_MEMORY. */
+LW_API LWStatus lwReadLightList(LWTechnique technique, LWListedLight* lights, uint32_t capacity, uint32_t* count);
 
 /* ------------------------------------------------------------------------------ checking inputs */
 

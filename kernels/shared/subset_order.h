@@ -24,4 +24,10 @@ LW_FN lw_int lw_subset_index(lw_subset_order order, lw_int slot) {
     return k < order.count ? k : -1;
 }
 
+// The slot of k.
+LW_FN lw_int lw_subset_slot(lw_subset_order order, lw_int k) {
+    const lw_int run = k / order.step, place = (run / order.subsets) * order.step + k % order.step;
+    return (run % order.subsets) * order.capacity + place;
+}
+
 #endif

@@ -48,6 +48,9 @@ LibraryRenderer::LibraryRenderer(const lightwell::Device& device, const Paramete
       descriptor_(device, parameters),
       technique_(device, parameters.technique().c_str(), descriptor_.get()),
       quantity_(quantity),
+      vpls_(!parameters.takesVpls()            ? FrameVpls()
+            : parameters.vplsFile().empty() ? FrameVpls(inputs)
+                                            : FrameVpls(parameters.vplsFile())),
       irradiance_(inputs.gbuffer().width, inputs.gbuffer().height, 3),
       validity_(inputs.gbuffer().width, inputs.gbuffer().height, 1),
       share_(inputs.gbuffer().width, inputs.gbuffer().height, 1),
@@ -125,6 +128,7 @@ FrameSample LibraryRenderer::renderFrame(const RenderInputs& inputs, bool reset)
     frame.geometry = &inputs.geometry();
     std::copy_n(inputs.environment(), 3, frame.environment);
     frame.focus = inputs.focus();
+    vpls_.fill(inputs, frame);
     technique_.update(frame);
     render(inputs.lwGBuffer());
     device_.finish();

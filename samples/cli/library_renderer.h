@@ -1,6 +1,7 @@
 // A technique of the library on an OpenCL device, frame after frame.
 #pragma once
 
+#include "frame_vpls.h"
 #include "indirect_renderer.h"
 
 namespace cli {
@@ -38,6 +39,7 @@ private:
     Descriptor descriptor_;
     lightwell::Technique technique_;
     Quantity quantity_;
+    FrameVpls vpls_;
     studio::PlanarBuffer irradiance_, validity_, share_, roughness_;
     float roughnessOfAll_;
     std::uint64_t estimatedBytes_ = 0, frameIndex_ = 0;

@@ -62,6 +62,10 @@ double parseValue(const LWParameter& parameter, const std::string& text) {
     return isValid(parameter, value) ? value : refuse();
 }
 
+// What the library has no parameter for: arrays of a frame, which the host loads.
+constexpr const char* kVplsFile = "vpls_file";
+bool takesVpls(const std::string& technique) { return technique == "static_vpl"; }
+
 std::string defaultText(const LWParameter& parameter) {
     if (parameter.kind == LW_PARAMETER_ENUM || parameter.kind == LW_PARAMETER_TECHNIQUE)
         return choicesOf(parameter).at(std::size_t(parameter.defaultValue));
@@ -70,6 +74,17 @@ std::string defaultText(const LWParameter& parameter) {
 }
 
 }  // namespace
+
+bool Parameters::takesVpls() const {
+    return cli::takesVpls(technique_) || std::any_of(parts_.begin(), parts_.end(), [](const auto& part) { return part.second.takesVpls(); });
+}
+
+std::string Parameters::vplsFile() const {
+    if (!vplsFile_.empty()) return vplsFile_;
+    for (const auto& [name, part] : parts_)
+        if (const std::string file = part.vplsFile(); !file.empty()) return file;
+    return {};
+}
 
 std::vector<LWTechniqueInfo> describeTechniques() {
     std::vector<LWTechniqueInfo> infos(lwCountTechniques(), lightwell::make<LWTechniqueInfo>());
@@ -89,6 +104,8 @@ std::string describeParameters() {
     std::string text = "Techniques and what --set takes (key=default: valid values; meaning):\n";
     for (const LWTechniqueInfo& info : describeTechniques()) {
         text += fmt::format("  {}: {}\n", info.name, info.summary);
+        if (takesVpls(info.name))
+            text += fmt::format("    {}=: a file; static VPLs and blockers (docs/vpls-file.md); without it placed as by place-vpls\n", kVplsFile);
         for (std::uint32_t i = 0; i < info.parameterCount; ++i) {
             const LWParameter& parameter = info.parameters[i];
             text += fmt::format("    {}={}: {}; {}\n", parameter.name, defaultText(parameter),
@@ -126,9 +143,15 @@ void Parameters::set(const std::string& assignment) {
         part->second.set(assignment.substr(dot + 1));
         return;
     }
+    if (cli::takesVpls(technique_) && name == kVplsFile) {
+        if (value.empty()) throw UsageError("--set vpls_file: expected a file's name, got none");
+        vplsFile_ = value;
+        return;
+    }
     const LWParameter* parameter = find(name);
     if (parameter == nullptr) {
         std::vector<std::string> names;
+        if (cli::takesVpls(technique_)) names.emplace_back(kVplsFile);
         for (std::uint32_t i = 0; i < info_.parameterCount; ++i)
             names.emplace_back(info_.parameters[i].name);
         for (const auto& [part, parameters] : parts_) names.push_back(part + ".KEY");
@@ -200,6 +223,7 @@ std::vector<std::pair<std::string, ParameterValue>> Parameters::resolved() const
         for (auto& [name, value] : parts_.at(parameter.name).resolved())
             values.emplace_back(std::string(parameter.name) + "." + name, std::move(value));
     }
+    if (!vplsFile_.empty()) values.emplace_back(kVplsFile, vplsFile_);
     return values;
 }
 

@@ -37,6 +37,9 @@ public:
     bool hasAnywhere(const std::string& name) const;
     // Of a technique of the host's own.
     const void* descriptor() const { return bytes_.data(); }
+    bool takesVpls() const;  // it, or a part, is static_vpl
+    // static_vpl: the file of VPLs and blockers (--set vpls_file=FILE), its own or of the first part that has one; "": none.
+    std::string vplsFile() const;
     // Every parameter as it stands, in the table's order; those of a technique that is a parameter behind it.
     std::vector<std::pair<std::string, ParameterValue>> resolved() const;
     // By the parameter's name.
@@ -54,6 +57,7 @@ private:
     LWTechniqueInfo info_{};
     std::vector<std::uint64_t> bytes_;  // of the descriptor, aligned; techniques in it are null
     std::map<std::string, Parameters> parts_;
+    std::string vplsFile_;  // a key of the command line's own
 };
 
 // "ssvp", or "ssvp,warm_start=off,clusters=16". UsageError as of Parameters.

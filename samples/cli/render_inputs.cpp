@@ -97,6 +97,7 @@ LWImage describePlanes(const studio::PlanarBuffer& buffer) {
 RenderInputs::RenderInputs(const studio::RayScene& scene, const studio::Camera& camera,
                            const InputOptions& options)
     : scene_(scene),
+      time_(options.time),
       gbuffer_(studio::renderGBuffer(
           scene, camera, options.width, options.height,
           options.previousCamera != nullptr ? *options.previousCamera : camera,

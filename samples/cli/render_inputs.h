@@ -34,6 +34,7 @@ public:
     RenderInputs& operator=(const RenderInputs&) = delete;
 
     const studio::RayScene& scene() const { return scene_; }
+    float time() const { return time_; }
     const studio::GBuffer& gbuffer() const { return gbuffer_; }
     const LWGBuffer& lwGBuffer() const { return lwGBuffer_; }
     // Of the further source views, in their order.
@@ -46,6 +47,7 @@ public:
 
 private:
     const studio::RayScene& scene_;
+    float time_;
     studio::GBuffer gbuffer_;
     std::vector<std::vector<studio::Rsm>> rsms_;  // of each light
     std::vector<std::vector<LWRsm>> lwRsms_;

@@ -107,7 +107,9 @@ const LWTechniqueInfo& rivalInfo() {
         setDefaults,
         0,  // the parameter says it
         kSettings,
-        std::uint32_t(std::size(kSettings)), 0};
+        std::uint32_t(std::size(kSettings)),
+        0,
+        0};
     return info;
 }
 

@@ -16,6 +16,9 @@ namespace {
 // Counts beyond these are garbage that would be read past the end of some array.
 constexpr std::uint32_t kMaxLights = 4096;
 constexpr std::uint32_t kMaxVpls = 1u << 24;
+constexpr std::uint32_t kMaxStaticVpls = 4096;
+constexpr float kMaxArea = 1e18f;  // of a sphere as large as positions reach
+constexpr std::uint32_t kMaxProfile = 1024;
 constexpr std::uint32_t kMaxBlockers = 1u << 20;
 constexpr std::uint32_t kMaxSourceViews = 64;
 constexpr std::uint32_t kMaxWaitEvents = 1024;
@@ -37,6 +40,14 @@ void checkFinite(const float* values, int count, const std::string& name, bool n
                  notNegative ? " of 0 or more" : "", ", got ", values[i]);
 }
 
+// Names of elements are made only where one is refused: thousands of strings take longer than a frame's light.
+template <class Name>
+void checkReceivers(std::uint32_t receivers, Name name) {
+    constexpr std::uint32_t kAll = LW_RECEIVERS_UNBAKED | LW_RECEIVERS_BAKED;
+    if (receivers > kAll)
+        fail(LW_ERROR_INVALID_ARGUMENT, name(), ".receivers: expected bits of LWReceivers (0 .. ", kAll, "), got ", receivers);
+}
+
 void checkLight(const LWLight& light, const std::string& name) {
     checkFinite(light.position, 3, name + ".position");
     checkFinite(light.direction, 3, name + ".direction");
@@ -47,6 +58,41 @@ void checkLight(const LWLight& light, const std::string& name) {
     if (!(light.outerConeAngle >= light.innerConeAngle && light.outerConeAngle <= kRightAngle))
         fail(LW_ERROR_INVALID_ARGUMENT, name, ".outerConeAngle: expected innerConeAngle (",
              light.innerConeAngle, ") .. pi/2, got ", light.outerConeAngle);
+    checkCount(light.profileCount, light.profile, kMaxProfile, name, "profileCount", "profile");
+    if (light.profileCount == 1)
+        fail(LW_ERROR_INVALID_ARGUMENT, name, ".profileCount: expected 0, or 2 .. ", kMaxProfile, ", got 1");
+    for (std::uint32_t i = 0; i < light.profileCount; ++i)
+        if (!(light.profile[i] >= 0.0f && light.profile[i] <= 1e6f))
+            fail(LW_ERROR_INVALID_ARGUMENT, name, ".profile[", i, "]: expected 0 .. 1e6, got ", light.profile[i]);
+    if (light.hit) checkFinite(light.hit, 3, name + ".hit");
+    checkReceivers(light.receivers, [&] { return name; });
+}
+
+template <class Name>
+void checkPosition(const float* p, Name name) {
+    if (!(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] <= LW_LARGEST_DISTANCE * LW_LARGEST_DISTANCE))
+        fail(LW_ERROR_INVALID_ARGUMENT, name(), ".position: expected at most ", LW_LARGEST_DISTANCE, " from the origin, got ", p[0], " ", p[1],
+             " ", p[2]);
+}
+
+template <class Name>
+void checkUnit(const float* n, Name name) {
+    const float squared = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
+    // Two per cent: normals that a host stored in 8 bits per component.
+    if (!(squared > 0.98f * 0.98f && squared < 1.02f * 1.02f))
+        fail(LW_ERROR_INVALID_ARGUMENT, name(), ".normal: expected unit length, got ", std::sqrt(squared));
+}
+
+void checkStaticVpl(const LWStaticVpl& vpl, std::uint32_t index) {
+    const auto name = [index] { return "frame.staticVpls[" + std::to_string(index) + "]"; };
+    checkPosition(vpl.position, name);
+    checkUnit(vpl.normal, name);
+    if (!(vpl.weight >= 0.0f && vpl.weight <= kMaxArea))
+        fail(LW_ERROR_INVALID_ARGUMENT, name(), ".weight: expected 0 .. ", kMaxArea, ", got ", vpl.weight);
+    for (const float part : vpl.reflectance)
+        if (!(part >= 0.0f && part <= 1.0f))
+            fail(LW_ERROR_INVALID_ARGUMENT, name(), ".reflectance: expected 0 .. 1, got ", part);
+    checkReceivers(vpl.receivers, name);
 }
 
 }  // namespace
@@ -73,6 +119,7 @@ FrameArgument::FrameArgument(Call& call, const LWFrame* from) : frame_(readStruc
     checkCount(frame_.lightCount, frame_.lights, kMaxLights, "frame", "lightCount", "lights");
     checkCount(frame_.vplCount, frame_.vpls, kMaxVpls, "frame", "vplCount", "vpls");
     checkCount(frame_.blockerCount, frame_.blockers, kMaxBlockers, "frame", "blockerCount", "blockers");
+    checkCount(frame_.staticVplCount, frame_.staticVpls, kMaxStaticVpls, "frame", "staticVplCount", "staticVpls");
     checkCount(frame_.sourceViewCount, frame_.sourceViews, kMaxSourceViews, "frame", "sourceViewCount",
                "sourceViews");
     copyLights();
@@ -116,26 +163,22 @@ void FrameArgument::checkNumbers() const {
     if (frame_.focus) checkFinite(frame_.focus, 3, "frame.focus");
     for (std::uint32_t i = 0; i < frame_.vplCount; ++i) {
         const LWVpl& vpl = frame_.vpls[i];
-        const float* p = vpl.position;
-        if (!(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] <= LW_LARGEST_DISTANCE * LW_LARGEST_DISTANCE))
-            fail(LW_ERROR_INVALID_ARGUMENT, "frame.vpls[", i, "].position: expected at most ", LW_LARGEST_DISTANCE,
-                 " from the origin, got ", p[0], " ", p[1], " ", p[2]);
+        const auto name = [i] { return "frame.vpls[" + std::to_string(i) + "]"; };
+        checkPosition(vpl.position, name);
         if (!(vpl.area >= 0.0f && std::isfinite(vpl.area)))
-            fail(LW_ERROR_INVALID_ARGUMENT, "frame.vpls[", i, "].area: expected a finite number of 0 or more, got ",
-                 vpl.area);
+            fail(LW_ERROR_INVALID_ARGUMENT, name(), ".area: expected a finite number of 0 or more, got ", vpl.area);
         for (const float flux : vpl.flux)
             if (!(flux >= 0.0f && flux <= LW_LARGEST_FLUX))
-                fail(LW_ERROR_INVALID_ARGUMENT, "frame.vpls[", i, "].flux: expected 0 .. ", LW_LARGEST_FLUX,
-                     ", got ", flux);
-        const float* n = vpl.normal;
-        const float squared = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
-        // Two per cent: normals that a host stored in 8 bits per component.
-        if (!(squared > 0.98f * 0.98f && squared < 1.02f * 1.02f))
-            fail(LW_ERROR_INVALID_ARGUMENT, "frame.vpls[", i, "].normal: expected unit length, got ",
-                 std::sqrt(squared));
+                fail(LW_ERROR_INVALID_ARGUMENT, name(), ".flux: expected 0 .. ", LW_LARGEST_FLUX, ", got ", flux);
+        checkUnit(vpl.normal, name);
     }
+    for (std::uint32_t i = 0; i < frame_.staticVplCount; ++i)
+        checkStaticVpl(frame_.staticVpls[i], i);
     for (std::uint32_t i = 0; i < frame_.blockerCount; ++i) {
         const LWBlocker& blocker = frame_.blockers[i];
+        if (std::isfinite(blocker.center[0]) && std::isfinite(blocker.center[1]) && std::isfinite(blocker.center[2]) &&
+            blocker.radius >= 0.0f && std::isfinite(blocker.radius))
+            continue;
         checkFinite(blocker.center, 3, "frame.blockers[" + std::to_string(i) + "].center");
         checkFinite(&blocker.radius, 1, "frame.blockers[" + std::to_string(i) + "].radius", true);
     }

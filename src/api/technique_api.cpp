@@ -1,6 +1,8 @@
 // Entry points: techniques and frames.
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "api/call.h"
 #include "api/frame_arguments.h"
@@ -73,39 +75,23 @@ void light(TechniqueObject& object, const LWSync* sync, Record record) {
     }
 }
 
+// Names of the techniques whose description says yes to `makes`.
+template <class Makes>
+std::string techniquesThat(Makes makes) {
+    std::string names;
+    for (const TechniqueEntry& entry : techniqueEntries())
+        if (makes(entry.info)) names += (names.empty() ? "" : ", ") + std::string(entry.info.name);
+    return names.empty() ? "none" : names;
+}
+
 // Of it and of all of its parts.
 void checkMakesPoints(const TechniqueObject& object) {
     if (!object.entry->info.points) {
-        std::string makers;
-        for (const TechniqueEntry& entry : techniqueEntries())
-            if (entry.info.points) makers += (makers.empty() ? "" : ", ") + std::string(entry.info.name);
         fail(LW_ERROR_UNSUPPORTED, "technique: ", object.entry->info.name,
-             " takes its light from a view's own pixels and has none at points; techniques that have: ", makers.empty() ? "none" : makers);
+             " takes its light from a view's own pixels and has none at points; techniques that have: ",
+             techniquesThat([](const LWTechniqueInfo& info) { return info.points != 0; }));
     }
     for (const auto& part : object.parts) checkMakesPoints(*part);
-}
-
-constexpr std::uint32_t kMaxSide = 16384;  // of views and RSMs
-
-std::uint64_t estimateWith(const TechniqueEntry& entry, const std::vector<std::uint64_t>& descriptor,
-                           const std::vector<std::shared_ptr<TechniqueObject>>& parts, const LWViewDesc& view,
-                           const FrameShape& shape) {
-    std::uint64_t total = entry.estimateBytes(descriptor.data(), view, shape);
-    for (const auto& part : parts) total += estimateWith(*part->entry, part->descriptor, part->parts, view, shape);
-    return total;
-}
-
-void estimate(Call& call, const char* name, const void* desc, const LWViewDesc* view, FrameShape shape,
-              std::uint64_t* bytes) {
-    if (!bytes) fail(LW_ERROR_INVALID_ARGUMENT, "bytes: expected an address, got null");
-    const TechniqueEntry& entry = findTechniqueEntry(name);
-    const auto descriptor = readDescriptor(entry, desc);
-    const LWViewDesc own = readStruct(view, "view");
-    if (own.maxWidth == 0 || own.maxHeight == 0 || own.maxWidth > kMaxSide || own.maxHeight > kMaxSide)
-        fail(LW_ERROR_INVALID_ARGUMENT, "view: expected 1 .. ", kMaxSide, " pixels a side, got ",
-             own.maxWidth, " x ", own.maxHeight);
-    shape.uploads = !call.owner()->device.unifiedMemory();
-    *bytes = estimateWith(entry, descriptor, partsOf(call, entry, descriptor), own, shape);
 }
 
 }  // namespace
@@ -161,6 +147,10 @@ LWStatus lwCreateConeTracing(LWDevice device, const LWConeTracingDesc* desc, LWT
     return createTechnique("lwCreateConeTracing", device, "cone_tracing", desc, technique);
 }
 
+LWStatus lwCreateStaticVpl(LWDevice device, const LWStaticVplDesc* desc, LWTechnique* technique) {
+    return createTechnique("lwCreateStaticVpl", device, "static_vpl", desc, technique);
+}
+
 LWStatus lwRetainTechnique(LWTechnique technique) {
     return enter("lwRetainTechnique",
                  [&](Call&) { retainHandle(HandleKind::kTechnique, technique, "technique"); });
@@ -171,53 +161,6 @@ LWStatus lwReleaseTechnique(LWTechnique technique) {
         auto object = std::static_pointer_cast<TechniqueObject>(
             releaseHandle(HandleKind::kTechnique, technique, "technique"));
         if (object) call.dispose(std::move(object));
-    });
-}
-
-LWStatus lwEstimateMemory(LWDevice device, const char* name, const void* desc, const LWViewDesc* view,
-                          std::uint64_t rsmTexels, std::uint64_t* bytes) {
-    return enter("lwEstimateMemory", [&](Call& call) {
-        call.device(device);
-        constexpr std::uint64_t kMaxTexels = std::uint64_t(1) << 40;  // products with it stay in 64 bits
-        if (rsmTexels > kMaxTexels)
-            fail(LW_ERROR_INVALID_ARGUMENT, "rsmTexels: expected fewer texels than a frame may have, got ",
-                 rsmTexels);
-        FrameShape shape;
-        // A square map, or the next smaller square and the rows for the rest.
-        const auto side = std::uint64_t(std::ceil(std::sqrt(double(rsmTexels))));
-        if (side) shape.addMap(side, (rsmTexels + side - 1) / side);
-        estimate(call, name, desc, view, shape, bytes);
-    });
-}
-
-LWStatus lwEstimateFrameMemory(LWDevice device, const char* name, const void* desc, const LWViewDesc* view,
-                               const LWFrame* frame, std::uint64_t* bytes) {
-    return enter("lwEstimateFrameMemory", [&](Call& call) {
-        call.device(device);
-        const FrameArgument own(call, frame);
-        FrameShape shape;
-        shape.vplCount = own.get().vplCount;
-        if (own.get().geometry) {
-            shape.triangles = own.get().geometry->triangleCount;
-            shape.surfels = own.get().geometry->surfelCount;
-        }
-        for (std::uint32_t i = 0; i < own.get().sourceViewCount; ++i) {
-            const LWImage& image = own.get().sourceViews[i].gbuffer->normal;
-            if (image.width > kMaxSide || image.height > kMaxSide)
-                fail(LW_ERROR_INVALID_ARGUMENT, "frame.sourceViews[", i, "].gbuffer.normal: expected at most ", kMaxSide,
-                     " pixels a side, got ", image.width, " x ", image.height);
-            shape.sources.emplace_back(image.width, image.height);
-            shape.sourcePixels += (std::uint64_t(image.width) + 15) / 16 * 16 * image.height;
-        }
-        for (std::uint32_t l = 0; l < own.get().lightCount; ++l)
-            for (std::uint32_t r = 0; r < own.get().lights[l].rsmCount; ++r) {
-                const LWImage& flux = own.get().lights[l].rsms[r].flux;
-                if (flux.width == 0 || flux.height == 0 || flux.width > kMaxSide || flux.height > kMaxSide)
-                    fail(LW_ERROR_INVALID_ARGUMENT, "frame.lights[", l, "].rsms[", r, "].flux: expected 1 .. ",
-                         kMaxSide, " pixels a side, got ", flux.width, " x ", flux.height);
-                shape.addMap(flux.width, flux.height);
-            }
-        estimate(call, name, desc, view, shape, bytes);
     });
 }
 
@@ -280,5 +223,32 @@ LWStatus lwRenderPoints(LWTechnique technique, const LWImage* positions, const L
         const SyncArgument sync(own.get().output.sync, call.owner()->device.context(), "output.sync");
         checkMakesPoints(*object);
         light(*object, sync.get(), [&] { object->technique->renderPoints(object->record->executor, own.get()); });
+    });
+}
+
+LWStatus lwReadLightList(LWTechnique technique, LWListedLight* lights, std::uint32_t capacity, std::uint32_t* count) {
+    return enter("lwReadLightList", [&](Call& call) {
+        const auto object = call.technique(technique);
+        if (!count) fail(LW_ERROR_INVALID_ARGUMENT, "count: expected an address, got null");
+        if (capacity > 0 && !lights) fail(LW_ERROR_INVALID_ARGUMENT, "lights: expected an array of ", capacity, ", got null");
+        if (!object->entry->info.lightList)
+            fail(LW_ERROR_UNSUPPORTED, "technique: ", object->entry->info.name, " does not list lights; techniques that do: ",
+                 techniquesThat([](const LWTechniqueInfo& info) { return info.lightList != 0; }));
+        std::vector<LWListedLight> listed(object->technique->listedLights());
+        Device& device = call.owner()->device;
+        try {
+            light(*object, nullptr, [&] { object->technique->readLightList(object->record->executor, listed.data()); });
+            call.wait();
+        } catch (...) {
+            clFinish(device.queue());  // `listed` must not be written after this call
+            throw;
+        }
+        device.settle();
+        listed.erase(std::remove_if(listed.begin(), listed.end(), [](const LWListedLight& one) { return one.vpls == 0; }),
+                     listed.end());
+        if (capacity < listed.size())
+            fail(LW_ERROR_INVALID_ARGUMENT, "capacity: expected at least ", listed.size(), " lights, got ", capacity);
+        std::copy(listed.begin(), listed.end(), lights);
+        *count = std::uint32_t(listed.size());
     });
 }

@@ -24,6 +24,7 @@ enum Field {
     kRoughness,
     kMotion,
     kReceiveMask,
+    kBakedMask,
     kFieldCount
 };
 
@@ -51,6 +52,8 @@ constexpr FieldFacts kFields[kFieldCount] = {
      "gbuffer_input.unpack_motion"},
     {"receiveMask", &kMaskRole, &LWGBuffer::receiveMask, &GBufferInput::receiveMask, kNeedsReceiveMask,
      false, "gbuffer_input.unpack_receive_mask"},
+    {"bakedMask", &kMaskRole, &LWGBuffer::bakedMask, &GBufferInput::bakedMask, kNeedsBakedMask, false,
+     "gbuffer_input.unpack_baked_mask"},
 };
 constexpr char kUploadPass[] = "gbuffer_input.upload";
 

@@ -13,14 +13,15 @@
 namespace lightwell {
 
 // Which images a technique reads; others are neither checked nor touched. Position and normal always.
-// Albedo, direct radiance and roughness must then be given; motion and mask may be absent (empty
+// Albedo, direct radiance and roughness must then be given; motion and masks may be absent (empty
 // planes).
 enum GBufferNeeds : std::uint32_t {
     kNeedsAlbedo = 1,
     kNeedsDirectRadiance = 2,
     kNeedsRoughness = 4,
     kNeedsMotion = 8,
-    kNeedsReceiveMask = 16
+    kNeedsReceiveMask = 16,
+    kNeedsBakedMask = 32
 };
 
 class GBufferInput {
@@ -38,7 +39,7 @@ public:
     void import(Executor& executor, const View& view, const LWGBuffer& gbuffer, std::uint32_t needs,
                 const char* name);
 
-    Planes position, normal, albedo, directRadiance, roughness, motion, receiveMask;
+    Planes position, normal, albedo, directRadiance, roughness, motion, receiveMask, bakedMask;
 
     void report(Report& report) const;  // one choice per image: in place, or unpacked from what
     std::uint64_t bytes() const;

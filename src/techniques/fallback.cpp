@@ -221,7 +221,7 @@ const TechniqueEntry& fallbackEntry() {
         TechniqueEntry made{};
         made.info = {sizeof(LWTechniqueInfo), sizeof(LWFallbackDesc), "fallback",
                      "two techniques: where the first has not seen a pixel's hemisphere, the second lights it",
-                     kParameters, 2, [](void* desc) { lwDefaultFallback(static_cast<LWFallbackDesc*>(desc)); }, 0, nullptr, 0, 1};
+                     kParameters, 2, [](void* desc) { lwDefaultFallback(static_cast<LWFallbackDesc*>(desc)); }, 0, nullptr, 0, 1, 0};
         made.estimateBytes = estimateBytes;
         made.join = joinTechniques;
         return made;

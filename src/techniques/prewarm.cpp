@@ -45,6 +45,22 @@ struct Inputs {
         }
     }
 
+    std::array<LWStaticVpl, 2> staticVpls{};
+    LWBlocker blocker{};
+    void addStaticVpls(LWFrame& frame) {
+        for (std::size_t i = 0; i < staticVpls.size(); ++i) {
+            staticVpls[i].position[0] = float(i);
+            staticVpls[i].normal[1] = 1.0f;
+            for (float& part : staticVpls[i].reflectance) part = 0.5f;
+        }
+        blocker.center[1] = 0.5f;
+        blocker.radius = 0.1f;
+        frame.staticVpls = staticVpls.data();
+        frame.staticVplCount = std::uint32_t(staticVpls.size());
+        frame.blockers = &blocker;
+        frame.blockerCount = 1;
+    }
+
     // The first row of pixels.
     LWImage row(Pixels& pixels, LWFormat format) {
         LWImage image = imageOf(pixels, format);
@@ -61,7 +77,7 @@ struct IdleAtEnd {
 
 }  // namespace
 
-void exerciseTechnique(Executor& executor, Technique& technique, std::uint32_t kinds) {
+void exerciseTechnique(Executor& executor, Technique& technique, std::uint32_t kinds, bool spots) {
     Inputs inputs;
     const IdleAtEnd idle{executor.device()};
     const auto view = std::make_shared<View>(kSize, kSize);
@@ -110,6 +126,18 @@ void exerciseTechnique(Executor& executor, Technique& technique, std::uint32_t k
         frame.sourceViewCount = 1;
         frame.lightCount = 1;
         frame.lights = &light;
+        if (spots) {
+            inputs.addStaticVpls(frame);
+            // The map from a lamp above its middle; its light is not for what is baked.
+            light.kind = LW_LIGHT_SPOT;
+            light.position[1] = 1.0f;
+            light.outerConeAngle = 1.0f;
+            for (float& part : light.radiantIntensity) part = 1.0f;
+            light.receivers = LW_RECEIVERS_UNBAKED;
+            const float perspective[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1.001f, -0.01f, 0, 0, -1, 0};
+            for (int i = 0; i < 16; ++i) rsm.camera.projection[i] = perspective[i];
+            gbuffer.bakedMask = gbuffer.receiveMask;
+        }
         LWOutput output{};
         output.structSize = sizeof output;
         output.irradiance = imageOf(inputs.irradiance, LW_FORMAT_FLOAT3);

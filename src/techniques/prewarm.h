@@ -7,8 +7,8 @@
 namespace lightwell {
 
 // Blocks until the device has finished. The technique's state is that of the last made-up frame. kinds: OutputKinds that it makes too,
-// beside the other outputs and alone.
-void exerciseTechnique(Executor& executor, Technique& technique, std::uint32_t kinds = 0);
+// beside the other outputs and alone. spots: of one whose static VPLs are lit: with a spot light and its map, blockers and baked receivers.
+void exerciseTechnique(Executor& executor, Technique& technique, std::uint32_t kinds = 0, bool spots = false);
 // The same for its light at points, after that. Of one that has none at them: not to be called.
 void exercisePoints(Executor& executor, Technique& technique);
 

@@ -7,6 +7,7 @@
 #include "techniques/rsm.h"
 #include "techniques/screen_space.h"
 #include "techniques/ssvp.h"
+#include "techniques/static_vpl.h"
 #include "techniques/technique.h"
 
 namespace lightwell {
@@ -20,6 +21,7 @@ const std::vector<TechniqueEntry>& techniqueEntries() {
         aoEntry(),
         lpvEntry(),
         coneTracingEntry(),
+        staticVplEntry(),
         fallbackEntry(),
     };
     return entries;

@@ -64,6 +64,12 @@ public:
     virtual void renderPoints(Executor&, const Points&) {
         fail(LW_ERROR_INTERNAL, "technique: expected one that has light at points, got another");
     }
+    // Of techniques whose entry says that they have their light as lights (LWTechniqueInfo::lightList): how many at most, and what
+    // makes them and has them copied to `lights`, which stays until the device has finished.
+    virtual std::uint32_t listedLights() const { return 0; }
+    virtual void readLightList(Executor&, LWListedLight*) {
+        fail(LW_ERROR_INTERNAL, "technique: expected one that lists lights, got another");
+    }
     // A call has broken off half-way, for want of memory or of the device: what is kept from frame to frame may be half made.
     virtual void lose() {}
     // Builds and launches every kernel that the parameters can need.

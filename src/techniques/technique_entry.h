@@ -28,6 +28,7 @@ TechniqueEntry techniqueEntry(const char* name, const char* summary, std::uint32
     entry.info.settingCount = std::uint32_t(settings.size());
     // What inherits renderPoints has none.
     entry.info.points = std::is_same_v<decltype(&T::renderPoints), decltype(&Technique::renderPoints)> ? 0 : 1;
+    entry.info.lightList = std::is_same_v<decltype(&T::readLightList), decltype(&Technique::readLightList)> ? 0 : 1;
     entry.create = [](Device& device, const void* desc) -> std::unique_ptr<Technique> {
         return std::make_unique<T>(device, *static_cast<const Desc*>(desc));
     };

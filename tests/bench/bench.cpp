@@ -10,6 +10,7 @@
 #include <string>
 
 #include "box_frame.h"
+#include "static_vpl_cases.h"
 
 namespace {
 
@@ -157,6 +158,7 @@ int main(int argc, char** argv) {
         return 1;
     }
     registerCases();
+    bench::registerStaticVplCases(device);
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
     const std::size_t ran = benchmark::RunSpecifiedBenchmarks();

@@ -95,7 +95,7 @@ const LWParameter kParameters[] = {{"gain", "factor on the sky's radiance", LW_P
 
 const TechniqueEntry& ambientSkyEntry() {
     static const TechniqueEntry entry = {{sizeof(LWTechniqueInfo), sizeof(AmbientSkyDesc), "ambient_sky",
-                                          "an even sky that nothing hides", kParameters, 1, setDefaults, 0, nullptr, 0, 0},
+                                          "an even sky that nothing hides", kParameters, 1, setDefaults, 0, nullptr, 0, 0, 0},
                                          create,
                                          estimateBytes};
     return entry;

@@ -1,0 +1,117 @@
+// Ranges, defaults and sweeps of technique static_vpl's parameters.
+#include "techniques/static_vpl_parameters.h"
+
+#include <cstddef>
+
+#include "techniques/parameter_table.h"
+
+namespace lightwell {
+namespace {
+
+constexpr const char* kVariantNames[] = {"static", "phantom", nullptr};
+constexpr const char* kResolutionNames[] = {"full", "half", nullptr};
+constexpr double kInterleaveValues[] = {1, 2, 4, 8};
+constexpr double kVariantSweep[] = {LW_STATIC_VPL_STATIC, LW_STATIC_VPL_PHANTOM};
+constexpr double kBounceSweep[] = {1, 2};
+constexpr double kInterleaveSweep[] = {1, 2};
+constexpr double kResolutionSweep[] = {LW_RESOLUTION_FULL, LW_RESOLUTION_HALF};
+
+LWParameter real(const char* name, const char* description, std::size_t offset, double least,
+                 double most, double value) {
+    return parameter(name, description, LW_PARAMETER_FLOAT, offset, least, most, value);
+}
+
+LWParameter whole(const char* name, const char* description, std::size_t offset, double least,
+                  double most, double value) {
+    return parameter(name, description, LW_PARAMETER_UINT, offset, least, most, value);
+}
+
+}  // namespace
+
+const std::vector<LWParameter>& staticVplParameters() {
+    using Desc = LWStaticVplDesc;
+    static const std::vector<LWParameter> table = {
+        swept(choosing(parameter("variant",
+                                 "what spot lights light: the static VPLs, or one phantom VPL each "
+                                 "where their axis meets the scene",
+                                 LW_PARAMETER_ENUM, offsetof(Desc, variant), 0, 1, LW_STATIC_VPL_STATIC),
+                       kVariantNames),
+              kVariantSweep),
+        swept(whole("bounces",
+                    "2: the light of VPLs comes back once more, from what is taken to lie opposite",
+                    offsetof(Desc, bounces), 1, 2, 1),
+              kBounceSweep),
+        real("average_reflectance", "of what lies opposite; the second bounce grows in proportion",
+             offsetof(Desc, averageReflectance), 0, 1, 0.5),
+        real("second_distance",
+             "of what lies opposite the static VPLs, m; 0: a mean side of their bounding box",
+             offsetof(Desc, secondDistance), 0, 1e9, 0),
+        real("second_area",
+             "of what lies opposite, m^2: what it does not catch is lost; 0: it catches all",
+             offsetof(Desc, secondArea), 0, 1e18, 0),
+        real("unit_area", "m^2 that a VPL's weight of 1 stands for; all light grows in proportion",
+             offsetof(Desc, unitArea), 1e-30, 1e18, 1),
+        parameter(
+            "automatic_weights",
+            "as if all weights were 0: each VPL stands for a disc half-way to the nearest other one",
+            LW_PARAMETER_BOOL, offsetof(Desc, automaticWeights), 0, 1, 0),
+        whole("comparisons",
+              "distances a frame between VPLs, for weights that are 0: time grows, the lag of moving "
+              "VPLs' areas falls",
+              offsetof(Desc, comparisons), 1, 1u << 24, 1u << 15),
+        real("cull_relative",
+             "VPLs weaker than this share of the strongest are left out: time falls, dim light is lost",
+             offsetof(Desc, cullRelative), 0, 1, 1e-3),
+        real("cull_absolute", "above 0: VPLs weaker than this are left out instead, W/sr",
+             offsetof(Desc, cullAbsolute), 0, 1e30, 0),
+        real("hysteresis", "how much stronger a VPL must be to come back: less coming and going, later",
+             offsetof(Desc, hysteresis), 1, 100, 2),
+        real("smoothing", "share of its last frame's place and look that a phantom keeps: calmer, later",
+             offsetof(Desc, smoothing), 0, 0.99, 0),
+        whole("lights", "that the light list has at most: nearer to all VPLs, more for the host to draw",
+              offsetof(Desc, lights), 1, 64, 16),
+        swept(allowing(whole("interleave",
+                             "n of n x n pixels that share out the VPLs: time falls with n^2, a pattern "
+                             "shows where they are few",
+                             offsetof(Desc, interleave), 1, 8, 1),
+                       kInterleaveValues),
+              kInterleaveSweep),
+        parameter("filter", "edge-aware n x n filter after an interleaved gather", LW_PARAMETER_BOOL,
+                  offsetof(Desc, filter), 0, 1, 1),
+        swept(
+            choosing(parameter(
+                         "resolution",
+                         "pixels that are gathered; half: every second column and row, up-sampled after",
+                         LW_PARAMETER_ENUM, offsetof(Desc, resolution), 0, 1, LW_RESOLUTION_FULL),
+                     kResolutionNames),
+            kResolutionSweep)};
+    return table;
+}
+
+// The paper culls at an absolute intensity, without hysteresis.
+const std::vector<LWSetting>& staticVplSettings() {
+    static const std::vector<LWSetting> settings = {
+        {"Papaioannou 2025, static", "automatic_weights=on cull_absolute=0.01 hysteresis=1 bounces=2"},
+        {"Papaioannou 2025, phantom",
+         "variant=phantom automatic_weights=on cull_absolute=0.01 hysteresis=1 bounces=2"}};
+    return settings;
+}
+
+}  // namespace lightwell
+
+extern "C" void lwDefaultStaticVpl(LWStaticVplDesc* desc) {
+    if (!desc) return;
+    *desc = LWStaticVplDesc{};
+    desc->structSize = sizeof *desc;
+    desc->variant = LW_STATIC_VPL_STATIC;
+    desc->bounces = 1;
+    desc->averageReflectance = 0.5f;
+    desc->unitArea = 1.0f;
+    desc->comparisons = 1u << 15;
+    desc->cullRelative = 1e-3f;
+    desc->hysteresis = 2.0f;
+    desc->lights = 16;
+    desc->interleave = 1;
+    desc->filter = 1;
+    desc->resolution = LW_RESOLUTION_FULL;
+}
