@@ -102,19 +102,36 @@ LW_FN int find_corner(cone_corner* c, __global const int* table, int size, int l
     return 1;
 }
 
-// One word's share of a sum; opacity not yet scaled.
-LW_FN void add_word(cone_sample* sum, laneu word, real weight, int unit) {
-    sum->a = fma_(to_real(as_lanei_(word & LW_VOXEL_OPACITY_MASK)), weight, sum->a);
+// Fields of a word as fractions behind a leading 1: no conversion, and a mask, a constant and a field are one operation. What the ones
+// bring is added up as well and taken off the sum (finish_words), so that a field that is 0 in all words stays 0 exactly. Blue lies lowest,
+// 2^-7 of the one, and is off by 1e-5 of its largest at most; in its place in the word it would be off by 1 %.
+#define LW_CONE_ONE 0x3f800000u
+#define LW_CONE_LEAST_EXPONENT 0x20000000u  // 64: an exponent's 5 bits are or-ed to it
+// From a fraction to the mantissa: opacity over 255, colours over u.
+#define LW_CONE_OPACITY_STEP (256.0f / 255.0f)
+#define LW_CONE_RED_STEP 1024.0f
+#define LW_CONE_GREEN_STEP 64.0f
+#define LW_CONE_BLUE_STEP 8192.0f
+
+typedef struct { real r, g, b, a, ones; } cone_words;
+LW_FN real fraction(laneu word, uint field, laneu one) { return as_real_((word & field) | one); }
+LW_FN laneu exponent_of(laneu low) { return (low & LW_VOXEL_EXPONENT_MASK) | (laneu)LW_CONE_LEAST_EXPONENT; }
+
+// One word's share of a sum, with the ones.
+LW_FN void add_word(cone_words* sum, laneu word, real weight) {
+    const laneu low = word >> LW_VOXEL_EXPONENT_SHIFT;
+    sum->a = fma_(fraction(low, LW_VOXEL_OPACITY_MASK >> LW_VOXEL_EXPONENT_SHIFT, (laneu)LW_CONE_ONE), weight, sum->a);
 #if LW_CONE_LIGHT
-    const real step = weight * as_real_(((word >> LW_VOXEL_EXPONENT_SHIFT) & LW_VOXEL_EXPONENT_MASK) + (uint)unit);
-    sum->r = fma_(to_real(as_lanei_(word & LW_VOXEL_RED_MASK)), step, sum->r);
-    sum->g = fma_(to_real(as_lanei_(word & LW_VOXEL_GREEN_MASK)), step, sum->g);
-    sum->b = fma_(to_real(as_lanei_(word & LW_VOXEL_BLUE_MASK)), step, sum->b);
+    const laneu one = exponent_of(low), high = word << 10;
+    sum->ones = fma_(as_real_(one), weight, sum->ones);
+    sum->r = fma_(fraction(word, LW_VOXEL_RED_MASK, one), weight, sum->r);
+    sum->g = fma_(fraction(high, LW_VOXEL_GREEN_MASK << 10, one), weight, sum->g);
+    sum->b = fma_(fraction(high, LW_VOXEL_BLUE_MASK << 10, one), weight, sum->b);
 #endif
 }
 
 // The eight voxels' words of one plane, each lane's with `weight`, onto the sum.
-LW_FN void add_plane(cone_sample* sum, __global const uint* words, const cone_corner* c, lanei at, real weight, int unit) {
+LW_FN void add_plane(cone_words* sum, __global const uint* words, const cone_corner* c, lanei at, real weight) {
     const real upper = weight * c->z, lower = weight - upper;
     const real w3 = upper * c->y, w2 = upper - w3, w1 = lower * c->y, w0 = lower - w1;
     const real rows[4] = {w0, w1, w2, w3};
@@ -122,42 +139,60 @@ LW_FN void add_plane(cone_sample* sum, __global const uint* words, const cone_co
         laneu low, high;
         gather_pairs(words, at + ((k & 1) ? LW_VOXEL_STORED : 0) + ((k & 2) ? LW_VOXEL_STORED * LW_VOXEL_STORED : 0), &low, &high);
         const real far = rows[k] * c->x;
-        add_word(sum, low, rows[k] - far, unit);
-        add_word(sum, high, far, unit);
+        add_word(sum, low, rows[k] - far);
+        add_word(sum, high, far);
     }
 }
 
-// The plane of an axis that a ray meets, seen at the cosine of its angle to that axis; `closed`: the largest share of a voxel's side that
-// something covers.
-LW_FN void add_side(cone_sample* sum, real* closed, __global const uint* words, const cone_corner* c, int plane, real d, real has, int unit) {
-    const real none = (real)0.0f, cosine = fabs(d);
-    cone_sample side = {none, none, none, none};
-    add_plane(&side, words, c, c->at + selecti_((lanei)0, (lanei)plane, d > none), has, unit);
-    sum->a = fma_(cosine, side.a, sum->a);
+LW_FN void begin_words(cone_words* sum) { sum->r = sum->g = sum->b = sum->a = sum->ones = (real)0.0f; }
+
+// has: the sum of weights, of those lanes that have any.
+LW_FN void finish_words(cone_sample* sample, const cone_words* sum, real has, int unit) {
+    sample->a = clamp((sum->a - has) * LW_CONE_OPACITY_STEP, (real)0.0f, (real)1.0f);
 #if LW_CONE_LIGHT
+    const float scale = as_float(unit + ((127 << 23) - (int)LW_CONE_LEAST_EXPONENT));
+    // In this order: a step times the scale may leave float's range.
+    sample->r = (sum->r - sum->ones) * LW_CONE_RED_STEP * scale;
+    sample->g = (sum->g - sum->ones) * LW_CONE_GREEN_STEP * scale;
+    sample->b = (sum->b - sum->ones) * LW_CONE_BLUE_STEP * scale;
+#endif
+}
+
+// The plane of an axis that a ray meets, seen at the cosine of its angle to that axis; `closed`: the largest share of a voxel's side that
+// something covers; `ones`: of opacity's sum.
+LW_FN void add_side(cone_words* sum, real* closed, real* ones, __global const uint* words, const cone_corner* c, int plane, real d, real has) {
+    const real cosine = fabs(d);
+    cone_words side;
+    begin_words(&side);
+    add_plane(&side, words, c, c->at + selecti_((lanei)0, (lanei)plane, d > (real)0.0f), has);
+    sum->a = fma_(cosine, side.a, sum->a);
     sum->r = fma_(cosine, side.r, sum->r);
     sum->g = fma_(cosine, side.g, sum->g);
     sum->b = fma_(cosine, side.b, sum->b);
-#endif
-    *closed = fmax(*closed, side.a);
+    sum->ones = fma_(cosine, side.ones, sum->ones);
+    *ones = fma_(cosine, has, *ones);
+    *closed = fmax(*closed, side.a - has);
 }
 
 // Three of six sides. Small surfaces, A of them facing an axis, take A |d| of a step's light: x in all. Where they close a share F of the
 // voxel's side, a ray has 1 / |d| steps' length to get through the layer: x / (1 - F + x) is x for small F, and 1 for a closed wall however
 // it is met. (By the squares of the direction's components, as is usual, a closed wall that is met at 60 degrees to its normal
 // takes a quarter of a step's light, and more than half gets through: 64 cones then leave the Cornell box 24 % too dark at any size.)
-LW_FN void add_sides(cone_sample* sum, __global const uint* words, const cone_corner* c, int plane, real dx, real dy, real dz, real has,
-                     int unit) {
-    real closed = (real)0.0f;
-    add_side(sum, &closed, words, c, plane, dx, has, unit);
-    add_side(sum, &closed, words + 2 * plane, c, plane, dy, has, unit);
-    add_side(sum, &closed, words + 4 * plane, c, plane, dz, has, unit);
-    const real taken = fma_(sum->a - closed, (real)LW_VOXEL_OPACITY_STEP, (real)1.0f);
-    const real share = 1.0f / fmax(taken, (real)1e-6f);
-    sum->a *= share;
-    sum->r *= share;
-    sum->g *= share;
-    sum->b *= share;
+LW_FN void sample_sides(cone_sample* sample, __global const uint* words, const cone_corner* c, int plane, real dx, real dy, real dz, real has,
+                        int unit) {
+    cone_words sum;
+    begin_words(&sum);
+    real closed = (real)0.0f, ones = (real)0.0f;
+    add_side(&sum, &closed, &ones, words, c, plane, dx, has);
+    add_side(&sum, &closed, &ones, words + 2 * plane, c, plane, dy, has);
+    add_side(&sum, &closed, &ones, words + 4 * plane, c, plane, dz, has);
+    finish_words(sample, &sum, ones, unit);
+    const real taken = fmax((sum.a - ones) * LW_CONE_OPACITY_STEP, (real)0.0f);
+    const real share = 1.0f / fmax(taken + (1.0f - fmin(closed * LW_CONE_OPACITY_STEP, (real)1.0f)), (real)1e-6f);
+    sample->a = fmin(taken * share, (real)1.0f);
+    sample->r *= share;
+    sample->g *= share;
+    sample->b *= share;
 }
 
 #if LW_CONE_MODE == 2 && LW_CONE_LIGHT
@@ -201,20 +236,24 @@ LW_FN void sample_corner(cone_sample* sample, const cone_volume* v, int level, c
     sample->r = sample->g = sample->b = sample->a = none;
     __global const uint* words = level == 0 ? v->base : v->mips;
     const int plane = level == 0 ? v->grids.basePlane : v->grids.mipPlane;
-#if LW_CONE_MODE == 1
-    if (level > 0 || LW_CONE_SIDES) add_sides(sample, words, c, plane, dx, dy, dz, has, v->unit);
-    else add_plane(sample, words, c, c->at, has, v->unit);
-#elif LW_CONE_MODE == 2 && LW_CONE_LIGHT
-    if (level == 0 && LW_CONE_SIDES) add_sides(sample, words, c, plane, dx, dy, dz, has, v->unit);
-    else add_harmonics(sample, words, c, plane, dx, dy, dz, has, v->unit);
-#else
-    if (level == 0 && LW_CONE_SIDES) add_sides(sample, words, c, plane, dx, dy, dz, has, v->unit);
-    else add_plane(sample, words, c, c->at, has, v->unit);
+#if LW_CONE_MODE == 2 && LW_CONE_LIGHT
+    if (level > 0 || !LW_CONE_SIDES) {
+        add_harmonics(sample, words, c, plane, dx, dy, dz, has, v->unit);
+        sample->a = fmin(sample->a * LW_VOXEL_OPACITY_STEP, (real)1.0f);
+        sample->r = fmax(sample->r * LW_VOXEL_RED_STEP, none);
+        sample->g = fmax(sample->g * LW_VOXEL_GREEN_STEP, none);
+        sample->b = fmax(sample->b * LW_VOXEL_BLUE_STEP, none);
+        return;
+    }
 #endif
-    sample->a = fmin(sample->a * LW_VOXEL_OPACITY_STEP, (real)1.0f);
-    sample->r = fmax(sample->r * LW_VOXEL_RED_STEP, none);
-    sample->g = fmax(sample->g * LW_VOXEL_GREEN_STEP, none);
-    sample->b = fmax(sample->b * LW_VOXEL_BLUE_STEP, none);
+    if (level == 0 ? LW_CONE_SIDES : LW_CONE_MODE == 1) {
+        sample_sides(sample, words, c, plane, dx, dy, dz, has, v->unit);
+        return;
+    }
+    cone_words sum;
+    begin_words(&sum);
+    add_plane(&sum, words, c, c->at, has);
+    finish_words(sample, &sum, has, v->unit);
 }
 
 #endif
