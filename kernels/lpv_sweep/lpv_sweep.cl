@@ -16,6 +16,7 @@
 //
 // One work-item does all planes of a group of directions, whose signs are the same: so every cell's sum over them stays in
 // registers, and groups' sums are added up in one order. A plane is overwritten in place, from the far end to the near.
+#include "shared/lpv_scroll.h"
 #include "shared/lpv_sweep_types.h"
 #include "shared/lpv_types.h"
 #include "shared/whole_sums.h"
@@ -28,22 +29,27 @@ LW_FN int cell_in(int order, int size, int x, int y, int z) {
 
 // One work-item = a row of cells in one order (rows of a slice; slices and orders): sums to floats. Marks: of each cell the bits of
 // the normals that send in it, and those of the sheets in it. used: the same of each row; planes of others are not written.
-__kernel void lpv_sweep_resolve(__global const uint* lights, __global const uint* areas, __global const LwLpvPlace* grid, int size,
-                                __global float* sources, __global float* sheets, __global uint* used) {
+__kernel void lpv_sweep_resolve(__global const uint* lights, __global const uint* areas, __global const LwSweepCover* cover,
+                                __global const LwLpvPlace* grid, int size, __global float* sources, __global float* sheets,
+                                __global uint* used) {
     const int row = (int)get_global_id(0), line = (int)get_global_id(1);
     if (row >= size || line >= LW_SWEEP_ORDERS * size) return;
     const int order = line / size, z = line % size, cells = size * size * size, stride = LW_SWEEP_ORDERS * cells;
     const LwLpvPlace place = *grid;
     const float first = 1.0f / place.cell.y, second = 1.0f / place.cell.z, inverse = place.origin.w;
     const float unit = 1.0f / (float)(1 << LW_SWEEP_AREA_BITS);
+    const int4 slot = cover->parts.slot;
     // A row in the second order is a column in the first.
     const int start = order == 0 ? (z * size + row) * size : z * size * size + row, step = order == 0 ? 1 : size;
+    // Areas are kept in slots.
+    const int kept = order == 0 ? slot_of(-slot.x, row, z, slot, size) : slot_of(row, -slot.y, z, slot, size),
+              firstSlot = order == 0 ? slot.x : slot.y;
     __global const uint* lightMarks = lights + sweep_light_marks(size);
     __global const uint* areaMarks = areas + sweep_area_marks(size);
     uint sending = 0u, stopping = 0u;
     for (int i = 0; i < size; ++i) {
         sending |= lightMarks[start + i * step];
-        stopping |= areaMarks[start + i * step];
+        stopping |= areaMarks[kept + step * i];  // in any order
     }
     const int at = order * cells + (z * size + row) * size;
     used[2 * (at / size)] = sending;
@@ -57,13 +63,14 @@ __kernel void lpv_sweep_resolve(__global const uint* lights, __global const uint
                 sources[(k + c) * stride + at + i] =
                     convert_float(long_at(light + 2 * (k + c))) * first * second * inverse * inverse;
         }
-        __global const uint* area = areas + 2 * LW_SWEEP_BLOCKS * cell;
+        const int from = kept + step * slot_along(firstSlot + i, size);
+        __global const uint* area = areas + 2 * LW_SWEEP_BLOCKS * from;
         for (uint bits = stopping; bits;) {
             const int k = take_lowest(&bits);
             sheets[k * stride + at + i] = convert_float(long_at(area + 2 * k)) * unit;
         }
-        const float cover = areaMarks[cell] ? convert_float(long_at(area + 2 * LW_SWEEP_COVER)) * unit : 0.0f;
-        sheets[LW_SWEEP_COVER * stride + at + i] = 1.0f - fmin(cover, 1.0f);
+        const float closed = areaMarks[from] ? convert_float(long_at(area + 2 * LW_SWEEP_COVER)) * unit : 0.0f;
+        sheets[LW_SWEEP_COVER * stride + at + i] = 1.0f - fmin(closed, 1.0f);
     }
 }
 

@@ -3,6 +3,7 @@
 // bits: the same bits in any order.
 #include "shared/lpv_cells.h"
 #include "shared/lpv_raster.h"
+#include "shared/lpv_scroll.h"
 #include "shared/lpv_sweep_normal.h"
 #include "shared/lpv_types.h"
 #include "shared/rsm_types.h"
@@ -71,23 +72,32 @@ LW_FN void add_area(sweep_areas* run, const LwLpvPlace place, int size, float ar
     add_units(run, cell_of(place, size, px, py, pz, nx, ny, nz, -0.5f), sheets, 1, units, sums, marks);
 }
 
-// One work-item in all: is what covers the cells still right? anew: 1 where the host knows that it is not.
-__kernel void lpv_sweep_begin(__global const LwLpvPlace* grid, uint low, uint high, int anew, __global LwSweepCover* state) {
+// One work-item in all: is what covers the cells still right, and which of them? anew: 1 where the host knows that it is not; scrolls: 1
+// where what covers a cell is the same wherever the grid lies that has it.
+__kernel void lpv_sweep_begin(__global const LwLpvPlace* grid, uint low, uint high, int anew, int scrolls, int size,
+                              __global LwSweepCover* state) {
     if (get_global_id(0) != 0) return;
-    const LwLpvPlace place = *grid;
-    const float4 last = state->origin;
-    const int same = place.origin.x == last.x && place.origin.y == last.y && place.origin.z == last.z && place.origin.w == last.w &&
-                     state->revision[0] == low && state->revision[1] == high;
-    state->stale = anew || !same;
-    state->origin = place.origin;
+    const float4 origin = grid->origin, last = state->origin;
+    const int isSame = !anew && state->revision[0] == low && state->revision[1] == high;
+    state->stale = !isSame || origin.x != last.x || origin.y != last.y || origin.z != last.z || origin.w != last.w;
+    if (!state->stale) return;
+    LwLpvParts parts;
+    parts_of(last, origin, isSame && scrolls, size, &parts);
+    if (!scrolls) parts.slot = (int4)(0);
+    state->parts = parts;
+    state->origin = origin;
     state->revision[0] = low;
     state->revision[1] = high;
 }
 
-// Empties the sums of area and their marks where they are stale. One work-item = 16 words.
-__kernel void lpv_sweep_clear(__global uint16* sums, int count, __global const LwSweepCover* state) {
-    const int i = lw_list_index();
-    if (i < count && state->stale) sums[i] = (uint16)(0u);
+// Empties the sums of area and their marks where they are stale. One work-item = one cell (x; y and z).
+__kernel void lpv_sweep_clear(__global uint* sums, int size, __global const LwSweepCover* state) {
+    const int x = (int)get_global_id(0), line = (int)get_global_id(1), y = line % size, z = line / size;
+    if (x >= size || line >= size * size || !state->stale || !parts_have(&state->parts, x, y, z)) return;
+    const int at = slot_of(x, y, z, state->parts.slot, size);
+    __global uint4* to = (__global uint4*)(sums + 2 * LW_SWEEP_BLOCKS * at);
+    for (int i = 0; i < LW_SWEEP_BLOCKS / 2; ++i) to[i] = (uint4)(0u);
+    sums[sweep_area_marks(size) + at] = 0u;
 }
 
 // One work-item = LW_SWEEP_RUN texels of all maps, lit or not. scale: of their areas.
@@ -131,23 +141,31 @@ __kernel void lpv_sweep_cover_surfels(__global const float* surfels, int stride,
     end_areas(&run, sums, marks);
 }
 
-// Triangles of a work-item: neighbours, as they are ordered.
-#define COVER_RUN 16
+// A grid's lattice, and the cells of a part of it that are made.
+typedef struct {
+    lpv_lattice lattice;
+    int4 low, high, slot;
+    int size;
+} sweep_region;
 
-LW_FN void cover_triangle(const lpv_raster* r, int size, sweep_areas* run, __global uint* sums, __global uint* marks) {
+LW_FN void cover_triangle(const lpv_raster* r, const sweep_region* region, sweep_areas* run, __global uint* sums, __global uint* marks) {
     const sweep_normal n = normal_of(r->nx, r->ny, r->nz);
-    const float most = (float)size;
     int sheets[3], cell = -1;
     long units[4], found = 0;  // of one sample; samples of the cell
     sheets_of(n, sheets);
     units_of(n, r->area, r->nx, r->ny, r->nz, units);
-    for (int v = r->firstV; v <= r->lastV; ++v)
+    for (int v = r->firstV; v <= r->lastV; ++v) {
+        long edges[3];
+        raster_row(r, v, edges);
         for (int u = r->firstU; u <= r->lastU; ++u) {
             float p[3];
-            if (!raster_sample(r, u, v, p)) continue;
-            const float x = p[0] - 0.5f * r->nx, y = p[1] - 0.5f * r->ny, z = p[2] - 0.5f * r->nz;
-            const int isInside = x >= 0.0f && x < most && y >= 0.0f && y < most && z >= 0.0f && z < most;
-            const int to = isInside ? ((int)z * size + (int)y) * size + (int)x : -1;
+            if (!raster_sample(r, u, v, edges)) continue;
+            raster_place(r, u, v, p);
+            const int x = whole_below(p[0] - 0.5f * r->nx) - region->lattice.corner[0],
+                      y = whole_below(p[1] - 0.5f * r->ny) - region->lattice.corner[1],
+                      z = whole_below(p[2] - 0.5f * r->nz) - region->lattice.corner[2];
+            if (!part_has(region->low, region->high, x, y, z)) continue;
+            const int to = slot_of(x, y, z, region->slot, region->size);
             if (to != cell) {
                 if (cell >= 0) add_units(run, cell, sheets, found, units, sums, marks);
                 cell = to;
@@ -155,21 +173,41 @@ LW_FN void cover_triangle(const lpv_raster* r, int size, sweep_areas* run, __glo
             }
             ++found;
         }
+    }
     if (cell >= 0) add_units(run, cell, sheets, found, units, sums, marks);
 }
 
-// One work-item = COVER_RUN triangles: their samples on the grid's own lattice.
-__kernel void lpv_sweep_cover_triangles(__global const float* triangles, int stride, int count, __global const LwLpvPlace* grid,
-                                        int size, __global const LwSweepCover* state, __global uint* sums) {
-    const int first = lw_list_index() * COVER_RUN, last = min(first + COVER_RUN, count);
-    if (!state->stale) return;
-    const LwLpvPlace place = *grid;
+// One work-item = one node of the tree over the triangles: the samples of its leaves' triangles on the grid's lattice, in those cells
+// that are to be made.
+__kernel void lpv_sweep_cover_triangles(__global const float* nodes, int nodeCount, __global const float* triangles, int stride,
+                                        __global const LwLpvPlace* grid, int size, __global const LwSweepCover* state,
+                                        __global uint* sums) {
+    const int n = lw_list_index();
+    const float scale = (float)LPV_RASTER * grid->origin.w;
+    if (n >= nodeCount || !state->stale || !(scale > 0.0f)) return;
+    __global const float* node = nodes + n * LW_TREE_NODE;
     __global uint* marks = sums + sweep_area_marks(size);
+    sweep_region region;
+    region.size = size;
+    region.slot = state->parts.slot;
+    lattice_of(grid->origin, &region.lattice);
     sweep_areas run = no_areas();
-    for (int t = first; t < last; ++t) {
-        lpv_raster r;
-        raster_of(triangles, stride, t, place, size, &r);
-        if (r.firstU <= r.lastU && r.firstV <= r.lastV) cover_triangle(&r, size, &run, sums, marks);
+    for (int part = 0; part < state->parts.count; ++part) {
+        region.low = state->parts.low[part];
+        region.high = state->parts.high[part];
+        for (int first = 0; first < LW_TREE_CHILDREN; first += LW_WIDTH)
+            for (uint leaves = raster_leaves(node, first, &region.lattice, scale, region.low, region.high); leaves;) {
+                __global const int* leaf = (__global const int*)node + first + take_lowest(&leaves);
+                const int begin = leaf[LW_TREE_CHILD], end = begin + leaf[LW_TREE_COUNT];
+                for (int t = begin; t < end; t += LW_WIDTH)
+                    for (uint bits = raster_near(triangles, stride, t, &region.lattice, scale, region.low, region.high); bits;) {
+                        const int k = t + take_lowest(&bits);
+                        lpv_raster r;
+                        if (k >= end || !raster_of(triangles, stride, k, &region.lattice, scale, &r)) continue;
+                        raster_within(&r, &region.lattice, region.low, region.high);
+                        cover_triangle(&r, &region, &run, sums, marks);
+                    }
+            }
     }
     end_areas(&run, sums, marks);
 }

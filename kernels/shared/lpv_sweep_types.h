@@ -7,7 +7,7 @@
 #ifndef LW_LPV_SWEEP_TYPES_H
 #define LW_LPV_SWEEP_TYPES_H
 
-#include "portable.h"
+#include "lpv_types.h"
 
 #define LW_SWEEP_COLOURS 3
 // Normals: number of (x, y, z) is (x + 1) + 3 (y + 1) + 9 (z + 1), one less beyond 13, which would be (0, 0, 0). -n is 25 - n.
@@ -57,8 +57,9 @@ typedef struct {
     lw_float4 origin;     // LwLpvPlace's
     lw_uint revision[2];  // of the surfels
     lw_int stale, unused;
+    LwLpvParts parts;
 } LwSweepCover;
-LW_SIZE_CHECK(LwSweepCover, 32);
+LW_SIZE_CHECK(LwSweepCover, 176);
 
 // A plane's light, between empty cells on all sides.
 #define LW_SWEEP_PAD 16

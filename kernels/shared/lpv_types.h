@@ -50,13 +50,25 @@ LW_FN lw_int lpv_corners(lw_int size) { return (size + 1) * (size + 1) * (size +
 // Cells of a row that are told together whether anything blocks about them, at every width.
 #define LW_LPV_BLOCK_RUN 16
 
+// What of a grid that moved is to be made, see lpv_scroll.h: boxes of cells or corners that do not overlap; where cell (0, 0, 0) is kept;
+// and the others' shift: cell i was cell i + shift.
+#define LW_LPV_PARTS 3
+typedef struct {
+    lw_int4 low[LW_LPV_PARTS], high[LW_LPV_PARTS];  // xyz; high: beyond the last
+    lw_int4 slot, shift;                            // xyz
+    lw_int count, unused[3];                        // boxes; 0: all is right
+} LwLpvParts;
+LW_SIZE_CHECK(LwLpvParts, 144);
+
 // What the corners' blockers were made of, and whether that has changed.
 typedef struct {
-    lw_float4 origin;              // LwLpvPlace's; w: its cells' side
+    lw_float4 origin;              // LwLpvPlace's
     lw_uint revision[2];           // of the surfels
     lw_int stale, surfelsOutside;  // surfels that no corner of the grid is nearest to
+    LwLpvParts parts;
+    lw_int current, unused[3];  // which of two arrays of corners holds them
 } LwLpvBlockers;
-LW_SIZE_CHECK(LwLpvBlockers, 32);
+LW_SIZE_CHECK(LwLpvBlockers, 192);
 
 // Radiance from infinity above which it is refused. What it sends through a cell's side stays finite in all of a grid (cells of 1e8
 // units, which positions allow for: 1e36), and no sky comes near it: the sun's disc has 2e7 W/m^2/sr.

@@ -104,11 +104,12 @@ __kernel void voxel_light_inject(__global const float* texels, int4 layout, int 
             run.slot = slot;
             run.voxel = voxel;
         }
+        _Pragma("unroll") for (int c = 0; c < 3; ++c) run.sums[LW_LIGHT_FLUX + c] +=
+            (long)(flux[c] * first_ * second);
+        if (contents.planes == LW_LIGHT_DIRECTION) continue;
         const float all = flux[0] + flux[1] + flux[2];
-        for (int c = 0; c < 3; ++c) {
-            run.sums[LW_LIGHT_FLUX + c] += (long)(flux[c] * first_ * second);
-            run.sums[LW_LIGHT_DIRECTION + c] += (long)(all * n[c] * first_ * second);
-        }
+        _Pragma("unroll") for (int c = 0; c < 3; ++c) run.sums[LW_LIGHT_DIRECTION + c] +=
+            (long)(all * n[c] * first_ * second);
     }
     end_run(&run, contents.planes, sums, touched);
     if (outside) atomic_add(&state->outside, outside);

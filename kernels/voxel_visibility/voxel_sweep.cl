@@ -164,3 +164,27 @@ __kernel void voxel_sweep_along(__global const LwVoxelEye* eyes, int count, int 
     for (int other = first; other < min(first + LW_SWEEP_ROWS, min(middle + reach + 1, size)); ++other)
         sweep_along(s, isZ, side, main, other);
 }
+
+// All shells of an eye. One work-item = one eye: for devices of few work-items, whose caches hold what one eye sees but not
+// what all of them do.
+__kernel void voxel_sweep_whole(__global const LwVoxelEye* eyes, int count, int size, __global const uchar* solid,
+                                __global uchar* sights) {
+    const int e = (int)get_global_id(0);
+    if (e >= count || !eyes[e].sweep.x) return;
+    for (int shell = 2; shell < size; ++shell) {
+        const lw_shell s = shell_of(eyes, e, size, shell, solid, sights);
+        for (int side = -1; side <= 1; side += 2) {
+            const int x = s.x + side * shell;
+            if (x < 0 || x >= size) continue;
+            for (int z = max(s.z - shell + 1, 0); z < min(s.z + shell, size); ++z) sweep_across(s, side, x, z);
+        }
+        for (int face = 0; face < 4; ++face) {
+            const int side = face % 2 * 2 - 1;
+            const bool isZ = face < 2;
+            const int main = (isZ ? s.z : s.y) + side * shell, middle = isZ ? s.y : s.z, reach = isZ ? shell : shell - 1;
+            if (main < 0 || main >= size) continue;
+            for (int other = max(middle - reach, 0); other < min(middle + reach + 1, size); ++other)
+                sweep_along(s, isZ, side, main, other);
+        }
+    }
+}

@@ -204,6 +204,7 @@ void GeometryInput::import(Executor& executor, const LWGeometry* geometry, bool 
         upload(executor, drawn, tree.order, tree.nodes, isKnown ? boxesAround(changed) : std::vector<float>(), key.emission != nullptr);
         largestEmission = largest;
         triangleCount = std::uint32_t(drawn.size());
+        nodeCount = std::uint32_t(tree.nodes.size() / LW_TREE_NODE);
         diagonal = drawn.empty() ? 0.0f : float(bounds.diagonal());
         revision += isKnown ? 1 : 2;
         isForgotten_ = false;

@@ -46,6 +46,7 @@ public:
     bool hasEmission = false;      // then three more from kEmission on
     float largestEmission = 0.0f;  // of a colour of a triangle, W/(sr m^2)
     Buffer nodes;      // of the tree of boxes over the triangles, see geometry_types.h
+    std::uint32_t nodeCount = 0;
     Buffer changes;    // a node of boxes around all that the last revision changed: triangles that came, and that went
     std::uint32_t triangleCount = 0;  // drawn
     float diagonal = 0.0f;            // of the bounding box of what is drawn, m

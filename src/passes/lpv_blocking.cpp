@@ -9,7 +9,6 @@ namespace {
 
 constexpr const char* kProgram = "lpv_blocking/lpv_blocking";
 constexpr std::size_t kRun = 64;  // LPV_RUN of the kernels
-constexpr std::size_t kTriangles = 16;  // BLOCKING_RUN
 constexpr Range kListGroup{16, 1};
 constexpr Range kCellGroup{16, 4};
 constexpr Range kRunGroup{1, 64};
@@ -46,29 +45,29 @@ void LpvBlocking::reserve(Executor& executor) {
     executor.fill("lpv_blocking.clear", state_, 0, 0, state_.bytes());
 }
 
-void LpvBlocking::begin(Executor& executor, std::uint64_t revision, const Buffer& place) {
+void LpvBlocking::begin(Executor& executor, std::uint64_t revision, const Buffer& place, bool scrolls) {
     reserve(executor);
     executor.run("lpv_blocking.begin", begin_, {1, 1}, {1, 1}, place, cl_uint(revision), cl_uint(revision >> 32),
-                 cl_int(isKept_ ? 0 : 1), state_);
+                 cl_int(isKept_ ? 0 : 1), cl_int(scrolls ? 1 : 0), cl_int(size_), state_);
     isKept_ = true;
 }
 
 void LpvBlocking::merge(Executor& executor, bool isFirst) {
     const std::size_t side = size_ + 1;
     executor.run("lpv_blocking.merge", merge_, {side, side * side}, kCellGroup, sums_, cl_int(size_), cl_int(isFirst ? 1 : 0),
-                 merged_, state_);
+                 merged_, other(), state_);
 }
 
 void LpvBlocking::end(Executor& executor) {
     const std::size_t lines = std::size_t(size_) * size_;
-    executor.run("lpv_blocking.faces", faceWays_, {size_, lines}, kCellGroup, merged_, cl_int(size_), faces_, state_);
-    executor.run("lpv_blocking.faces", markRuns_, {size_ / LW_LPV_BLOCK_RUN, lines}, kRunGroup, merged_, cl_int(size_), runs_,
+    executor.run("lpv_blocking.faces", faceWays_, {size_, lines}, kCellGroup, merged_, other(), cl_int(size_), faces_, state_);
+    executor.run("lpv_blocking.faces", markRuns_, {size_ / LW_LPV_BLOCK_RUN, lines}, kRunGroup, merged_, other(), cl_int(size_), runs_,
                  state_);
 }
 
 void LpvBlocking::record(Executor& executor, const SurfelSet& surfels, const std::vector<SurfelRange>& views,
                          const Buffer& place) {
-    begin(executor, surfels.revision, place);
+    begin(executor, surfels.revision, place, false);
     bool isFirst = true;
     for (const SurfelRange& view : views) {
         if (view.count == 0 || !surfels.planes) continue;
@@ -83,20 +82,22 @@ void LpvBlocking::record(Executor& executor, const SurfelSet& surfels, const std
 }
 
 void LpvBlocking::record(Executor& executor, const GeometryInput& geometry, const Buffer& place) {
-    begin(executor, geometry.revision, place);
+    other_.reserve(device_, mergedBytes(size_), "blockers at the corners of cells that stayed");
+    begin(executor, geometry.revision, place, true);
     if (geometry.triangleCount)
-        executor.run("lpv_blocking.inject", rasterise_, gridOver((geometry.triangleCount + kTriangles - 1) / kTriangles),
-                     kListGroup, geometry.triangles.memory, cl_int(geometry.triangles.planeStride), cl_int(geometry.triangleCount), place, cl_int(size_), sums_, state_);
+        executor.run("lpv_blocking.inject", rasterise_, gridOver(geometry.nodeCount), kListGroup, geometry.nodes,
+                     cl_int(geometry.nodeCount), geometry.triangles.memory, cl_int(geometry.triangles.planeStride), place,
+                     cl_int(size_), sums_, state_);
     merge(executor, true);
     end(executor);
 }
 
 std::uint64_t LpvBlocking::bytes() const {
-    return sums_.bytes() + merged_.bytes() + faces_.bytes() + runs_.bytes() + state_.bytes();
+    return sums_.bytes() + merged_.bytes() + other_.bytes() + faces_.bytes() + runs_.bytes() + state_.bytes();
 }
 
-std::uint64_t LpvBlocking::estimateBytes(std::uint32_t size) {
-    return sumBytes(size) + mergedBytes(size) + faceBytes(size) + runBytes(size) + sizeof(LwLpvBlockers);
+std::uint64_t LpvBlocking::estimateBytes(std::uint32_t size, bool scrolls) {
+    return sumBytes(size) + (scrolls ? 2 : 1) * mergedBytes(size) + faceBytes(size) + runBytes(size) + sizeof(LwLpvBlockers);
 }
 
 }  // namespace lightwell

@@ -14,7 +14,6 @@ namespace lightwell {
 namespace {
 
 constexpr std::size_t kRun = 64;  // LW_SWEEP_RUN of the kernels
-constexpr std::size_t kTriangles = 16;  // COVER_RUN
 constexpr Range kListGroup{16, 1};
 constexpr Range kCellGroup{16, 4};
 constexpr const char* kInject = "lpv_sweep/lpv_sweep_inject";
@@ -117,14 +116,15 @@ void LpvSweep::recordCover(Executor& executor, const LpvSweepInput& input) {
     const bool hasTriangles = input.triangles != nullptr, hasSurfels = input.surfels.count > 0;
     const std::uint64_t revision = hasTriangles ? input.triangles->revision : hasSurfels ? input.surfels.revision : 0;
     executor.run("lpv_sweep.begin", begin_, {1, 1}, {1, 1}, place_, cl_uint(revision), cl_uint(revision >> 32),
-                 cl_int(input.restart || !(hasTriangles || hasSurfels) ? 1 : 0), cover_);
-    const auto vectors = std::size_t(areaBytes(options_) / (16 * sizeof(cl_uint)));
-    executor.run("lpv_sweep.clear", clear_, gridOver(vectors), kListGroup, areas_, cl_int(vectors), cover_);
+                 cl_int(input.restart || !(hasTriangles || hasSurfels) ? 1 : 0), cl_int(hasTriangles ? 1 : 0), cl_int(options_.size),
+                 cover_);
+    const std::size_t size = options_.size;
+    executor.run("lpv_sweep.clear", clear_, {size, size * size}, kCellGroup, areas_, cl_int(size), cover_);
     if (hasTriangles) {
-        const Planes& planes = input.triangles->triangles;
-        const std::uint32_t count = input.triangles->triangleCount;
-        executor.run("lpv_sweep.cover", coverTriangles_, gridOver((count + kTriangles - 1) / kTriangles), kListGroup,
-                     planes.memory, cl_int(planes.planeStride), cl_int(count), place_, cl_int(options_.size), cover_, areas_);
+        const GeometryInput& geometry = *input.triangles;
+        executor.run("lpv_sweep.cover", coverTriangles_, gridOver(geometry.nodeCount), kListGroup, geometry.nodes,
+                     cl_int(geometry.nodeCount), geometry.triangles.memory, cl_int(geometry.triangles.planeStride), place_,
+                     cl_int(size), cover_, areas_);
     } else if (hasSurfels) {
         const Planes& planes = input.surfels.planes;
         executor.run("lpv_sweep.cover", coverSurfels_, runsOf(input.surfels.count), kListGroup, planes.memory,
@@ -160,7 +160,7 @@ void LpvSweep::recordRelight(Executor& executor, const SurfelSet& surfels, const
 
 void LpvSweep::recordResolve(Executor& executor, const Buffer& place, const Flight& flight) {
     const std::size_t size = options_.size;
-    executor.run("lpv_sweep.resolve", resolve_, {size, LW_SWEEP_ORDERS * size}, {4, 1}, scratch_->lights, areas_, place,
+    executor.run("lpv_sweep.resolve", resolve_, {size, LW_SWEEP_ORDERS * size}, {4, 1}, scratch_->lights, areas_, cover_, place,
                  cl_int(size), flight.sources, flight.sheets, flight.used);
 }
 

@@ -30,6 +30,7 @@ VoxelVisibility::VoxelVisibility(Device& device, std::uint32_t size)
       solid_(device.programs().kernel(kProgram, "voxel_visibility_solid")),
       placeEyes_(device.programs().kernel(kProgram, "voxel_visibility_eyes")),
       start_(device.programs().kernel(kSweep, "voxel_sweep_start")),
+      whole_(device.programs().kernel(kSweep, "voxel_sweep_whole")),
       across_(device.programs().kernel(kSweep, "voxel_sweep_across")),
       along_(device.programs().kernel(kSweep, "voxel_sweep_along")) {}
 
@@ -83,6 +84,10 @@ void VoxelVisibility::record(Executor& executor, const Buffer& place, const Buff
 void VoxelVisibility::recordSweep(Executor& executor, std::uint32_t clusters) {
     const cl_int count = cl_int(clusters), size = cl_int(size_);
     executor.run("voxel_visibility.sweep", start_, {clusters, 1}, kRowGroup, eyes_, count, size, solids_, sights_);
+    if (whole_.width() > 1) {  // a CPU
+        executor.run("voxel_visibility.sweep", whole_, {clusters, 1}, {1, 1}, eyes_, count, size, solids_, sights_);
+        return;
+    }
     for (std::uint32_t shell = 2; shell < size_; ++shell) {
         const std::size_t across = itemsOf(std::min(2 * shell - 1, size_)), along = itemsOf(std::min(2 * shell + 1, size_));
         executor.run("voxel_visibility.sweep", across_, {across, 2 * std::size_t(clusters)}, kRowGroup, eyes_, count, size,

@@ -44,7 +44,7 @@ private:
 
     Device& device_;
     std::uint32_t size_;
-    Kernel &solid_, &placeEyes_, &start_, &across_, &along_;
+    Kernel &solid_, &placeEyes_, &start_, &whole_, &across_, &along_;
     Buffer held_, solids_, sights_, eyes_, sight_;
     std::vector<std::uint32_t> counts_;  // of each list of the last record(); none: nothing is known
 };

@@ -52,7 +52,7 @@ void ConeTracingSurfaces::check(const LWFrame& frame) const {
         if (surfelsOf(frame) == 0)
             fail(LW_ERROR_INVALID_ARGUMENT,
                  "frame.geometry: expected surfels, as the technique's parameter source=surfels asks for them, got none");
-        SurfelInput::check(device_, frame.geometry);
+        SurfelInput::check(device_, frame.geometry, true);
     }
     if (source == Source::screen) ScreenSurfels::check(device_, frame);
 }
@@ -62,7 +62,7 @@ bool ConeTracingSurfaces::import(Executor& executor, const LWFrame& frame, const
     const bool isOther = source != source_;  // revisions count within a source
     source_ = source;
     if (source == Source::triangles) triangles_.import(executor, frame.geometry, true);
-    if (source == Source::surfels) surfels_.import(executor, frame.geometry);
+    if (source == Source::surfels) surfels_.import(executor, frame.geometry, true);
     if (source == Source::screen) screen_.import(executor, frame, rsms);
     else screen_.clear();
     return isOther;
@@ -97,7 +97,7 @@ std::uint64_t ConeTracingSurfaces::estimateBytes(const LWConeTracingDesc& desc, 
         case Source::triangles:
             return GeometryInput::estimateBytes(shape.triangles, true);
         case Source::surfels:
-            return SurfelInput::estimateBytes(shape.surfels, shape.uploads);
+            return SurfelInput::estimateBytes(shape.surfels, shape.uploads, true);
         default:
             return ScreenSurfels::estimateBytes(shape);
     }

@@ -102,6 +102,10 @@ void ConeTracingVolume::record(Executor& executor, const LWFrame& frame, const R
         for (const auto& grid : grids_) grid->forget();
     places_.record(executor, rsms, nullptr, 0, placementOf(frame, refit));
     places_.recordTable(executor);
+    // What voxels have heard of each other is of another scene.
+    if (bounce_ && frame.reset)
+        for (std::size_t c = 0; c < lights_.size(); ++c)
+            lights_[c] = std::make_unique<VoxelLight>(device_, desc_.size, std::uint32_t(c));
     growSlots();
     const bool isNew = volume_.reserve(executor, baseSlots_, mipSlots_);
     for (std::size_t c = 0; c < grids_.size(); ++c) {

@@ -176,7 +176,7 @@ std::uint64_t LpvGeometry::estimateBytes(const LWLpvDesc& desc, const FrameShape
     const Source source = chosenSource(desc.geometryVolume, shape.triangles, shape.surfels);
     std::uint64_t total = 0;
     for (std::uint32_t grid = 0; source != Source::none && grid < gridsOf(desc, levels); ++grid)
-        total += LpvBlocking::estimateBytes(sizeOf(desc, grid));
+        total += LpvBlocking::estimateBytes(sizeOf(desc, grid), source == Source::triangles && !draws(desc));
     if (source == Source::triangles) total += GeometryInput::estimateBytes(shape.triangles);
     if (source == Source::triangles && draws(desc)) total += SurfelSampling::estimateBytes(shape.triangles, sampledCount(desc));
     if (source == Source::surfels) total += SurfelInput::estimateBytes(shape.surfels, shape.uploads);

@@ -139,6 +139,10 @@ void exerciseTechnique(Executor& executor, Technique& technique, std::uint32_t k
         if (kinds) {
             output.irradiance = output.validity = LWImage{};
             technique.render(executor, view, gbuffer, output);
+            LWOutput alone{};
+            alone.structSize = sizeof alone;
+            alone.irradiance = imageOf(inputs.irradiance, LW_FORMAT_FLOAT3);
+            technique.render(executor, view, gbuffer, alone);
         }
         executor.device().finish();
     }

@@ -313,3 +313,25 @@ TEST_CASE("of one room's light less than a thousandth comes through a wall into 
     CHECK(dark / unlit < 1e-3);
     CHECK(unlit > 1000);
 }
+
+TEST_CASE("beyond the grid counts what arrives where light leaves it", "[voxel_visibility]") {
+    VoxelSightRig rig(GENERATE(1u, 16u), kSize);
+    Voxels voxels(kSize);
+    voxels.fill([](int x, int y, int) { return x == 24 && y < 16; });
+    const Vec eye{8.5, 16.5, 16.5};
+    rig.sweep(voxels, {eyeAt(eye)});
+    Image position(4, 1), normal(4, 1);
+    // Ways that pass the wall far above its edge and far below, to places twice and twenty times as far away as the border.
+    const double reach = kSize - eye.x;
+    int i = 0;
+    for (const double rise : {10.0, -10.0})
+        for (const double times : {2.0, 20.0}) {
+            position.set(std::uint32_t(i), 0, inWorld(eye + Vec{reach, rise, 0.0} * times));
+            normal.set(std::uint32_t(i++), 0, {-1, 0, 0});
+        }
+    const std::vector<float> seen = rig.seen(position, normal, 1);
+    CHECK(seen[0] == 1.0f);
+    CHECK(seen[1] == 1.0f);
+    CHECK(seen[2] == 0.0f);
+    CHECK(seen[3] == 0.0f);
+}

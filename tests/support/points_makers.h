@@ -17,12 +17,14 @@ struct Maker {
     std::function<std::unique_ptr<TestTechnique>(LWDevice)> make;
 };
 
-inline Maker rsmOf(std::uint32_t vpls, std::uint32_t interleave) {
+inline Maker rsmOf(std::uint32_t vpls, std::uint32_t interleave, LWRsmVisibility visibility = LW_RSM_VISIBILITY_NONE) {
     return {"rsm", [=](LWDevice device) {
                 LWRsmDesc desc;
                 lwDefaultRsm(&desc);
                 desc.vpls = vpls;
                 desc.interleave = interleave;
+                desc.visibility = visibility;
+                desc.voxels = 32;
                 return std::make_unique<TestTechnique>(device, desc);
             }};
 }
@@ -38,6 +40,7 @@ inline Maker ssvpOf(LWVisibility visibility, std::uint32_t bounces, std::uint32_
                 desc.bounces = bounces;
                 desc.shadowedBounces = shadowed;
                 desc.interleave = interleave;
+                desc.voxels = 32;
                 return std::make_unique<TestTechnique>(device, desc);
             }};
 }
@@ -56,6 +59,7 @@ inline Maker lpvOf(LWLpvTransport transport, bool damped = false, std::uint32_t 
 }
 inline std::vector<Maker> makers() {
     return {rsmOf(256, 1), rsmOf(0, 1), ssvpOf(LW_VISIBILITY_HARD, 2), ssvpOf(LW_VISIBILITY_SOFT, 3, 2), ssvpOf(LW_VISIBILITY_NONE, 1),
+            rsmOf(256, 1, LW_RSM_VISIBILITY_VOXEL), ssvpOf(LW_VISIBILITY_VOXEL, 2, 2),
             lpvOf(LW_LPV_TRANSPORT_PROPAGATE), lpvOf(LW_LPV_TRANSPORT_PROPAGATE, true), lpvOf(LW_LPV_TRANSPORT_SWEEP),
             lpvOf(LW_LPV_TRANSPORT_SWEEP, false, 4), lpvOf(LW_LPV_TRANSPORT_COARSE_TO_FINE),
             lpvOf(LW_LPV_TRANSPORT_PROPAGATE, false, 1, 3), lpvOf(LW_LPV_TRANSPORT_SWEEP, false, 1, 3)};

@@ -77,6 +77,25 @@ TEST_CASE("cascades: a focus that stays within a cell changes nothing, to the bi
     CHECK((room.render(device, desc, &here) == first));
 }
 
+// Steps along an axis, along all, beyond the finest grid's side, and back; a lid comes and goes meanwhile.
+TEST_CASE("cascades: wherever the focus has been, the picture is that of a technique made where it is, to the bit", "[lpv_cascades]") {
+    TestDevice device(16);
+    Room open, closed(0.8);
+    const LWLpvDesc desc = descOf(anyTransport());
+    TestTechnique technique(device, "lpv", &desc);
+    std::array<float, 3> focus = {0.03f, 0.53f, 0.53f};
+    constexpr int kSteps[][3] = {{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0, -2, 0}, {1, 1, 1}, {-3, 2, -1}, {0, 0, 5}, {20, -3, 1}, {-20, 3, -5}, {-40, 9, 9}};
+    int at = 0;
+    for (const int(&step)[3] : kSteps) {
+        for (std::size_t a = 0; a < 3; ++a) focus[a] += 0.0625f * float(step[a]);
+        Room& room = at == 4 || at == 5 || at == 8 ? closed : open;
+        const std::vector<float> walked = room.render(device, technique, &focus);
+        INFO("stop " << at);
+        CHECK((room.render(device, desc, &focus) == walked));
+        ++at;
+    }
+}
+
 TEST_CASE("cascades: widths 1 and 16 give the same bits", "[lpv_cascades]") {
     TestDevice wide(16), scalar(1);
     Room room;
