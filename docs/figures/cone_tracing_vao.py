@@ -60,8 +60,9 @@ def vao_tables(rows):
     for scene, s in SCENES.items():
         for view in s["views"]:
             lines += [f"{s['title']}, {view}:", "", "| " + " | ".join(head) + " |", "| --- | " + " | ".join(["---:"] * (len(head) - 1)) + " |"]
-            for row in rows.of(scene):
-                if f"{row}, VAO" in rows.rows:
+            measured = rows.of(scene)
+            for row in measured:
+                if f"{row}, VAO" in measured:
                     lines.append(f"| {row} | " + " | ".join(cells_of(vao_row(rows.settings[scene, view], rows.rows[row]), rows.published[scene, view], row)) + " |")
             lines.append("")
     return lines

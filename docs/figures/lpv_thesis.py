@@ -22,7 +22,7 @@ def main():
     options = read_options(__doc__, [], 128)
     settings, call = settings_of(options)
     has_cascades = "\n    cascades=" in call("render", "--help")
-    rows = Rows(settings, ROWS, PUBLISHED, lambda row: has_cascades or row not in CASCADED)
+    rows = Rows(settings, ROWS, PUBLISHED, lambda scene, row: has_cascades or row not in CASCADED)
     beside = {row: what for row, what in {**ROWS, **OURS}.items() if row not in CASCADED and not (row.endswith("SSAO") and row in ROWS)}
     lines = []
     for scene in SCENES:

@@ -36,10 +36,20 @@ class Setting:
     def lightwell(self, command, *arguments):
         return self.call(command, self.file, "--camera", self.view, "--size", SCENES[self.scene]["size"], *arguments)
 
+    def own(self, settings):
+        return [s if isinstance(s, str) else s[self.scene] for s in settings]
+
+    def picture(self, technique, settings, *more):
+        return self.path("_".join([technique, *self.own(settings), *more]).replace("=", "").replace("--quantity_", ""))
+
+    def is_measured(self, technique, settings, occluded):
+        picture = self.picture(technique, settings)
+        return picture.with_name(picture.stem + "_ssao.json" if occluded else picture.stem + ".json").exists()
+
     def render(self, technique, settings, *more):
         """settings: "name=value", or by scene."""
-        settings = [s if isinstance(s, str) else s[self.scene] for s in settings]
-        out = self.path("_".join([technique, *settings, *more]).replace("=", "").replace("--quantity_", ""))
+        settings = self.own(settings)
+        out = self.picture(technique, settings, *more)
         if not out.exists():
             self.lightwell("render", "--technique", technique, "--warmup", 0, "--frames", 1,
                            *(part for s in settings for part in ("--set", s)), *more, "--out", out)

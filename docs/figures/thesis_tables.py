@@ -6,12 +6,12 @@ class Rows:
     """rows: technique, settings and whether SSAO multiplies the light, by name. published: scores by scene, view and name. has: which
     rows are measured."""
 
-    def __init__(self, settings, rows, published, has=lambda row: True):
+    def __init__(self, settings, rows, published, has=lambda scene, row: True):
         self.settings, self.rows, self.published, self.has = settings, rows, published, has
         self.ours = {}
 
     def of(self, scene):
-        return [row for row in self.rows if row in self.published[scene, SCENES[scene]["views"][0]] and self.has(row)]
+        return [row for row in self.rows if row in self.published[scene, SCENES[scene]["views"][0]] and self.has(scene, row)]
 
     def table(self, scene):
         views, measured = SCENES[scene]["views"], self.of(scene)
