@@ -1,8 +1,5 @@
 """What ten Brug 2017 (appendix A.3) publishes of LPV, row by row, and the command line that stands for each row. Used by lpv_thesis.py."""
 
-SCENES = {"basic": {"title": "Basic scene", "views": ["overview", "bleeding"], "size": "1280x720"},
-          "sponza": {"title": "Sponza", "views": ["overview", "cloth"], "size": "640x480"}}
-
 # Its geometry volume is made of the shadow map and the camera's depth. Cascades: four grids, the finest 10 m wide (ours is this Sponza's
 # unit; the source does not say what its own is), so the largest 80.
 PLAIN, NESTED = ["geometry_volume=screen"], ["geometry_volume=screen", "cascades=4", "extent=80"]

@@ -1,19 +1,17 @@
-"""The pictures of docs/techniques/lpv_thesis.md: a few rows beside their truth, and what they are off by. Used by lpv_thesis.py."""
+"""Pictures of a few rows beside their truth, and what they are off by. Used by lpv_thesis.py and cone_tracing_thesis.py."""
 import numpy
 
 import exr_planes
-from lpv_thesis_scores import OURS, ROWS, SCENES
+from thesis_setting import SCENES
 
-SHOWN = {"LPV 32": ROWS["LPV 32"], "LPV 32, SSAO": ROWS["LPV 32, SSAO"], "LPV 64": ROWS["LPV 64"], "sweep 32, 3 bounces": OURS["sweep 32, 3 bounces"]}
-NESTED = "cascaded LPV 64"
 KEY = 0.18       # log-average luminance of a picture at its exposure, as `lightwell compare` has it
 DARKEST = 1e-4   # of the mean: a few nearly black pixels must not decide
 FULL = 0.25      # of the screen's range: a difference that has full colour
 WIDTH = 320      # of one picture
 
 
-def write(settings, rows_of, folder):
-    """rows_of(scene): the rows measured there; where cascades are, the finer ones are shown as well."""
+def write(settings, folder, name, shown, of_sponza):
+    """shown: rows of every view, of_sponza: more of Sponza, as thesis_tables has them."""
     from PIL import Image
 
     lines = ["### Pictures", ""]
@@ -22,16 +20,17 @@ def write(settings, rows_of, folder):
             setting = settings[scene, view]
             truth = composite(setting.truth)
             exposure = exposure_of(truth)
-            columns = {**SHOWN, **({NESTED: ROWS[NESTED]} if NESTED in rows_of(scene) else {})}
+            columns = {**shown, **(of_sponza if scene == "sponza" else {})}
             screens = [encode(exposure * composite(setting.row(*what))) for what in columns.values()]
             reference = encode(exposure * truth)
             upper = numpy.hstack([reference, *screens])
             lower = numpy.hstack([numpy.full_like(reference, 0.5), *(signed(screen - reference) for screen in screens)])
             picture = Image.fromarray((255 * numpy.vstack([upper, lower]).clip(0, 1) + 0.5).astype(numpy.uint8))
             height = round(2 * WIDTH * reference.shape[0] / reference.shape[1])
-            picture.resize(((len(columns) + 1) * WIDTH, height), Image.Resampling.LANCZOS).save(folder / f"lpv_thesis_{scene}_{view}.jpg", quality=85)
-            lines += [f"![{s['title']}, {view}](../images/lpv_thesis_{scene}_{view}.jpg)", ""]
-    return lines + ["*Truth | " + " | ".join(SHOWN) + f"*, in Sponza *| {NESTED}*; "
+            picture.resize(((len(columns) + 1) * WIDTH, height), Image.Resampling.LANCZOS).save(folder / f"{name}_{scene}_{view}.jpg", quality=85)
+            lines += [f"![{s['title']}, {view}](../images/{name}_{scene}_{view}.jpg)", ""]
+    more = f", in Sponza *| {' | '.join(of_sponza)}*" if of_sponza else ""
+    return lines + ["*Truth | " + " | ".join(shown) + f"*{more}; "
                     "below, on the screen's scale, red where too bright and blue where too dark, full at "
                     f"{FULL:g} of its range.", ""]
 

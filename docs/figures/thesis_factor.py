@@ -1,4 +1,5 @@
-"""The score if all light of the rows were so many times as bright, which the source does not calibrate. Used by lpv_thesis.py.
+"""The score if all light of the rows were so many times as bright, which the source does not calibrate. Used by lpv_thesis.py and
+cone_tracing_thesis.py.
 
 The score is computed here anew, in numpy (docs/accuracy.md); at factor 1 it is that of `lightwell compare` to the last digit shown.
 """
@@ -9,8 +10,8 @@ from scipy.ndimage import correlate1d
 from scipy.stats import spearmanr
 
 import exr_planes
-from lpv_thesis_pictures import composite, encode, exposure_of
-from lpv_thesis_scores import PUBLISHED, ROWS, SCENES
+from thesis_pictures import composite, encode, exposure_of
+from thesis_setting import SCENES
 
 FACTORS = [0.125, 0.25, 0.5, 0.71, 1.0, 1.41, 2.0]
 WINDOW = numpy.exp(-0.5 * (numpy.arange(-5, 6) / 1.5) ** 2)
@@ -45,17 +46,17 @@ def scores_of(setting, picture):
     return json.loads(kept.read_text())
 
 
-def lines_of(settings, rows_of):
-    """rows_of(scene): the rows measured there."""
+def lines_of(rows, shown):
+    """rows: thesis_tables.Rows; the scores of those in `shown` are written out."""
     lines = ["### If all of the light were so many times as bright", "",
              "| | " + " | ".join(f"x {f:g}" for f in FACTORS) + " |", "| --- | " + " | ".join(["---:"] * len(FACTORS)) + " |"]
     for scene, s in SCENES.items():
         for view in s["views"]:
-            setting, rows = settings[scene, view], rows_of(scene)
-            table = {row: scores_of(setting, setting.row(*ROWS[row])) for row in rows}
-            for row in ("LPV 32", "LPV 64"):
+            setting, measured = rows.settings[scene, view], rows.of(scene)
+            table = {row: scores_of(setting, setting.row(*rows.rows[row])) for row in measured}
+            for row in shown:
                 lines.append(f"| {s['title']}, {view}: {row} | " + " | ".join(f"{x:.2f}" for x in table[row]) + " |")
-            theirs = [PUBLISHED[scene, view][row] for row in rows]
-            ranks = [spearmanr(theirs, [table[row][i] for row in rows])[0] for i in range(len(FACTORS))]
-            lines.append(f"| *Spearman over its {len(rows)} rows* | " + " | ".join(f"{r:+.2f}" for r in ranks) + " |")
+            theirs = [rows.published[scene, view][row] for row in measured]
+            ranks = [spearmanr(theirs, [table[row][i] for row in measured])[0] for i in range(len(FACTORS))]
+            lines.append(f"| *Spearman over its {len(measured)} rows* | " + " | ".join(f"{r:+.2f}" for r in ranks) + " |")
     return lines + [""]
