@@ -34,7 +34,7 @@ def main():
     for scene in SCENES:
         own = {row: what for row, what in OURS.items() if everything or kept(settings, scene, what)}
         lines += rows.table(scene) + own_table(settings, scene, own)
-    lines += rows.correlations() + rows.pairs_against(APART) + vao_tables(rows)
+    lines += rows.correlations() + rows.pairs_against(APART) + vao_tables(rows, everything)
     if everything:
         lines += gain_tables(rows, ("isotropic 32", "SH 32"))
         lines += thesis_pictures.write(settings, ROOT / "docs/images", "cone_tracing_thesis",

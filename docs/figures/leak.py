@@ -1,5 +1,4 @@
-"""Light that a technique's grid lets through a wall between two closed rooms, by the wall's thickness. Used by lpv_leak.py and
-cone_tracing_leak.py."""
+"""Light that a technique's grid lets through a wall between two closed rooms, by the wall's thickness. Used by lpv_leak.py."""
 import json
 
 import exr_planes
