@@ -109,7 +109,7 @@ TEST_CASE("walls one voxel thick keep more of a room's light where they are opaq
     CHECK(kept[1] < 1.0001);
 }
 
-// Most of them meet the walls aslant: by the squares of directions' components a quarter gets through.
+// Most of them meet the walls aslant, where the squares of a direction's components take a wall for half open.
 TEST_CASE("many cones keep a room's light between walls one voxel thick", "[cone_gather]") {
     KernelRig rig(16);
     const DeviceVoxels voxels = deviceVoxels(rig, {room(32, 1, 4, 28, 0.8, 1)});
