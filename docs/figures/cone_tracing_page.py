@@ -14,9 +14,11 @@ SHARE = {"interleaved": 1 / 9, "full": 1, "half": 1 / 4, "quarter": 1 / 16}
 
 
 def write(bench, timed):
-    """timed: the names of all rows of times, without which their tables make no sense."""
+    """timed: the names of all rows of times; a scene that lacks some is left out."""
     found = {part: bench.kept(part) for part in ("times", "errors", "cascades", "limit", "format", "pictures")}
-    if set(timed) - set(found["times"]):
+    lacking = {scene for scene in scenes_of(timed) for name in timed if scene in name.split() and name not in found["times"]}
+    found["times"] = {name: row for name, row in found["times"].items() if not lacking & set(name.split())}
+    if not scenes_of(found["times"]):
         found["times"] = {}
     lines = ["<!-- Made by docs/figures/cone_tracing.py; do not edit. -->", "", "# cone_tracing: figures", "",
              "What the technique's passes take, what its errors are, and what they come from. What they mean stands in [cone_tracing](cone_tracing.md).", ""]
@@ -163,6 +165,8 @@ def errors(bench, found):
              "`interleaved`, `normal_aware`.", ""]
     cells = [[f"`{' '.join(settings)}`", *(cell(rows.get(' '.join([scene, *settings]))) for scene in scenes)] for settings in SETTINGS]
     lines += table(["", *scenes], cells)
+    if len(rows) < len(SETTINGS) * len(scenes):
+        lines += [f"<!-- {len(rows)} of {len(SETTINGS) * len(scenes)} measured -->", ""]
     if found["cascades"]:
         counts = sorted({count for _, count in CASCADES})
         cells = [[f"`size={size}`", *(cell(found["cascades"].get(f"size={size} cascades={count}")) for count in counts)] for size in sorted({s for s, _ in CASCADES})]

@@ -109,6 +109,21 @@ TEST_CASE("walls one voxel thick keep more of a room's light where they are opaq
     CHECK(kept[1] < 1.0001);
 }
 
+// Most of them meet the walls aslant, where the squares of a direction's components take a wall for half open.
+TEST_CASE("many cones keep a room's light between walls one voxel thick", "[cone_gather]") {
+    KernelRig rig(16);
+    const DeviceVoxels voxels = deviceVoxels(rig, {room(32, 1, 4, 28, 0.8, 1)});
+    ConeGatherOptions options = optionsOf(32, 1, 64);
+    options.nudge = 2.0;
+    options.step = 0.5;
+    ConeGather pass(rig.device(), options);
+    const double kept =
+        double(traceCones(rig, pass, voxels, onePoint({16, 4, 16}, {0, 1, 0})).irradiance[0]) / (kPi * 0.8);
+    CAPTURE(kept);
+    CHECK(kept > 0.93);
+    CHECK(kept < 1.0001);
+}
+
 TEST_CASE("grids nested in each other and filled alike give what one grid gives",
           "[cone_gather][large]") {
     KernelRig rig(16);  // cone_gather_test has nested grids at both
