@@ -90,7 +90,7 @@ LW_FN int find_at(cone_corner* corner, const cone_volume* volumes, const cone_or
 // grid: the one whose voxels the steps are counted in. reach, far: how far the cone reaches, all lanes and each, in voxels of the
 // finest. live: the lanes that it is followed for.
 //
-// Samples count as long as half of their width lies before the ray's way out, and see what the grid's outermost cells hold: in a grid that
+// Samples count as long as half of their cell lies before the ray's way out, and see what the grid's outermost cells hold: in a grid that
 // is fitted to a room, walls are those, and the samples that they are interpolated between lie on both sides. Ending at the
 // border, cones of 60 degrees lost half of the light of a closed box.
 LW_FN void march(cone_light* l, const cone_volume* volumes, const cone_origin* from, int grid, real dx, real dy, real dz,

@@ -28,7 +28,7 @@ typedef struct {
     lw_float light;     // share of the radiance that counts
     lw_float dimming;   // what of the opacity ambient occlusion counts
     lw_int level;       // cells of 2^level voxels
-    lw_float begins;    // how far the grid has to reach for it to count: less than the distance by half of what it is wide
+    lw_float begins;    // how far the grid has to reach for it to count: half a cell less than the distance
     lw_int unused[2];
 } LwConeStep;
 LW_SIZE_CHECK(LwConeStep, 32);

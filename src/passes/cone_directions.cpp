@@ -157,8 +157,9 @@ std::vector<LwConeStep> coneSteps(double halfAngle, double cosine, const ConeSch
         step.dimming =
             d <= schedule.openReach ? lw_float(1.0 / (1.0 + 4.0 * d / schedule.openReach)) : 0.0f;
         step.level = lw_int(std::min(level, double(schedule.levels - 1)));
-        // Grows with d: whoever does not count a step counts none after it.
-        step.begins = lw_float(d - 0.5 * std::max(1.0, 2.0 * tangent * d));
+        // Not before the last one's, where the level rises faster than the distance: a cone that has left does not come back.
+        step.begins = lw_float(d - 0.5 * std::exp2(double(step.level)));
+        if (!steps.empty()) step.begins = std::max(step.begins, steps.back().begins);
         steps.push_back(step);
     };
     std::vector<LwConeStep> steps;
