@@ -1,7 +1,6 @@
 // Frame part, report and registration; the table of parameters is cone_tracing_parameters.cpp's.
 #include "techniques/cone_tracing.h"
 
-#include <algorithm>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -19,8 +18,8 @@
 namespace lightwell {
 namespace {
 
-// One grid within another has all kernels of many.
-constexpr std::uint32_t kPrewarmedCascades = 2, kPrewarmedSize = 32;
+// The least sizes of grids with the kernels of all: those of more than 64 voxels a side are shared out otherwise (VoxelGrid).
+constexpr std::uint32_t kPrewarmedSmall = 32, kSmall = 64, kPrewarmedLarge = 128;
 // Radiance from infinity above which it is refused: no sum over a hemisphere leaves float's range, and no sky comes near it.
 constexpr float kLargestEnvironment = 1e20f;
 constexpr std::uint32_t kMakes = kMakesAmbient | kMakesSpecular | kMakesRefracted | kMakesShadow;
@@ -97,11 +96,24 @@ public:
 
     void lose() override { continuity_.lose(); }
 
-    // Of every source that frames may bring, in small grids: the same kernels.
+    // In small grids, as many as there are (an option of the kernels); then in a larger one, where kernels are others.
     void prewarm(Executor& executor, const std::shared_ptr<View>&) override {
+        prewarmIn(executor, kPrewarmedSmall, desc_.cascades);
+        if (desc_.size > kSmall) prewarmIn(executor, kPrewarmedLarge, 1);
+    }
+
+    Report report() override;
+    std::vector<DebugView> debugViews(const View* view) override;
+    std::uint64_t bytes() const override;
+
+private:
+    // Of every source that frames may bring.
+    void prewarmIn(Executor& executor, std::uint32_t size, std::uint32_t cascades) {
         LWConeTracingDesc desc = desc_;
-        desc.size = std::min(desc.size, kPrewarmedSize);
-        desc.cascades = std::min(desc.cascades, kPrewarmedCascades);
+        desc.size = size;
+        desc.cascades = cascades;
+        desc.sparse = 1;
+        desc.shadowLight = 0;  // frames here have one light
         desc.source = LW_VOXEL_SOURCE_AUTO;
         for (int hidden = 0; hidden <= 2; ++hidden) {
             if (desc_.source != LW_VOXEL_SOURCE_AUTO && desc_.source != LW_VOXEL_SOURCE_TRIANGLES + hidden) continue;
@@ -111,11 +123,6 @@ public:
         }
     }
 
-    Report report() override;
-    std::vector<DebugView> debugViews(const View* view) override;
-    std::uint64_t bytes() const override;
-
-private:
     Device& device_;
     LWConeTracingDesc desc_;
     int hidden_;  // ConeTracingSurfaces'
