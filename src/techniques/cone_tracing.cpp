@@ -63,15 +63,14 @@ public:
           desc_(desc),
           hidden_(hidden),
           volume_(std::make_unique<ConeTracingVolume>(device, desc, hidden)),
-          passes_(device, desc) {}
+          passes_(std::make_unique<ConeTracingPasses>(device, desc)) {}
 
     void update(Executor& executor, const LWFrame& frame) override {
         checkEnvironment(frame);
         volume_->check(frame);
         rsms_.import(executor, frame);
         const bool lost = continuity_.beginLost();
-        // What its memory holds is not known.
-        if (lost) volume_ = std::make_unique<ConeTracingVolume>(device_, desc_, hidden_);
+        if (lost) forget();
         volume_->record(executor, frame, rsms_, frame.reset != 0 || lost);
         shadowLight_ = lightOf(frame, desc_);
         choices_ = unusedInputs(frame, desc_);
@@ -85,7 +84,7 @@ public:
         checkLightOutputs(device_, *view, output, "cone_tracing", kMakes);
         const ConeRaysAsked rays = ConeTracingRays::asked(*view, gbuffer, output, desc_, shadowLight_ ? &*shadowLight_ : nullptr);
         ConeTracingView& state = states_.get(view, [&] { return std::make_unique<ConeTracingView>(device_, desc_); });
-        state.render(executor, *view, gbuffer, output, passes_, volume_->world(), rays);
+        state.render(executor, *view, gbuffer, output, *passes_, volume_->world(), rays);
     }
 
     void renderPoints(Executor& executor, const Points& points) override {
@@ -107,6 +106,13 @@ public:
     std::uint64_t bytes() const override;
 
 private:
+    // What memory holds that is kept from frame to frame is not known: voxels, and the tables of cones.
+    void forget() {
+        volume_ = std::make_unique<ConeTracingVolume>(device_, desc_, hidden_);
+        passes_ = std::make_unique<ConeTracingPasses>(device_, desc_);
+        points_.reset();
+    }
+
     // Of every source that frames may bring.
     void prewarmIn(Executor& executor, std::uint32_t size, std::uint32_t cascades) {
         LWConeTracingDesc desc = desc_;
@@ -129,7 +135,7 @@ private:
     Continuity continuity_{device_};
     RsmInput rsms_;
     std::unique_ptr<ConeTracingVolume> volume_;
-    ConeTracingPasses passes_;
+    std::unique_ptr<ConeTracingPasses> passes_;
     PerView<ConeTracingView> states_;
     std::optional<ConeTracingPoints> points_;  // from the first lwRenderPoints on
     std::optional<ConeLightSource> shadowLight_;  // of the last update, as is
@@ -155,7 +161,7 @@ std::vector<DebugView> ConeTracingTechnique::debugViews(const View* view) {
 }
 
 std::uint64_t ConeTracingTechnique::bytes() const {
-    std::uint64_t total = rsms_.bytes() + volume_->bytes() + passes_.bytes() + (points_ ? points_->bytes() : 0);
+    std::uint64_t total = rsms_.bytes() + volume_->bytes() + passes_->bytes() + (points_ ? points_->bytes() : 0);
     states_.each([&](const ConeTracingView& state) { total += state.bytes(); });
     return total;
 }
