@@ -136,6 +136,22 @@ TEST_CASE("cones in several large grids compile nothing after lwPrewarm, whateve
     CHECK(device.info().kernelsSpecialised == before.kernelsSpecialised);
 }
 
+TEST_CASE("cones: dense grids of the screen's surfels take no more memory than was estimated", "[cone_tracing]") {
+    TestDevice device(16);
+    const ConeBox box(2.0, false, 1.0, 0.5, 128);
+    LWConeTracingDesc desc = coneDesc(32);
+    desc.source = LW_VOXEL_SOURCE_SCREEN;
+    desc.sparse = 0;
+    TestTechnique technique(device, "cone_tracing", &desc);
+    LWViewDesc size{};
+    size.structSize = sizeof size;
+    size.maxWidth = size.maxHeight = 1;
+    std::uint64_t estimate = 0;
+    REQUIRE(lwEstimateFrameMemory(device, "cone_tracing", &desc, &size, &box.frame, &estimate) == LW_SUCCESS);
+    technique.update(box.frame);
+    CHECK(technique.stats().deviceBytes <= estimate);
+}
+
 TEST_CASE("cones: nothing is made anew in a static scene, and what moves within a grid's units changes nothing", "[cone_tracing]") {
     TestDevice device(16);
     const ConeBox box(2.0, false, 1.0, 0.5, 64);
