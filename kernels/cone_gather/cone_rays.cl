@@ -49,12 +49,14 @@ LW_FN void trace_classes(cone_light* l, const cone_volume* volumes, const cone_o
             from.y[c] = fma_(d[1], off, o->y[c]);
             from.z[c] = fma_(d[2], off, o->z[c]);
         }
+        // Of what is asked for, what lies behind that beginning: a lamp's own wall would shadow it else.
+        const real ahead = far - begin * (float)(1 << grid);
         mask left = own;
         while (any_(left)) {
             const int least = mini_lane(selecti_((lanei)LW_CONE_APERTURES, kind, left));
             const mask these = and_(left, kind == (lanei)least);
             const LwCone cone = cones[least];
-            march(l, volumes, &from, grid, d[0], d[1], d[2], steps + cone.first, cone.count, view->environment.w, far, these);
+            march(l, volumes, &from, grid, d[0], d[1], d[2], steps + cone.first, cone.count, view->environment.w, ahead, these);
             left = and_(left, not_(these));
         }
     }

@@ -68,7 +68,8 @@ void ConeRays::recordRays(Executor& executor, const char* pass, const Planes& po
                           const Planes& normal, const Planes& roughness, bool refracts,
                           const LwConeView& view, const ConeWorld& world, const Planes& radiance,
                           const Buffer& counts) {
-    if (!cones_) uploadCones(executor, rayTable(options_), cones_, steps_);
+    if (!isUploaded_) uploadCones(executor, rayTable(options_), cones_, steps_);
+    isUploaded_ = true;
     Kernel& kernel =
         device_.programs().kernel(kRays, "cone_gather_rays", coneDefines(options_, true, false));
     // A kernel's argument must be some memory, also where it is not touched.

@@ -46,6 +46,7 @@ private:
     Device& device_;
     ConeGatherOptions options_;
     Buffer cones_, steps_, shadowCones_, shadowSteps_;
+    bool isUploaded_ = false;  // cones_, steps_
     double shadowAngle_ = -1.0;
 };
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "compute/device.h"
-#include "compute/error.h"
 #include "passes/vpl_list.h"
 
 namespace lightwell {
@@ -43,28 +42,6 @@ std::size_t surfaceBytes(std::uint32_t slots) {
 
 }  // namespace
 
-// Read without waiting; looked at once the command is known to have ended.
-struct VoxelGrid::Counts {
-    LwVoxelGrid state{};
-    cl_event done = nullptr;
-    ~Counts() { settle(); }
-    void settle() {
-        if (!done) return;
-        clWaitForEvents(1, &done);
-        clReleaseEvent(done);
-        done = nullptr;
-    }
-    bool isThere() {
-        if (!done) return false;
-        cl_int status = CL_QUEUED;
-        clGetEventInfo(done, CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof status, &status, nullptr);
-        if (status > CL_COMPLETE) return false;
-        clReleaseEvent(done);
-        done = nullptr;
-        return status == CL_COMPLETE;
-    }
-};
-
 VoxelGrid::VoxelGrid(Device& device, std::uint32_t size, bool sparse)
     : device_(device),
       size_(size),
@@ -82,10 +59,7 @@ VoxelGrid::VoxelGrid(Device& device, std::uint32_t size, bool sparse)
       outside_(device.programs().kernel(kTriangles, "voxel_triangles_outside", tasksOf(device, size))),
       occupySurfels_(device.programs().kernel(kSurfels, "voxel_surfels_occupy", tasksOf(device, size))),
       fillSurfels_(device.programs().kernel(kSurfels, "voxel_surfels_fill", tasksOf(device, size))),
-      bins_(device, size),
-      counts_(std::make_unique<Counts>()) {}
-
-VoxelGrid::~VoxelGrid() = default;
+      bins_(device, size) {}
 
 void VoxelGrid::reserve(Executor& executor) {
     if (slots_ == 0) slots_ = firstSlots(size_, sparse_);
@@ -106,8 +80,9 @@ void VoxelGrid::reserve(Executor& executor) {
 
 // Room for what the last record whose counts have come back has wanted, and a quarter more.
 void VoxelGrid::grow() {
-    if (!sparse_ || !counts_->isThere() || counts_->state.dropped == 0) return;
-    const std::uint32_t wanted = std::uint32_t(counts_->state.slots + counts_->state.dropped);
+    const LwVoxelGrid* counts = counts_.take();
+    if (!sparse_ || !counts || counts->dropped == 0) return;
+    const std::uint32_t wanted = std::uint32_t(counts->slots + counts->dropped);
     if (wanted <= slots_) return;
     slots_ = std::min(brickCount_, wanted + wanted / 4);
     isKept_ = false;
@@ -146,13 +121,7 @@ void VoxelGrid::giveSlots(Executor& executor) {
 }
 
 void VoxelGrid::readCounts(Executor& executor) {
-    if (!sparse_ || slots_ == brickCount_ || counts_->done) return;
-    executor.read("voxel_grid.counts", state_.get(), 0, sizeof(LwVoxelGrid), &counts_->state);
-    const cl_int failed = clEnqueueMarkerWithWaitList(device_.queue(), 0, nullptr, &counts_->done);
-    if (failed != CL_SUCCESS) {
-        counts_->done = nullptr;
-        checkCl(failed, "clEnqueueMarkerWithWaitList");
-    }
+    if (sparse_ && slots_ < brickCount_) counts_.record(executor, "voxel_grid.counts", state_, 0);
 }
 
 void VoxelGrid::record(Executor& executor, const GeometryInput& geometry, const Buffer& place) {

@@ -3,10 +3,10 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 
 #include "compute/buffer.h"
 #include "compute/executor.h"
+#include "compute/late_read.h"
 #include "compute/report.h"
 #include "inputs/geometry_input.h"
 #include "inputs/surfel_set.h"
@@ -19,7 +19,6 @@ class VoxelGrid {
 public:
     // sparse: only bricks that are occupied have slots, as many as the frames so far have wanted; else all.
     VoxelGrid(Device& device, std::uint32_t size, bool sparse);
-    ~VoxelGrid();
 
     // Passes "voxel_grid.*". place: LwLpvPlace. Where the grid has not moved, only bricks that the triangles' changes touch are
     // made anew, and none where nothing has changed; what comes out is the same, to the bit, as all made anew.
@@ -44,7 +43,6 @@ public:
 
 private:
     enum class Source { kNone, kTriangles, kSurfels };
-    struct Counts;  // the state of a frame ago, on its way to the host
 
     void reserve(Executor& executor);
     void grow();
@@ -66,7 +64,7 @@ private:
     VoxelGridBins bins_;
     Buffer occupied_, bricks_, surfaces_, changed_, state_;
     Buffer list_, owners_, free_, chunks_;
-    std::unique_ptr<Counts> counts_;
+    LateRead<LwVoxelGrid> counts_;  // the state of a frame ago, on its way to the host
     bool isKept_ = false;
     Source source_ = Source::kNone;
     std::uint64_t revision_ = 0;

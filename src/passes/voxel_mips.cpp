@@ -1,5 +1,7 @@
 #include "passes/voxel_mips.h"
 
+#include <cstddef>
+
 #include "compute/device.h"
 #include "passes/vpl_list.h"
 
@@ -58,7 +60,10 @@ void VoxelMips::reserve(Executor& executor) {
     bits_.reserve(device_, bitBytes(size_), "bits of coarser voxels");
     wanted_.reserve(device_, entries, "bricks that want memory");
     counts_.reserve(device_, allRuns(size_) * sizeof(cl_int), "counts of bricks");
-    work_.reserve(device_, sizeof(LwVoxelWork), "changes of voxels");
+    if (!work_) {
+        work_ = Buffer(device_, sizeof(LwVoxelWork), "changes of voxels");
+        executor.fill("voxel_mips.clear", work_, 0, 0, work_.bytes());
+    }
     if (!marks_) {
         marks_ = Buffer(device_, entries * sizeof(cl_int), "bricks that have changed");
         executor.fill("voxel_mips.clear", marks_, 0, 0, marks_.bytes());
@@ -68,7 +73,8 @@ void VoxelMips::reserve(Executor& executor) {
 void VoxelMips::recordTables(Executor& executor, const Buffer& occupied, const Buffer& changed, bool all,
                              const VoxelVolume& volume) {
     reserve(executor);
-    executor.fill("voxel_mips.clear", work_, 0, 0, work_.bytes());
+    // What is wanted stays until tables are made anew: who reads it late may have missed the frame that found it out.
+    executor.fill("voxel_mips.clear", work_, 0, 0, offsetof(LwVoxelWork, baseWanted));
     executor.run("voxel_mips.tables", look_, gridOver(runsOf(size_, 0)), kGroup, changed,
                  cl_int(bricksOf(size_, 0)), cl_int(all ? 1 : 0), work_);
     for (std::uint32_t level = 1; level < levelsOf(size_); ++level) {

@@ -1,7 +1,6 @@
 // Frame part, report and registration; the table of parameters is cone_tracing_parameters.cpp's.
 #include "techniques/cone_tracing.h"
 
-#include <algorithm>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -19,8 +18,8 @@
 namespace lightwell {
 namespace {
 
-// One grid within another has all kernels of many.
-constexpr std::uint32_t kPrewarmedCascades = 2, kPrewarmedSize = 32;
+// The least sizes of grids with the kernels of all: those of more than 64 voxels a side are shared out otherwise (VoxelGrid).
+constexpr std::uint32_t kPrewarmedSmall = 32, kSmall = 64, kPrewarmedLarge = 128;
 // Radiance from infinity above which it is refused: no sum over a hemisphere leaves float's range, and no sky comes near it.
 constexpr float kLargestEnvironment = 1e20f;
 constexpr std::uint32_t kMakes = kMakesAmbient | kMakesSpecular | kMakesRefracted | kMakesShadow;
@@ -64,15 +63,14 @@ public:
           desc_(desc),
           hidden_(hidden),
           volume_(std::make_unique<ConeTracingVolume>(device, desc, hidden)),
-          passes_(device, desc) {}
+          passes_(std::make_unique<ConeTracingPasses>(device, desc)) {}
 
     void update(Executor& executor, const LWFrame& frame) override {
         checkEnvironment(frame);
         volume_->check(frame);
         rsms_.import(executor, frame);
         const bool lost = continuity_.beginLost();
-        // What its memory holds is not known.
-        if (lost) volume_ = std::make_unique<ConeTracingVolume>(device_, desc_, hidden_);
+        if (lost) forget();
         volume_->record(executor, frame, rsms_, frame.reset != 0 || lost);
         shadowLight_ = lightOf(frame, desc_);
         choices_ = unusedInputs(frame, desc_);
@@ -86,7 +84,7 @@ public:
         checkLightOutputs(device_, *view, output, "cone_tracing", kMakes);
         const ConeRaysAsked rays = ConeTracingRays::asked(*view, gbuffer, output, desc_, shadowLight_ ? &*shadowLight_ : nullptr);
         ConeTracingView& state = states_.get(view, [&] { return std::make_unique<ConeTracingView>(device_, desc_); });
-        state.render(executor, *view, gbuffer, output, passes_, volume_->world(), rays);
+        state.render(executor, *view, gbuffer, output, *passes_, volume_->world(), rays);
     }
 
     void renderPoints(Executor& executor, const Points& points) override {
@@ -97,11 +95,31 @@ public:
 
     void lose() override { continuity_.lose(); }
 
-    // Of every source that frames may bring, in small grids: the same kernels.
+    // In small grids, as many as there are (an option of the kernels); then in a larger one, where kernels are others.
     void prewarm(Executor& executor, const std::shared_ptr<View>&) override {
+        prewarmIn(executor, kPrewarmedSmall, desc_.cascades);
+        if (desc_.size > kSmall) prewarmIn(executor, kPrewarmedLarge, 1);
+    }
+
+    Report report() override;
+    std::vector<DebugView> debugViews(const View* view) override;
+    std::uint64_t bytes() const override;
+
+private:
+    // What memory holds that is kept from frame to frame is not known: voxels, and the tables of cones.
+    void forget() {
+        volume_ = std::make_unique<ConeTracingVolume>(device_, desc_, hidden_);
+        passes_ = std::make_unique<ConeTracingPasses>(device_, desc_);
+        points_.reset();
+    }
+
+    // Of every source that frames may bring.
+    void prewarmIn(Executor& executor, std::uint32_t size, std::uint32_t cascades) {
         LWConeTracingDesc desc = desc_;
-        desc.size = std::min(desc.size, kPrewarmedSize);
-        desc.cascades = std::min(desc.cascades, kPrewarmedCascades);
+        desc.size = size;
+        desc.cascades = cascades;
+        desc.sparse = 1;
+        desc.shadowLight = 0;  // frames here have one light
         desc.source = LW_VOXEL_SOURCE_AUTO;
         for (int hidden = 0; hidden <= 2; ++hidden) {
             if (desc_.source != LW_VOXEL_SOURCE_AUTO && desc_.source != LW_VOXEL_SOURCE_TRIANGLES + hidden) continue;
@@ -111,18 +129,13 @@ public:
         }
     }
 
-    Report report() override;
-    std::vector<DebugView> debugViews(const View* view) override;
-    std::uint64_t bytes() const override;
-
-private:
     Device& device_;
     LWConeTracingDesc desc_;
     int hidden_;  // ConeTracingSurfaces'
     Continuity continuity_{device_};
     RsmInput rsms_;
     std::unique_ptr<ConeTracingVolume> volume_;
-    ConeTracingPasses passes_;
+    std::unique_ptr<ConeTracingPasses> passes_;
     PerView<ConeTracingView> states_;
     std::optional<ConeTracingPoints> points_;  // from the first lwRenderPoints on
     std::optional<ConeLightSource> shadowLight_;  // of the last update, as is
@@ -148,7 +161,7 @@ std::vector<DebugView> ConeTracingTechnique::debugViews(const View* view) {
 }
 
 std::uint64_t ConeTracingTechnique::bytes() const {
-    std::uint64_t total = rsms_.bytes() + volume_->bytes() + passes_.bytes() + (points_ ? points_->bytes() : 0);
+    std::uint64_t total = rsms_.bytes() + volume_->bytes() + passes_->bytes() + (points_ ? points_->bytes() : 0);
     states_.each([&](const ConeTracingView& state) { total += state.bytes(); });
     return total;
 }

@@ -93,13 +93,14 @@ void ConeTracingSurfaces::report(Report& report) const {
 }
 
 std::uint64_t ConeTracingSurfaces::estimateBytes(const LWConeTracingDesc& desc, const FrameShape& shape) {
+    const auto binBytes = [&](std::uint64_t surfels) { return desc.cascades * VoxelGridBins::estimateBytes(desc.size, surfels); };
     switch (chosen(desc.source, shape.triangles, shape.surfels)) {
         case Source::triangles:
             return GeometryInput::estimateBytes(shape.triangles, true);
         case Source::surfels:
-            return SurfelInput::estimateBytes(shape.surfels, shape.uploads, true);
+            return SurfelInput::estimateBytes(shape.surfels, shape.uploads, true) + binBytes(shape.surfels);
         default:
-            return ScreenSurfels::estimateBytes(shape);
+            return ScreenSurfels::estimateBytes(shape) + binBytes(shape.paddedTexels + shape.sourcePixels);
     }
 }
 

@@ -33,6 +33,7 @@ public:
     std::vector<LWChoice> choices(const LWFrame& frame) const;
     void report(Report& report) const;
     std::uint64_t bytes() const { return triangles_.bytes() + surfels_.bytes() + screen_.bytes(); }
+    // With what the grids keep of surfels.
     static std::uint64_t estimateBytes(const LWConeTracingDesc& desc, const FrameShape& shape);
 
 private:

@@ -171,6 +171,9 @@ void exerciseTechnique(Executor& executor, Technique& technique, std::uint32_t k
             alone.structSize = sizeof alone;
             alone.irradiance = imageOf(inputs.irradiance, LW_FORMAT_FLOAT3);
             technique.render(executor, view, gbuffer, alone);
+            alone.irradiance = LWImage{};
+            alone.validity = imageOf(inputs.validity, LW_FORMAT_FLOAT1);
+            technique.render(executor, view, gbuffer, alone);
         }
         executor.device().finish();
     }
@@ -188,6 +191,8 @@ void exercisePoints(Executor& executor, Technique& technique) {
     points.output.validity = inputs.row(inputs.validity, LW_FORMAT_FLOAT1);
     points.output.harmonics = imageOf(inputs.radiance, LW_FORMAT_FLOAT3);
     points.output.harmonics.height = 4;
+    technique.renderPoints(executor, points);
+    points.output.irradiance = points.output.harmonics = LWImage{};  // validity as at surfaces
     technique.renderPoints(executor, points);
     executor.device().finish();
 }

@@ -112,6 +112,8 @@ TEST_CASE("shadows of lights before and behind a wall, and from behind the surfa
     lamp.at[0] = 17.0f;
     CHECK(shadowOf(rig, rays, voxels, {6, 16, 16}, {1, 0, 0}, lamp) == Approx(1.0));
     CHECK(shadowOf(rig, rays, voxels, {6, 16, 16}, {-1, 0, 0}, lamp) == 0.0);
+    lamp.at[0] = 19.0f;  // what stands behind a lamp, nearer than cones begin off surfaces, does not shadow it
+    CHECK(shadowOf(rig, rays, voxels, {6, 16, 16}, {1, 0, 0}, lamp) == Approx(1.0));
     CHECK(shadowOf(rig, rays, voxels, {6, 16, 16}, {1, 0, 0}, directional(1, 0, 0, 0.05)) ==
           Approx(0.0).margin(1e-3));
     CHECK(shadowOf(rig, rays, voxels, {6, 16, 16}, {1, 0, 0}, directional(0.1f, 1, 0, 0.05)) ==

@@ -424,4 +424,9 @@ TEST_CASE("only bricks above what has changed are filtered, and come out as if a
     changed.makeTables(bits, false);
     changed.write(wordAt(3.0), [](int) { return false; });
     CHECK(changed.state().filteredBricks == 0);
+    // What the scene wants is still there for who looks late.
+    CHECK(changed.work().stale == 0);
+    CHECK(changed.work().baseWanted == anew.work().baseWanted);
+    CHECK(changed.work().mipsWanted == anew.work().mipsWanted);
+    CHECK(anew.work().mipsWanted > 0);
 }

@@ -108,6 +108,50 @@ TEST_CASE("cones compile nothing after lwPrewarm, and take no more memory than w
     CHECK(device.info().kernelsSpecialised == before.kernelsSpecialised);
 }
 
+TEST_CASE("cones in several large grids compile nothing after lwPrewarm, whatever is asked for", "[cone_tracing]") {
+    TestDevice device(16);
+    const ConeBox box(2.0, false, 1.0, 0.5, 32);
+    const DrawnView drawn(box.walls, kInside, kWidth, kHeight);
+    const std::uint32_t cascades = GENERATE(1u, 3u);
+    LWConeTracingDesc desc = coneDesc(cascades == 1 ? 128 : 32, LW_VOXEL_MODE_ISOTROPIC, LW_CONE_RESOLUTION_FULL);
+    desc.cascades = cascades;
+    desc.shadowLight = 3;  // which no frame of lwPrewarm's has
+    TestTechnique technique(device, "cone_tracing", &desc);
+    TestView view(device, kWidth, kHeight);
+    REQUIRE(lwPrewarm(technique, view) == LW_SUCCESS);
+    const LWDeviceInfo before = device.info();
+    technique.update(box.frame);
+    Outputs all;
+    all.output.shadow = LWImage{};
+    render(device, technique, view, drawn.gbuffer, all.output);
+    LWOutput validity{};
+    validity.structSize = sizeof validity;
+    validity.validity = all.output.validity;
+    render(device, technique, view, drawn.gbuffer, validity);
+    const PointList list = PointList::ofScene(drawn).part(0, 3);
+    renderPoints(device, technique, list);
+    renderPoints(device, technique, list, kPointHarmonics | kPointValidity, false);
+    renderPoints(device, technique, list, kPointValidity);
+    CHECK(device.info().programsBuilt == before.programsBuilt);
+    CHECK(device.info().kernelsSpecialised == before.kernelsSpecialised);
+}
+
+TEST_CASE("cones: dense grids of the screen's surfels take no more memory than was estimated", "[cone_tracing]") {
+    TestDevice device(16);
+    const ConeBox box(2.0, false, 1.0, 0.5, 128);
+    LWConeTracingDesc desc = coneDesc(32);
+    desc.source = LW_VOXEL_SOURCE_SCREEN;
+    desc.sparse = 0;
+    TestTechnique technique(device, "cone_tracing", &desc);
+    LWViewDesc size{};
+    size.structSize = sizeof size;
+    size.maxWidth = size.maxHeight = 1;
+    std::uint64_t estimate = 0;
+    REQUIRE(lwEstimateFrameMemory(device, "cone_tracing", &desc, &size, &box.frame, &estimate) == LW_SUCCESS);
+    technique.update(box.frame);
+    CHECK(technique.stats().deviceBytes <= estimate);
+}
+
 TEST_CASE("cones: nothing is made anew in a static scene, and what moves within a grid's units changes nothing", "[cone_tracing]") {
     TestDevice device(16);
     const ConeBox box(2.0, false, 1.0, 0.5, 64);
