@@ -26,7 +26,11 @@ public:
     void record(Executor& executor, const GeometryInput& triangles, const Buffer& place);
     // Discs: each as the regular octagon of its area. Another revision: all anew.
     void record(Executor& executor, const SurfelSet& surfels, const Buffer& place);
-    void forget() { isKept_ = false; }  // the next record() makes all anew
+    // The next record() makes all anew.
+    void forget() {
+        isKept_ = false;
+        bins_.forget();
+    }
 
     std::uint32_t size() const { return size_; }
     std::uint32_t slots() const { return slots_; }         // planes of surfaces() are slots() * LW_VOXEL_BRICK_VOXELS words each
