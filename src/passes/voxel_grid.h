@@ -17,8 +17,11 @@ namespace lightwell {
 
 class VoxelGrid {
 public:
-    // sparse: only bricks that are occupied have slots, as many as the frames so far have wanted; else all.
-    VoxelGrid(Device& device, std::uint32_t size, bool sparse);
+    // Of which bricks surfaces are kept: all; only occupied ones, of which as many have slots as the frames so far have wanted; none,
+    // where all that is read is which voxels are occupied.
+    enum class Keeps { all, occupied, none };
+    VoxelGrid(Device& device, std::uint32_t size, Keeps keeps);
+    VoxelGrid(Device& device, std::uint32_t size, bool sparse) : VoxelGrid(device, size, keepsOf(sparse)) {}
     ~VoxelGrid();
 
     // Passes "voxel_grid.*". place: LwLpvPlace. Where the grid has not moved, only bricks that the triangles' changes touch are
@@ -44,12 +47,16 @@ public:
     void report(Device& device, Report& report) const;
     std::uint64_t bytes() const;
     // Of `slots` bricks with surfaces; 0: as many as a new grid has. Of surfels: VoxelGridBins::estimateBytes more.
-    static std::uint64_t estimateBytes(std::uint32_t size, bool sparse, std::uint32_t slots = 0);
+    static std::uint64_t estimateBytes(std::uint32_t size, Keeps keeps, std::uint32_t slots = 0);
+    static std::uint64_t estimateBytes(std::uint32_t size, bool sparse, std::uint32_t slots = 0) {
+        return estimateBytes(size, keepsOf(sparse), slots);
+    }
 
 private:
     enum class Source { kNone, kTriangles, kSurfels };
     struct Counts;  // the state of a frame ago, on its way to the host
 
+    static Keeps keepsOf(bool sparse) { return sparse ? Keeps::occupied : Keeps::all; }
     void reserve(Executor& executor);
     void grow();
     // emission: the largest one, or where among `found` it is.
@@ -64,7 +71,7 @@ private:
 
     Device& device_;
     std::uint32_t size_, brickCount_, slots_ = 0;
-    bool sparse_;
+    bool sparse_, fills_;
     Kernel &begin_, &mark_, &census_, &freeSlots_, &scan_, &listFree_, &give_, &occupy_, &fill_, &outside_, &occupySurfels_,
         &fillSurfels_;
     VoxelGridBins bins_;

@@ -38,7 +38,8 @@ public:
     VoxelSights sights() const { return visibility_.sights(); }
     void report(Report& report) const;
     std::uint64_t bytes() const { return place_.bytes() + grid_.bytes() + visibility_.bytes(); }
-    static std::uint64_t estimateBytes(std::uint32_t size, std::uint32_t clusters, const FrameShape& shape);
+    // surfels: that voxels are made of, as many as VoxelSurfaces has; 0: triangles.
+    static std::uint64_t estimateBytes(std::uint32_t size, std::uint32_t clusters, std::uint64_t surfels, const FrameShape& shape);
 
 private:
     Device& device_;
