@@ -42,11 +42,12 @@ std::size_t surfaceBytes(std::uint32_t slots) {
 
 }  // namespace
 
-VoxelGrid::VoxelGrid(Device& device, std::uint32_t size, bool sparse)
+VoxelGrid::VoxelGrid(Device& device, std::uint32_t size, Keeps keeps)
     : device_(device),
       size_(size),
       brickCount_(bricksOf(size)),
-      sparse_(sparse),
+      sparse_(keeps == Keeps::occupied),
+      fills_(keeps != Keeps::none),
       begin_(device.programs().kernel(kProgram, "voxel_grid_begin")),
       mark_(device.programs().kernel(kProgram, "voxel_grid_mark")),
       census_(device.programs().kernel(kProgram, "voxel_grid_census")),
@@ -75,7 +76,7 @@ void VoxelGrid::reserve(Executor& executor) {
     owners_.reserve(device_, slots_ * sizeof(cl_int), "owners of the voxels' slots");
     free_.reserve(device_, slots_ * sizeof(cl_int), "free slots of voxels");
     chunks_.reserve(device_, (chunksOf(bricks) + chunksOf(slots_)) * sizeof(cl_int), "counts of bricks of voxels");
-    surfaces_.reserve(device_, surfaceBytes(slots_), "surfaces of voxels");
+    if (fills_) surfaces_.reserve(device_, surfaceBytes(slots_), "surfaces of voxels");
 }
 
 // Room for what the last record whose counts have come back has wanted, and a quarter more.
@@ -137,8 +138,10 @@ void VoxelGrid::record(Executor& executor, const GeometryInput& geometry, const 
         executor.run("voxel_grid.occupy", outside_, {(geometry.triangleCount + kOutsideRun - 1) / kOutsideRun, 1}, kListGroup, triangles,
                      stride, count, place, cl_int(size_), state_);
     giveSlots(executor);
-    executor.run("voxel_grid.fill", fill_, {workers, 1}, {1, 1}, triangles, stride, count,
-                 cl_int(geometry.hasEmission ? GeometryInput::kEmission : -1), nodes, place, cl_int(size_), list_, bricks_, cl_int(slots_), surfaces_, state_);
+    if (fills_)
+        executor.run("voxel_grid.fill", fill_, {workers, 1}, {1, 1}, triangles, stride, count,
+                     cl_int(geometry.hasEmission ? GeometryInput::kEmission : -1), nodes, place, cl_int(size_), list_, bricks_,
+                     cl_int(slots_), surfaces_, state_);
     readCounts(executor);
     isKept_ = true;
 }
@@ -153,8 +156,9 @@ void VoxelGrid::record(Executor& executor, const SurfelSet& surfels, const Buffe
     executor.run("voxel_grid.occupy", occupySurfels_, {workers, 1}, {1, 1}, planes, stride, bins_.begins(), bins_.order(), place,
                  cl_int(size_), list_, occupied_, state_);
     giveSlots(executor);
-    executor.run("voxel_grid.fill", fillSurfels_, {workers, 1}, {1, 1}, planes, stride, cl_int(surfels.emission ? 1 : 0),
-                 bins_.begins(), bins_.order(), place, cl_int(size_), list_, bricks_, cl_int(slots_), surfaces_, state_);
+    if (fills_)
+        executor.run("voxel_grid.fill", fillSurfels_, {workers, 1}, {1, 1}, planes, stride, cl_int(surfels.emission ? 1 : 0),
+                     bins_.begins(), bins_.order(), place, cl_int(size_), list_, bricks_, cl_int(slots_), surfaces_, state_);
     readCounts(executor);
     isKept_ = true;
 }
@@ -173,10 +177,10 @@ std::uint64_t VoxelGrid::bytes() const {
            owners_.bytes() + free_.bytes() + chunks_.bytes() + bins_.bytes();
 }
 
-std::uint64_t VoxelGrid::estimateBytes(std::uint32_t size, bool sparse, std::uint32_t slots) {
+std::uint64_t VoxelGrid::estimateBytes(std::uint32_t size, Keeps keeps, std::uint32_t slots) {
     const std::uint64_t bricks = bricksOf(size);
-    if (slots == 0) slots = firstSlots(size, sparse);
-    return bricks * (LW_VOXEL_WORDS + 3) * sizeof(cl_int) + surfaceBytes(slots) + 2 * std::uint64_t(slots) * sizeof(cl_int) +
+    if (slots == 0) slots = firstSlots(size, keeps == Keeps::occupied);
+    return bricks * (LW_VOXEL_WORDS + 3) * sizeof(cl_int) + (keeps == Keeps::none ? 0 : surfaceBytes(slots)) + 2 * std::uint64_t(slots) * sizeof(cl_int) +
            (chunksOf(bricks) + chunksOf(slots)) * sizeof(cl_int) + sizeof(LwVoxelGrid);
 }
 

@@ -17,15 +17,22 @@ namespace lightwell {
 
 class VoxelGrid {
 public:
-    // sparse: only bricks that are occupied have slots, as many as the frames so far have wanted; else all.
-    VoxelGrid(Device& device, std::uint32_t size, bool sparse);
+    // Of which bricks surfaces are kept: all; only occupied ones, of which as many have slots as the frames so far have wanted; none,
+    // where all that is read is which voxels are occupied.
+    enum class Keeps { all, occupied, none };
+    VoxelGrid(Device& device, std::uint32_t size, Keeps keeps);
+    VoxelGrid(Device& device, std::uint32_t size, bool sparse) : VoxelGrid(device, size, keepsOf(sparse)) {}
 
     // Passes "voxel_grid.*". place: LwLpvPlace. Where the grid has not moved, only bricks that the triangles' changes touch are
     // made anew, and none where nothing has changed; what comes out is the same, to the bit, as all made anew.
     void record(Executor& executor, const GeometryInput& triangles, const Buffer& place);
     // Discs: each as the regular octagon of its area. Another revision: all anew.
     void record(Executor& executor, const SurfelSet& surfels, const Buffer& place);
-    void forget() { isKept_ = false; }  // the next record() makes all anew
+    // The next record() makes all anew.
+    void forget() {
+        isKept_ = false;
+        bins_.forget();
+    }
 
     std::uint32_t size() const { return size_; }
     std::uint32_t slots() const { return slots_; }         // planes of surfaces() are slots() * LW_VOXEL_BRICK_VOXELS words each
@@ -39,11 +46,15 @@ public:
     void report(Device& device, Report& report) const;
     std::uint64_t bytes() const;
     // Of `slots` bricks with surfaces; 0: as many as a new grid has. Of surfels: VoxelGridBins::estimateBytes more.
-    static std::uint64_t estimateBytes(std::uint32_t size, bool sparse, std::uint32_t slots = 0);
+    static std::uint64_t estimateBytes(std::uint32_t size, Keeps keeps, std::uint32_t slots = 0);
+    static std::uint64_t estimateBytes(std::uint32_t size, bool sparse, std::uint32_t slots = 0) {
+        return estimateBytes(size, keepsOf(sparse), slots);
+    }
 
 private:
     enum class Source { kNone, kTriangles, kSurfels };
 
+    static Keeps keepsOf(bool sparse) { return sparse ? Keeps::occupied : Keeps::all; }
     void reserve(Executor& executor);
     void grow();
     // emission: the largest one, or where among `found` it is.
@@ -58,7 +69,7 @@ private:
 
     Device& device_;
     std::uint32_t size_, brickCount_, slots_ = 0;
-    bool sparse_;
+    bool sparse_, fills_;
     Kernel &begin_, &mark_, &census_, &freeSlots_, &scan_, &listFree_, &give_, &occupy_, &fill_, &outside_, &occupySurfels_,
         &fillSurfels_;
     VoxelGridBins bins_;

@@ -31,10 +31,9 @@ VoxelGridBins::VoxelGridBins(Device& device, std::uint32_t size)
 
 void VoxelGridBins::record(Executor& executor, const SurfelSet& surfels, const Buffer& place, const Buffer& state) {
     const std::size_t lists = listsOf(size_), chunks = chunksOf(size_);
-    if (!counts_) {
-        counts_ = Buffer(device_, lists * sizeof(cl_int), "counts of surfels in bricks");
-        executor.fill(kPass, counts_, 0, 0, lists * sizeof(cl_int));  // later ones are counted down to 0 again
-    }
+    counts_.reserve(device_, lists * sizeof(cl_int), "counts of surfels in bricks");
+    if (!isCounted_) executor.fill(kPass, counts_, 0, 0, lists * sizeof(cl_int));
+    isCounted_ = false;  // until all is enqueued
     chunks_.reserve(device_, chunks * sizeof(cl_int), "sums of surfels in bricks");
     begins_.reserve(device_, (lists + 1) * sizeof(cl_int), "where bricks' surfels begin");
     listOf_.reserve(device_, std::max<std::size_t>(surfels.count, 1) * sizeof(cl_int), "surfels' bricks");
@@ -49,6 +48,7 @@ void VoxelGridBins::record(Executor& executor, const SurfelSet& surfels, const B
     executor.run(kPass, begin_, {chunks, 1}, kListGroup, counts_, cl_int(lists), chunks_, begins_, state);
     if (count)
         executor.run(kPass, list_, over, kListGroup, listOf_, count, place, counts_, begins_, order_, state);
+    isCounted_ = true;
 }
 
 std::uint64_t VoxelGridBins::estimateBytes(std::uint32_t size, std::uint64_t surfelCount) {

@@ -16,6 +16,7 @@ public:
     // Pass "voxel_grid.bins". state: VoxelGrid's, which says whether anything is to be done, and where surfels beyond the grid are
     // counted.
     void record(Executor& executor, const SurfelSet& surfels, const Buffer& place, const Buffer& state);
+    void forget() { isCounted_ = false; }  // commands of a record() may not have run
 
     const Buffer& begins() const { return begins_; }  // bin_lists + 1: where each list begins in order()
     const Buffer& order() const { return order_; }    // surfels
@@ -27,6 +28,7 @@ private:
     std::uint32_t size_;
     Kernel &count_, &addUp_, &scan_, &begin_, &list_;
     Buffer listOf_, counts_, chunks_, begins_, order_;
+    bool isCounted_ = false;  // counts_ is 0 again: counted up and down
 };
 
 }  // namespace lightwell

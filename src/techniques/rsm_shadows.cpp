@@ -147,7 +147,8 @@ std::uint64_t RsmShadows::estimateBytes(const LWRsmDesc& desc, std::uint32_t cou
     const std::uint64_t surfaces = source == Source::triangles  ? GeometryInput::estimateBytes(shape.triangles)
                                    : source == Source::surfels ? SurfelInput::estimateBytes(shape.surfels, shape.uploads)
                                                                : ScreenSurfels::estimateBytes(shape);
-    return surfaces + VoxelShadows::estimateBytes(desc.voxels, kClusters, shape) +
+    const std::uint64_t surfels = source == Source::triangles ? 0 : source == Source::surfels ? shape.surfels : shape.paddedTexels + shape.sourcePixels;
+    return surfaces + VoxelShadows::estimateBytes(desc.voxels, kClusters, surfels, shape) +
            KMeans::estimateBytes(clusterOptions(), count) + ClusteredGather::estimateBytes({count}, 1, desc.interleave);
 }
 

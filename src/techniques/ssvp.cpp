@@ -64,6 +64,7 @@ public:
 
     void update(Executor& executor, const LWFrame& frame) override {
         maps_.check(frame);
+        if (shadows_) shadows_->check(frame);
         rsms_.import(executor, frame);
         // Of an earlier frame may be lost what it should have left of geometry, maps and clusters.
         const bool lost = continuity_.beginLost(), restart = lost || frame.reset != 0;

@@ -222,4 +222,9 @@ std::uint64_t SsvpMaps::estimateBytes(const LWSsvpDesc& desc, const std::vector<
     return total;
 }
 
+std::uint64_t SsvpMaps::voxelSurfels(const LWSsvpDesc& desc, const FrameShape& shape) {
+    const Source source = chosenSource(desc, shape.triangles, shape.surfels);
+    return source == Source::surfels ? shape.surfels : source == Source::screen ? shape.paddedTexels + shape.sourcePixels : 0;
+}
+
 }  // namespace lightwell

@@ -48,6 +48,7 @@ public:
     // clusterCounts: of each stage.
     static std::uint64_t estimateBytes(const LWSsvpDesc& desc, const std::vector<std::uint32_t>& clusterCounts,
                                        const FrameShape& shape);
+    static std::uint64_t voxelSurfels(const LWSsvpDesc& desc, const FrameShape& shape);  // of surfaces(); 0 of triangles
 
 private:
     struct Stage {

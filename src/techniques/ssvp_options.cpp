@@ -102,7 +102,7 @@ std::uint64_t estimateSsvpBytes(const void* desc, const LWViewDesc& view, const 
     }
     if (ssvp.autoError > 0.0f)
         total += SsvpPlan::estimateBytes(planOptions(ssvp), shape.texels ? shape.rows : 0);
-    if (ssvp.visibility == LW_VISIBILITY_VOXEL) total += VoxelShadows::estimateBytes(ssvp.voxels, shadowing, shape);
+    if (ssvp.visibility == LW_VISIBILITY_VOXEL) total += VoxelShadows::estimateBytes(ssvp.voxels, shadowing, SsvpMaps::voxelSurfels(ssvp, shape), shape);
     if (ssvp.compensation > 0) total += BoundingCompensation::estimateBytes(compensationOptions(ssvp));
     return total + RsmInput::estimateBytes(shape) +
            VplSampling::estimateBytes(samplingOptions(ssvp), shape) +

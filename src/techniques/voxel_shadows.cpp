@@ -7,7 +7,7 @@
 namespace lightwell {
 
 VoxelShadows::VoxelShadows(Device& device, std::uint32_t size)
-    : device_(device), place_(device, size, 1), grid_(device, size, true), visibility_(device, size) {}
+    : device_(device), place_(device, size, 1), grid_(device, size, VoxelGrid::Keeps::none), visibility_(device, size) {}
 
 void VoxelShadows::recordVoxels(Executor& executor, const LWFrame& frame, const RsmInput& rsms, const VoxelSurfaces& surfaces,
                                 bool forget) {
@@ -36,9 +36,9 @@ void VoxelShadows::report(Report& report) const {
     if (const Buffer& sight = sights().sight) report.read(device_, "clusters_swept", sight, offsetof(LwVoxelSight, swept));
 }
 
-std::uint64_t VoxelShadows::estimateBytes(std::uint32_t size, std::uint32_t clusters, const FrameShape& shape) {
-    return GridPlace::estimateBytes(shape.vplCount) + VoxelGrid::estimateBytes(size, true) +
-           VoxelVisibility::estimateBytes(size, clusters);
+std::uint64_t VoxelShadows::estimateBytes(std::uint32_t size, std::uint32_t clusters, std::uint64_t surfels, const FrameShape& shape) {
+    return GridPlace::estimateBytes(shape.vplCount) + VoxelGrid::estimateBytes(size, VoxelGrid::Keeps::none) +
+           VoxelGridBins::estimateBytes(size, surfels) + VoxelVisibility::estimateBytes(size, clusters);
 }
 
 }  // namespace lightwell

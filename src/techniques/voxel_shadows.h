@@ -28,6 +28,8 @@ class VoxelShadows {
 public:
     VoxelShadows(Device& device, std::uint32_t size);
 
+    // Throws what recordVoxels() would say of this frame's triangles, which the grid reaches around also where voxels are made of others.
+    void check(const LWFrame& frame) { box_.look(frame.geometry); }
     // Passes "grid_place.*" and "voxel_grid.*". forget: of what was left of earlier frames nothing counts.
     void recordVoxels(Executor& executor, const LWFrame& frame, const RsmInput& rsms, const VoxelSurfaces& surfaces, bool forget);
     // Passes "voxel_visibility.*", of those voxels.
@@ -36,7 +38,8 @@ public:
     VoxelSights sights() const { return visibility_.sights(); }
     void report(Report& report) const;
     std::uint64_t bytes() const { return place_.bytes() + grid_.bytes() + visibility_.bytes(); }
-    static std::uint64_t estimateBytes(std::uint32_t size, std::uint32_t clusters, const FrameShape& shape);
+    // surfels: that voxels are made of, as many as VoxelSurfaces has; 0: triangles.
+    static std::uint64_t estimateBytes(std::uint32_t size, std::uint32_t clusters, std::uint64_t surfels, const FrameShape& shape);
 
 private:
     Device& device_;

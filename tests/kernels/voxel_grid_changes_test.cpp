@@ -196,6 +196,15 @@ TEST_CASE("bricks that find no slot are counted, and have one as soon as the cou
     CHECK(rig.state().bricks == 512);
     CHECK(rig.state().dropped == 512 - room);
     CHECK((rig.occupied() == all.occupied()));
+    // Where no surfaces are kept, no brick wants for a slot.
+    VoxelGrid bare(rig.device(), 64, VoxelGrid::Keeps::none);
+    const Guarded place = rig.upload(std::vector<LwLpvPlace>{rig.place});
+    bare.record(rig.executor(), rig.input, place);
+    rig.device().finish();
+    CHECK((VoxelRig::read<cl_uint>(bare.occupied(), rig.brickCount() * LW_VOXEL_WORDS) == all.occupied()));
+    CHECK(VoxelRig::read<LwVoxelGrid>(bare.state(), 1)[0].dropped == 0);
+    CHECK(bare.bytes() <= VoxelGrid::estimateBytes(64, VoxelGrid::Keeps::none));
+    CHECK(bare.bytes() < rig.pass.bytes() / 10);
     // In the order of the bricks, so that those that are dropped are the last.
     const std::vector<cl_int> bricks = rig.bricks();
     for (int b = 0; b < 512; ++b) CHECK(bricks[std::size_t(b)] == (b < room ? b : LW_VOXEL_EMPTY));

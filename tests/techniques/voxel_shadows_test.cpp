@@ -2,13 +2,13 @@
 // voxels are made, and what a host relies on.
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <functional>
 #include <memory>
 #include <string>
 
 #include "support/host_image.h"
 #include "support/lit_room.h"
 #include "support/packed_light.h"
+#include "support/points_rig.h"
 #include "support/scoped_api.h"
 #include "support/walls.h"
 
@@ -202,11 +202,11 @@ TEST_CASE("still frames sweep no cluster and have the same bits; so have ten run
 
 TEST_CASE("nothing is compiled after prewarming, and memory is as estimated, whatever voxels are made of", "[rsm][ssvp][voxels]") {
     TestDevice device(16);
-    LitFloor floor(64, plain);
+    const int source = GENERATE(0, 1, 2);
+    LitFloor floor(source == 2 ? 512 : 64, plain);  // so many that lists of them would be missed
     WallAndCeiling scene(kWidth, kHeight);
     TestView view(device, kWidth, kHeight);
     Walls room = Walls::room();
-    const int source = GENERATE(0, 1, 2);
     const LWSourceView seen{view, &scene.gbuffer};
     const Frame frame(floor, source == 0 ? room.describe() : source == 1 ? room.describeSurfels(0.02) : nullptr, &seen);
     const auto check = [&](const char* name, const auto& desc) {
@@ -273,4 +273,28 @@ TEST_CASE("grids of other sizes, and geometry that cannot be, are refused by nam
     const Frame frame(floor, &broken);
     CHECK(lwUpdate(technique, &frame.frame) == LW_ERROR_INVALID_ARGUMENT);
     CHECK(lastError(device).find("frame.geometry.surfelArea") != std::string::npos);
+}
+
+TEST_CASE("a frame refused for triangles that only the grid reaches around leaves the last one whole", "[ssvp][voxels]") {
+    TestDevice device(16);
+    LitFloor floor(64, plain);
+    WallAndCeiling scene(24, 16);
+    Walls room = Walls::room();
+    TestTechnique technique(device, ssvpOf(LW_VISIBILITY_VOXEL, 1, LW_OCCLUDERS_SURFELS));
+    technique.update(Frame(floor, room.describeSurfels(0.02)).frame);
+    const PointList points = PointList::ofScene(scene);
+    const std::vector<float> before = renderPoints(device, technique, points).irradiance;
+    LWGeometry broken = room.geometry;
+    const float vertices[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    const std::uint32_t indices[3] = {0, 1, 3};  // of three
+    broken.vertices = vertices;
+    broken.indices = indices;
+    broken.vertexCount = 3;
+    broken.triangleCount = 1;
+    Frame frame(floor, &broken);
+    frame.frame.lightCount = 0;
+    CHECK(lwUpdate(technique, &frame.frame) == LW_ERROR_INVALID_ARGUMENT);
+    CHECK(lastError(device).find("frame.geometry.indices[2]") != std::string::npos);
+    CHECK(renderPoints(device, technique, points).irradiance == before);
+    CHECK(meanOf(before) > 0.0);
 }
