@@ -263,7 +263,7 @@ TEST_CASE("widths agree, and ten runs are one", "[clustered_gather][large]") {
     }
 }
 
-TEST_CASE("two bounces with clusters are one list with the clusters of both", "[clustered_gather]") {
+TEST_CASE("two bounces with clusters are one list with the clusters of both", "[clustered_gather][large]") {
     const auto width = GENERATE(1u, 16u);
     ParaboloidRig rig(width, 64);
     const auto size = testSize({96, 64});

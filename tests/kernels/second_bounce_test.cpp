@@ -54,7 +54,7 @@ double fluxOf(const std::vector<lw_vpl>& vpls, std::size_t first, std::size_t co
 }  // namespace
 
 TEST_CASE("in a closed furnace the second bounce carries the albedo's share of the first",
-          "[second_bounce]") {
+          "[second_bounce][large]") {
     const auto width = GENERATE(1u, 16u);
     const auto directions = GENERATE(0u, 1u, 2u);
     ParaboloidRig rig(width, 128);
