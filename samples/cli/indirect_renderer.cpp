@@ -40,9 +40,8 @@ std::unique_ptr<IndirectRenderer> makeRenderer(const Parameters& parameters, con
                                                const DeviceOptions& options) {
     if (!parameters.needsDevice()) {
         if (options.quantity != Quantity::Irradiance)
-            throw UsageError(
-                "technique " + parameters.technique() +
-                ": makes irradiance alone; expected one of the library with --quantity");
+            throw UsageError("--quantity " + std::string(entryOf(options.quantity).name) + ": technique " +
+                             parameters.technique() + " makes irradiance alone; expected one of the library");
         if (!inputs.lwSources().empty())
             throw UsageError("--source-view: technique " + parameters.technique() +
                              " looks at none; expected one of the library");

@@ -94,11 +94,10 @@ void checkOptions(const RenderOptions& options) {
         !options.outs.empty() || !options.vplsOut.empty() || options.asJson || options.printsHash;
     if (!hasResult) throw UsageError("--out is required: a file name ending in .exr or .png");
     if (options.technique == kNoTechnique) {
-        if (!options.vplsOut.empty() || !options.debugView.empty() || !options.assignments.empty() ||
-            !options.sourceViews.empty() || options.asked().quantity != Quantity::Irradiance)
-            throw UsageError(
-                "--technique none has no VPLs, debug views, parameters, source views or quantities "
-                "but irradiance");
+        if (!options.vplsOut.empty() || !options.debugView.empty() || !options.assignments.empty() || !options.sourceViews.empty())
+            throw UsageError("--technique none has no VPLs, debug views, parameters or source views");
+        if (const Quantity asked = options.asked().quantity; asked != Quantity::Irradiance)
+            throw UsageError("--quantity " + std::string(entryOf(asked).name) + ": --technique none has irradiance alone");
     }
 }
 
