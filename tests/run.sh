@@ -29,6 +29,7 @@ lightwell_want "extra suites" "${LIGHTWELL_TEST_TOOLS[@]}"
 # --- environment: nobody's settings but ours --------------------------------------------------------
 scenes=${LIGHTWELL_SCENES:-}
 device=${LIGHTWELL_TEST_DEVICE:-cpu}
+wants_long=${LIGHTWELL_LONG:-0}
 for name in $(compgen -e); do
     case $name in
         LIGHTWELL_* | POCL_* | RUSTICL_* | CTEST_* | CMAKE_* | EMBREE_* | OPENIMAGEIO_*) unset "$name" ;;
@@ -83,7 +84,10 @@ step build cmake --build "$build" --parallel "$(nproc)" || stop
 lightwell_say "device: $LIGHTWELL_DEVICE; testing"
 results=$log/ctest.txt
 # Two suites at once, of which one at most computes on the device, and one in the simulator (tests/budgets.cmake).
-(cd "$build" && ctest --parallel 2 --output-on-failure --no-label-summary --no-tests=error "$@" </dev/null 2>&1) | tee "$results"
+# What compiles many programs takes minutes, and is left out unless asked for.
+long=(-LE '^long$')
+[ "$wants_long" = 1 ] && long=()
+(cd "$build" && ctest --parallel 2 --output-on-failure --no-label-summary --no-tests=error "${long[@]}" "$@" </dev/null 2>&1) | tee "$results"
 ctest_status=${PIPESTATUS[0]}
 
 # --- table ------------------------------------------------------------------------------------------

@@ -157,7 +157,7 @@ TEST_CASE("grids nested in each other and filled alike give what one grid gives"
 }
 
 TEST_CASE("where all pixels are one surface, a window of shares of the cones is all of them",
-          "[cone_gather][large]") {
+          "[cone_gather][large][long]") {
     KernelRig rig(16);
     const DeviceVoxels voxels = deviceVoxels(rig, {room(32, 0, 6, 27, 0.8, 2)});
     const std::uint32_t cones = GENERATE(6u, 9u, 16u, 64u, 256u);

@@ -40,7 +40,7 @@ void render(LWDevice device, LWTechnique technique, const TestView& view, const 
 
 }  // namespace
 
-TEST_CASE("cones: all outputs at once are each as alone, and as wide as they are known to be", "[cone_tracing]") {
+TEST_CASE("cones: all outputs at once are each as alone, and as wide as they are known to be", "[cone_tracing][long]") {
     TestDevice device(16);
     const auto resolution = GENERATE(LW_CONE_RESOLUTION_FULL, LW_CONE_RESOLUTION_QUARTER, LW_CONE_RESOLUTION_INTERLEAVED);
     const ConeBox box(2.0, false, 1.0, 0.5, 64);
@@ -75,7 +75,7 @@ TEST_CASE("cones: all outputs at once are each as alone, and as wide as they are
     CHECK(meanOf(all.open.packed()) < 0.999);
 }
 
-TEST_CASE("cones compile nothing after lwPrewarm, and take no more memory than was estimated", "[cone_tracing]") {
+TEST_CASE("cones compile nothing after lwPrewarm, and take no more memory than was estimated", "[cone_tracing][long]") {
     TestDevice device(16);
     const ConeBox box(2.0, false, 1.0, 0.5, 32);
     const DrawnView drawn(box.walls, kInside, kWidth, kHeight);
@@ -110,7 +110,7 @@ TEST_CASE("cones compile nothing after lwPrewarm, and take no more memory than w
     CHECK(device.info().kernelsSpecialised == before.kernelsSpecialised);
 }
 
-TEST_CASE("cones in several large grids compile nothing after lwPrewarm, whatever is asked for", "[cone_tracing]") {
+TEST_CASE("cones in several large grids compile nothing after lwPrewarm, whatever is asked for", "[cone_tracing][long]") {
     TestDevice device(16);
     const ConeBox box(2.0, false, 1.0, 0.5, 32);
     const DrawnView drawn(box.walls, kInside, kWidth, kHeight);

@@ -119,7 +119,7 @@ TEST_CASE("cones: all bounces of a furnace add up to its exitance over what it a
     CHECK(frames.back() == Approx(one / (1.0 - albedo * one)).epsilon(0.1));
 }
 
-TEST_CASE("cones: a sky in an empty grid lights every surface with pi times its radiance", "[cone_tracing]") {
+TEST_CASE("cones: a sky in an empty grid lights every surface with pi times its radiance", "[cone_tracing][long]") {
     TestDevice device(GENERATE(1u, 16u));
     const auto resolution = GENERATE(LW_CONE_RESOLUTION_FULL, LW_CONE_RESOLUTION_HALF, LW_CONE_RESOLUTION_QUARTER, LW_CONE_RESOLUTION_INTERLEAVED);
     const ConeBox box(2.0);

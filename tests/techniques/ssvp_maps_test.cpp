@@ -225,7 +225,7 @@ TEST_CASE("occluders that a frame does not bring are refused by name, and the la
     CHECK(lastError(device).find("occluders") != std::string::npos);
 }
 
-TEST_CASE("nothing is compiled after prewarming, and memory is as estimated, whatever the occluders", "[ssvp][surfels]") {
+TEST_CASE("nothing is compiled after prewarming, and memory is as estimated, whatever the occluders", "[ssvp][surfels][long]") {
     TestDevice device(16);
     LitFloor floor(64, plain);
     WallAndCeiling scene(kWidth, kHeight);

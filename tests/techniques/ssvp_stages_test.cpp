@@ -139,7 +139,7 @@ TEST_CASE("without maps their debug view is empty, and prewarming goes through",
     CHECK(viewsOf(device, technique, view).at("maps").empty());
 }
 
-TEST_CASE("two million surfels compile nothing that prewarming has not", "[ssvp][stages]") {
+TEST_CASE("two million surfels compile nothing that prewarming has not", "[ssvp][stages][long]") {
     TestDevice device(16);
     LitFloor floor(64, plain);
     Canvas canvas;

@@ -200,7 +200,7 @@ TEST_CASE("still frames sweep no cluster and have the same bits; so have ten run
     }
 }
 
-TEST_CASE("nothing is compiled after prewarming, and memory is as estimated, whatever voxels are made of", "[rsm][ssvp][voxels]") {
+TEST_CASE("nothing is compiled after prewarming, and memory is as estimated, whatever voxels are made of", "[rsm][ssvp][voxels][long]") {
     TestDevice device(16);
     const int source = GENERATE(0, 1, 2);
     LitFloor floor(source == 2 ? 512 : 64, plain);  // so many that lists of them would be missed
