@@ -97,8 +97,8 @@ TEST_CASE("techniques that look at a view's pixels say so, and which ones have l
         REQUIRE(lwDescribeTechnique(i, &info) == LW_SUCCESS);
         if (info.points) able.emplace_back(info.name);
     }
-    for (const char* name : {"rsm", "ssvp", "lpv", "fallback"}) CHECK(std::count(able.begin(), able.end(), name) == 1);
-    CHECK(able.size() == 4);
+    for (const char* name : {"rsm", "ssvp", "lpv", "cone_tracing", "static_vpl", "fallback"}) CHECK(std::count(able.begin(), able.end(), name) == 1);
+    CHECK(able.size() == 6);
     for (const char* name : {"screen_space", "horizon", "ao"}) {
         CAPTURE(name);
         TestTechnique technique(device, name, nullptr);
