@@ -61,7 +61,7 @@ class Split(unittest.TestCase):
 
     def test_only_its_own_resolution_is_replaced(self):
         self.split("--quick", "--scenes", "cornell", "--techniques", "rsm", "--patterns", "2", "--no-report", "--only",
-                   "vpls=64", "interleave=1", "resolution=full", "sampling=uniform")
+                   "vpls=64", "interleave=1", "resolution=full", "sampling=uniform", "visibility=none")
         point = self.read()["points"][-1]
         self.assertEqual(point["settings"], "vpls=64 sampling=uniform interleave=1")
         self.assertTrue(0 < point["vpls"] <= 64)  # those that fell on lit texels
@@ -95,7 +95,7 @@ class Split(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             done = subprocess.run([PROGRAM, "split", "--scenes", "cornell", "--techniques", "rival", "--no-report", "--size", "640x360",
                                    "--out", folder, "--truth-cache", os.path.join(folder, "truths")],
-                                  capture_output=True, text=True, timeout=60)
+                                  capture_output=True, text=True, timeout=170)
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertFalse(os.path.exists(os.path.join(folder, "truths")))
 
@@ -109,7 +109,7 @@ class Split(unittest.TestCase):
                 json.dump(scene, file)
             done = subprocess.run([PROGRAM, "split", "--quick", "--scenes", dark, "cornell", "--size", "32x18", "--no-report", "--noise",
                                    "0.1", "--patterns", "2", "--out", folder, "--truth-cache", os.path.join(folder, "truths")],
-                                  capture_output=True, text=True, timeout=60)
+                                  capture_output=True, text=True, timeout=170)
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertIn("dark/front has no indirect light", done.stderr)
             with open(os.path.join(folder, "split.json"), encoding="utf-8") as file:
@@ -118,7 +118,7 @@ class Split(unittest.TestCase):
     def test_a_missing_folder_is_not_made_for_its_report(self):
         with tempfile.TemporaryDirectory() as folder:
             missing = os.path.join(folder, "missing")
-            done = subprocess.run([PROGRAM, "split", "--report-only", "--out", missing], capture_output=True, text=True, timeout=60)
+            done = subprocess.run([PROGRAM, "split", "--report-only", "--out", missing], capture_output=True, text=True, timeout=170)
             self.assertNotEqual(done.returncode, 0)
             self.assertFalse(os.path.exists(missing))
 
@@ -130,7 +130,7 @@ class Split(unittest.TestCase):
             with self.subTest(text), tempfile.TemporaryDirectory() as folder:
                 with open(os.path.join(folder, "split.json"), "w", encoding="utf-8") as file:
                     file.write(text)
-                done = subprocess.run([PROGRAM, "split", "--quick", "--out", folder], capture_output=True, text=True, timeout=60)
+                done = subprocess.run([PROGRAM, "split", "--quick", "--out", folder], capture_output=True, text=True, timeout=170)
                 self.assertEqual(done.returncode, 2, done.stderr)
                 self.assertIn('expected results in the format "lightwell-split 1"', done.stderr)
 
