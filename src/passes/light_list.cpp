@@ -10,6 +10,8 @@ namespace lightwell {
 namespace {
 
 constexpr Range kGroup{64, 1};
+// Of 1 / diagonal^2: times the square of the largest distance it is still a float, or no light would be a VPL's nearest.
+constexpr double kMostScale = 1e18;
 constexpr const char* kMerge = "light_list/light_list_merge";
 
 std::size_t listBytes(lw_subset_order order) {
@@ -69,7 +71,7 @@ void LightList::recordLights(Executor& executor, double diagonal) {
     if (!centresKnown_)
         executor.fill("light_list.restart", centres_, 0, 0, most * sizeof(lw_listed_centre));
     const cl_int lists = cl_int(lists_), alone = order_.count <= cl_int(most) ? 1 : 0;
-    const float scale = diagonal > 0.0 ? float(std::min(1.0 / (diagonal * diagonal), 1e30)) : 0.0f;
+    const float scale = diagonal > 0.0 ? float(std::min(1.0 / (diagonal * diagonal), kMostScale)) : 0.0f;
     const auto assign = [&] {
         if (order_.count > 0)
             executor.run("light_list.assign", assign_, gridOver(count), kGroup, vpls_, baked(), lists,

@@ -85,10 +85,8 @@ public:
                       phantoms_.phantoms());
         const lw_static_frame& scene = input_.frame();
         weights_.reserve(frame.staticVplCount, input_.anyAutomatic());
-        if (restart) {
-            weights_.forget();
-            phantom_.forget();
-        }
+        if (restart) weights_.forget();
+        if (restart || phantoms_.changed()) phantom_.forget();
         if (input_.anyAutomatic()) weights_.record(executor, input_.memory(), scene);
         light_.record(executor, input_.memory(), scene, weights_.areas());
         list_.reserve(frame.staticVplCount,

@@ -125,3 +125,24 @@ TEST_CASE("a frame of static VPLs through all passes", "[static_vpl]") {
     CHECK(listedBaked == Approx(bakedSum).epsilon(1e-5));
     CHECK(listedMembers == members);
 }
+
+TEST_CASE("what memory holds behind the last place is nobody's area", "[static_vpl]") {
+    KernelRig rig(GENERATE(1u, 16u));
+    Executor& executor = rig.executor();
+    StaticScene scene;
+    scene.vpls = roomOfPlaces(21, 5);
+    scene.lights = {pointLight({2, 1.5, 2.5}, {10, 12, 14})};
+    StaticVplInput input;
+    input.import(executor, scene.frame(), 1.0f, true, {});
+    StaticVplWeights weights(rig.device(), 1);
+    weights.reserve(21, true);
+    executor.fill("test.poison", weights.areas(), 0x7fc00000u, 0, weights.areas().bytes());  // no numbers
+    weights.record(executor, input.memory(), input.frame());
+    StaticVplLight light(rig.device());
+    light.record(executor, input.memory(), input.frame(), weights.areas());
+    LightList list(rig.device(), {});
+    list.reserve(21, 0, 1);
+    list.recordCull(executor, input.memory(), input.frame(), light.lit(), true);
+    const auto words = contents<cl_int>(rig, input.memory(), LW_FRAME_WORDS);
+    CHECK(words[LW_FRAME_KEPT] == 21);
+}
