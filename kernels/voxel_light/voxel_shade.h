@@ -58,7 +58,8 @@ LW_FN int load_voxels(__global const float* surfaces, LwVoxelContents contents,
                 fma_(voxel_tenth(albedo, 10 * c) * M_1_PI_F, load(arriving, c * plane + at), v->own[c]);
         v->own[c] = fmin(v->own[c], (real)(VOXEL_MOST));
     }
-    const mask lit = brightness > 0.0f;
+    // Of less the inverse is infinite, and times a direction's 0 no number: what is left of it comes from nowhere.
+    const mask lit = brightness >= FLT_MIN;
     const real inverse = select_((real)(0.0f), 1.0f / select_((real)(1.0f), brightness, lit), lit);
     for (int c = 0; c < 3; ++c)
         v->towards[c] = contents.planes > LW_LIGHT_DIRECTION

@@ -80,6 +80,26 @@ TEST_CASE("SH2 keeps the flux of a wall, and shines to its own side", "[voxel_li
     CHECK(c1[1] == Approx(0.0).margin(0.005));
 }
 
+TEST_CASE("light too weak for the inverse of its brightness stays dark, and comes from nowhere", "[voxel_light]") {
+    const LWVoxelMode mode = GENERATE(LW_VOXEL_MODE_SH2, LW_VOXEL_MODE_ANISOTROPIC);
+    VoxelLightRig rig(GENERATE(1u, 16u), 32, mode, mode == LW_VOXEL_MODE_ANISOTROPIC);
+    rig.aware = true;
+    rig.setTriangles(voxelSheet(13.5, 0.0, 32.0, -1));
+    // Nearer to each other than the whole numbers in which light is added up reach.
+    const double bright = 1e-21, weak = GENERATE(1e-39, 2e-39, 5e-39);
+    rig.shine({{{13.5, 4.5, 4.5}, {-1, 0, 0}, {bright, bright, bright}}, {{13.5, 20.5, 20.5}, {-1, 0, 0}, {weak, weak, 0.0}}});
+    const VoxelLevel level = VoxelLevel::of(rig.volume, 0);
+    const int colours = mode == LW_VOXEL_MODE_ANISOTROPIC ? level.planes : 1;
+    for (int plane = 0; plane < colours; ++plane) {
+        const LwVoxelValue dark = level.value(plane, 13, 20, 20, rig.lit().unit);
+        CAPTURE(weak, plane);
+        CHECK(double(dark.red + dark.green + dark.blue) <= 1e-6 * bright);
+        for (int c = 1; colours == 1 && c < level.planes; ++c)
+            for (int axis = 0; axis < 3 && level.word(c, 13, 20, 20); ++axis)  // 0: of no light
+                CHECK(std::abs(voxel_unpack_harmonic(level.word(c, 13, 20, 20), axis, 1.0f)) < 0.01f);
+    }
+}
+
 TEST_CASE("voxels that hold surfaces hear, and throw back their albedo over pi of it", "[voxel_light]") {
     VoxelLightRig rig(16, 32, LW_VOXEL_MODE_ISOTROPIC, false);
     rig.hears = true;
