@@ -11,18 +11,21 @@
 namespace studio {
 namespace {
 
-// Lists in lists deeper than this are not written out: dump() goes down them by calls, and a file may be as deep as it is long.
+// Lists in lists deeper than this are not written out: dump() goes down them by calls, and a file may be
+// as deep as it is long.
 constexpr int kDeepest = 16;
 
 bool isDeep(const nlohmann::json& json, int left = kDeepest) {
-    return json.is_structured() && (left == 0 || std::any_of(json.begin(), json.end(), [&](const nlohmann::json& item) {
-                                        return isDeep(item, left - 1);
-                                    }));
+    return json.is_structured() &&
+           (left == 0 || std::any_of(json.begin(), json.end(), [&](const nlohmann::json& item) {
+                return isDeep(item, left - 1);
+            }));
 }
 
 // Numbers without a fraction count as whole however they are written, as JSON Schema has it: 3.0.
 bool isWhole(const nlohmann::json& json) {
-    return json.is_number_integer() || (json.is_number() && std::floor(json.get<double>()) == json.get<double>());
+    return json.is_number_integer() ||
+           (json.is_number() && std::floor(json.get<double>()) == json.get<double>());
 }
 
 std::string shown(const nlohmann::json& json) {

@@ -167,8 +167,10 @@ StaticVpls readStaticVpls(const std::string& path) {
     const auto refuseTwice = [&](int, nlohmann::json::parse_event_t event, nlohmann::json& parsed) {
         if (event == nlohmann::json::parse_event_t::object_start) keys.emplace_back();
         if (event == nlohmann::json::parse_event_t::object_end) keys.pop_back();
-        if (event == nlohmann::json::parse_event_t::key && !keys.back().insert(parsed.get<std::string>()).second)
-            throw std::runtime_error(fmt::format("\"{}\": expected once in an object, got twice", parsed.get<std::string>()));
+        if (event == nlohmann::json::parse_event_t::key &&
+            !keys.back().insert(parsed.get<std::string>()).second)
+            throw std::runtime_error(
+                fmt::format("\"{}\": expected once in an object, got twice", parsed.get<std::string>()));
         return true;
     };
     try {

@@ -54,7 +54,8 @@ void checkPlaces(const RayScene& scene, const PlacementOptions& o) {
 // Indices as StaticVpl::object names them; those that never move count as one.
 int objectIndex(const Scene& scene, const std::string& name) {
     for (std::size_t i = 1; i < scene.objects.size(); ++i)
-        if (!name.empty() && scene.objects[i].name == name) return scene.objects[i].keys.empty() ? 0 : int(i);
+        if (!name.empty() && scene.objects[i].name == name)
+            return scene.objects[i].keys.empty() ? 0 : int(i);
     return 0;
 }
 
@@ -171,7 +172,8 @@ StaticVpl Placer::made(const VplPlace& place) const {
     vpl.weight = float(place.area / perWeight);
     if (!(*vpl.weight > 0.0f && std::isfinite(*vpl.weight)))
         throw std::invalid_argument(
-            fmt::format("placement: area_per_weight: expected one in which {:.3g} m^2 is a weight that floats hold, got {:.3g} m^2",
+            fmt::format("placement: area_per_weight: expected one in which {:.3g} m^2 is a weight that "
+                        "floats hold, got {:.3g} m^2",
                         place.area, perWeight));
     vpl.population = place.population;
     return vpl;

@@ -23,7 +23,8 @@ constexpr std::uint64_t kStream = 0x61726561u;  // of random numbers; any
 constexpr std::size_t kBlock = 1024;            // samples of a work item
 
 // As much as is told apart from places set by hand where the heaviest are kept; a file may say anything.
-constexpr std::uint32_t kByHand = std::numeric_limits<std::uint32_t>::max(), kMostPopulation = kByHand - 1;
+constexpr std::uint32_t kByHand = std::numeric_limits<std::uint32_t>::max(),
+                        kMostPopulation = kByHand - 1;
 
 bool isAlike(const SurfaceHit& hit, const VplPlace& place, const MergeOptions& options) {
     if (hit.object != place.object) return false;

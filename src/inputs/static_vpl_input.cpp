@@ -69,11 +69,13 @@ bool hasProfile(const LWLight& light) {
     return light.profileCount > 0 && light.kind != LW_LIGHT_DIRECTIONAL;
 }
 
-// As of all other positions; beyond, squares of distances leave float's range, and a second bounce were no number.
+// As of all other positions; beyond, squares of distances leave float's range, and a second bounce were
+// no number.
 void checkReach(const float* p, std::uint32_t light, const char* field) {
     if (!(glm::length(glm::dvec3(p[0], p[1], p[2])) <= double(LW_LARGEST_DISTANCE)))
-        fail(LW_ERROR_INVALID_ARGUMENT, "frame.lights[", light, "].", field, ": expected at most ", LW_LARGEST_DISTANCE,
-             " from the origin for technique static_vpl, got ", p[0], " ", p[1], " ", p[2]);
+        fail(LW_ERROR_INVALID_ARGUMENT, "frame.lights[", light, "].", field, ": expected at most ",
+             LW_LARGEST_DISTANCE, " from the origin for technique static_vpl, got ", p[0], " ", p[1],
+             " ", p[2]);
 }
 
 }  // namespace

@@ -10,7 +10,8 @@ namespace lightwell {
 namespace {
 
 constexpr Range kGroup{64, 1};
-// Of 1 / diagonal^2: times the square of the largest distance it is still a float, or no light would be a VPL's nearest.
+// Of 1 / diagonal^2: times the square of the largest distance it is still a float, or no light would be
+// a VPL's nearest.
 constexpr double kMostScale = 1e18;
 constexpr const char* kMerge = "light_list/light_list_merge";
 

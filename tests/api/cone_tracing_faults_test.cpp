@@ -1,4 +1,5 @@
-// A driver that fails at any call of technique cone_tracing's frames: it is told, and the next frames are right.
+// A driver that fails at any call of technique cone_tracing's frames: it is told, and the next frames
+// are right.
 #include <catch2/catch.hpp>
 
 #include "api/failing_frames.h"
@@ -19,5 +20,10 @@ TEST_CASE("whichever OpenCL call of a cone_tracing frame fails, it is told, and 
     scene.geometry.version = 1;
     scene.frame.reset = 1;  // further bounces begin with it
     CAPTURE(desc.resolution);
-    checkFailingFrames({[&](LWDevice device, LWTechnique* technique) { return lwCreateConeTracing(device, &desc, technique); }, 29, {}}, before, scene);
+    checkFailingFrames({[&](LWDevice device, LWTechnique* technique) {
+                            return lwCreateConeTracing(device, &desc, technique);
+                        },
+                        29,
+                        {}},
+                       before, scene);
 }

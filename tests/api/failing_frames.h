@@ -1,4 +1,5 @@
-// Frames of which one OpenCL call fails, whichever it is: it is told once, and the next frames are right.
+// Frames of which one OpenCL call fails, whichever it is: it is told once, and the next frames are
+// right.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +20,8 @@ inline std::vector<double> pixelsOf(const ApiScene& scene) {
     return all;
 }
 
-// The second half of the picture on a slope that faces down on the rest, where light of the floor arrives.
+// The second half of the picture on a slope that faces down on the rest, where light of the floor
+// arrives.
 inline void faceDown(ApiScene& scene) {
     for (std::uint32_t y = 0; y < scene.position.height(); ++y)
         for (std::uint32_t x = scene.position.width() / 2; x < scene.position.width(); ++x) {
@@ -49,9 +51,10 @@ struct FailingFrames {
     std::function<LWStatus(LWTechnique, std::vector<double>&)> more;
 };
 
-// `before`: another scene of the same rig, so that all that is kept from frame to frame has to be made anew in the frame
-// that fails. The device keeps its log to itself.
-inline void checkFailingFrames(const FailingFrames& frames, const ApiScene& before, const ApiScene& scene) {
+// `before`: another scene of the same rig, so that all that is kept from frame to frame has to be made
+// anew in the frame that fails. The device keeps its log to itself.
+inline void checkFailingFrames(const FailingFrames& frames, const ApiScene& before,
+                               const ApiScene& scene) {
     constexpr int kMostCalls = 2000;
     ApiRig rig(makeDevice(16, [](void*, LWLogLevel, const char*) {}), scene);
     const auto create = [&] {
@@ -91,7 +94,8 @@ inline void checkFailingFrames(const FailingFrames& frames, const ApiScene& befo
             return;
         }
         CHECK(std::count_if(told.begin(), told.end(), [](LWStatus status) {
-                  return status == LW_ERROR_OUT_OF_MEMORY || status == LW_ERROR_DEVICE || status == LW_ERROR_INTERNAL;
+                  return status == LW_ERROR_OUT_OF_MEMORY || status == LW_ERROR_DEVICE ||
+                         status == LW_ERROR_INTERNAL;
               }) == 1);
         for (int after = 0; after < 2; ++after) REQUIRE(whole(scene) == expected);
     }

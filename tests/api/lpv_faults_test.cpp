@@ -38,5 +38,9 @@ TEST_CASE("whichever OpenCL call of an lpv frame fails, it is told, and the next
     scene.geometry.version = 1;
     scene.frame.reset = frames > 1 ? 1 : 0;  // or the picture is the last one's
     CAPTURE(frames);
-    checkFailingFrames({[&](LWDevice device, LWTechnique* technique) { return lwCreateLpv(device, &desc, technique); }, 5, {}}, before, scene);
+    checkFailingFrames(
+        {[&](LWDevice device, LWTechnique* technique) { return lwCreateLpv(device, &desc, technique); },
+         5,
+         {}},
+        before, scene);
 }

@@ -4,8 +4,8 @@
 #include <cstddef>
 
 #include "quad_scene.h"
-#include "vpl_places.h"
 #include "vpl_placement.h"
+#include "vpl_places.h"
 
 namespace test {
 
@@ -32,7 +32,8 @@ inline QuadScene room() {
     return s;
 }
 
-inline SurfaceHit hit(const vec3& position, const vec3& normal = {0, 1, 0}, float reflectance = 0.5f, int object = 0) {
+inline SurfaceHit hit(const vec3& position, const vec3& normal = {0, 1, 0}, float reflectance = 0.5f,
+                      int object = 0) {
     return {position, glm::normalize(normal), vec3(reflectance), object};
 }
 

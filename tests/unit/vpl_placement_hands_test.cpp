@@ -5,10 +5,10 @@
 
 using namespace studio;
 using glm::vec3;
-using test::QuadScene;
 using test::fewPaths;
 using test::hit;
 using test::merging;
+using test::QuadScene;
 using test::room;
 
 TEST_CASE("placement: runs accumulate, and what a hand has set stays") {
@@ -51,7 +51,9 @@ TEST_CASE("placement: runs accumulate, and what a hand has set stays") {
     CHECK(second.report.earlier == first.vpls.vpls.size());
 }
 
-TEST_CASE("placement: a population of any number stays one, and a hand's VPL of a thing at rest takes hits up") {
+TEST_CASE(
+    "placement: a population of any number stays one, and a hand's VPL of a thing at rest takes hits "
+    "up") {
     std::vector<VplPlace> places = {{{0, 0, 0}, {0, 1, 0}, vec3(0.5f), 0, ~0u, 0.0},
                                     {{5, 0, 0}, {0, 1, 0}, vec3(0.5f), 0, 0, 0.0}};
     mergeHits({hit({0.1f, 0, 0}), hit({0, 0, 0.1f})}, merging(0.5), 4, places);
@@ -65,7 +67,8 @@ TEST_CASE("placement: a population of any number stays one, and a hand's VPL of 
     Object table;
     table.name = "table";
     s.scene.objects.push_back(table);
-    s.quad(s.material(vec3(0.9f)), {0.5f, 0.3f, 0.25f}, {1.0f, 0.3f, 0.25f}, {1.0f, 0.3f, 0.75f}, {0.5f, 0.3f, 0.75f});
+    s.quad(s.material(vec3(0.9f)), {0.5f, 0.3f, 0.25f}, {1.0f, 0.3f, 0.25f}, {1.0f, 0.3f, 0.75f},
+           {0.5f, 0.3f, 0.75f});
     s.scene.meshes.back().object = 1;
     const RayScene scene = s.build();
     StaticVpls earlier;
@@ -78,5 +81,6 @@ TEST_CASE("placement: a population of any number stays one, and a hand's VPL of 
     PlacementOptions options = fewPaths();
     options.spacing = 0.6;
     for (const StaticVpl& v : placeVpls(scene, options, earlier).vpls.vpls)
-        if (v.population > 0 && v.reflectance.x > 0.8f) CHECK(v.normal.y < 0.0f);  // none beside the hand's
+        if (v.population > 0 && v.reflectance.x > 0.8f)
+            CHECK(v.normal.y < 0.0f);  // none beside the hand's
 }
