@@ -84,7 +84,9 @@ void addChart(CLI::App& app) {
         ->required();
     command->add_option("--scenes", options.scenes,
                         "Scenes by name or path; default: all that are found");
-    command->add_option("--techniques", options.techniques, "Techniques by name, with their whole sweep, or as NAME,KEY=VALUE,... one point alone; default: all");
+    command->add_option("--techniques", options.techniques,
+                        "Techniques by name, with their whole sweep, or as NAME,KEY=VALUE,... one point "
+                        "alone; default: all");
     command->add_option(
         "--only", options.only,
         "key=value,value ..., one or several: of techniques with this parameter, only the "

@@ -114,7 +114,8 @@ std::string describeParameters() {
         text += fmt::format("  {}: {}\n", info.name, info.summary);
         if (takesVpls(info.name))
             text += fmt::format(
-                "    {}=: a file; static VPLs and blockers (docs/vpls-file.md); without it placed as by place-vpls\n"
+                "    {}=: a file; static VPLs and blockers (docs/vpls-file.md); without it placed as by "
+                "place-vpls\n"
                 "    {}=: 1 to {}; without a file, VPLs placed at most, as place-vpls --cap\n",
                 kVplsFile, kVplsCap, studio::kMostStaticVpls);
         for (std::uint32_t i = 0; i < info.parameterCount; ++i) {
@@ -170,7 +171,9 @@ void Parameters::set(const std::string& assignment) {
 bool Parameters::setOwn(const std::string& name, const std::string& value) {
     if (!cli::takesVpls(technique_) || (name != kVplsFile && name != kVplsCap)) return false;
     if (name == kVplsFile ? vplsCap_ != 0 : !vplsFile_.empty())
-        throw UsageError(fmt::format("--set {}: expected {} or {}, got both: a file's VPLs are all taken", name, kVplsFile, kVplsCap));
+        throw UsageError(
+            fmt::format("--set {}: expected {} or {}, got both: a file's VPLs are all taken", name,
+                        kVplsFile, kVplsCap));
     if (name == kVplsFile) {
         if (value.empty()) throw UsageError("--set vpls_file: expected a file's name, got none");
         vplsFile_ = value;
@@ -178,7 +181,8 @@ bool Parameters::setOwn(const std::string& name, const std::string& value) {
     }
     const std::uint64_t cap = parseUnsigned("--set vpls_cap", value);
     if (cap < 1 || cap > studio::kMostStaticVpls)
-        throw UsageError(fmt::format("--set vpls_cap: '{}' is not valid; expected 1 to {}", value, studio::kMostStaticVpls));
+        throw UsageError(fmt::format("--set vpls_cap: '{}' is not valid; expected 1 to {}", value,
+                                     studio::kMostStaticVpls));
     vplsCap_ = std::uint32_t(cap);
     return true;
 }

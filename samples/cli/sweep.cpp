@@ -114,7 +114,8 @@ SweepPoint pointOf(const std::string& variant) {
     std::vector<SweepPoint> named;
     addPoint(named, Parameters(technique), "default");
     for (std::uint32_t i = 0; i < info.settingCount; ++i)
-        addPoint(named, assigned(technique, splitWords(info.settings[i].assignments)), info.settings[i].name);
+        addPoint(named, assigned(technique, splitWords(info.settings[i].assignments)),
+                 info.settings[i].name);
     for (const SweepPoint& twin : named)
         if (twin.parameters.resolved() == point.parameters.resolved()) point.label = twin.label;
     return point;
@@ -149,8 +150,10 @@ std::string describeDifference(const Parameters& parameters) {
     const auto usual = Parameters(parameters.technique()).resolved();
     std::string text;
     for (const auto& value : parameters.resolved())
-        if (std::find(defaults.begin(), defaults.end(), value) == defaults.end() || isOther(parameters, value, usual))
-            text += fmt::format("{}{}={}", text.empty() ? "" : " ", value.first, valueText(value.second));
+        if (std::find(defaults.begin(), defaults.end(), value) == defaults.end() ||
+            isOther(parameters, value, usual))
+            text +=
+                fmt::format("{}{}={}", text.empty() ? "" : " ", value.first, valueText(value.second));
     return text.empty() ? "defaults" : text;
 }
 

@@ -1,4 +1,5 @@
-// A scene's triangles as a host hands them to Lightwell: world positions, one reflectance and one emission each.
+// A scene's triangles as a host hands them to Lightwell: world positions, one reflectance and one
+// emission each.
 #pragma once
 
 #include <cstdint>

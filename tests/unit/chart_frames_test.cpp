@@ -103,19 +103,22 @@ TEST_CASE("what glows is handed over with the triangles, where the scene lets it
         quads.quad(lamp, {-1, 2, -1}, {1, 2, -1}, {1, 2, 1}, {-1, 2, 1});
         if (glows) quads.scene.materials[std::size_t(lamp)].emission = {3.0f, 2.0f, 1.0f};
         quads.scene.emissiveSurfaces = lights;
-        return std::make_unique<studio::RayScene>(std::make_shared<const studio::Scene>(quads.scene), 0.0f);
+        return std::make_unique<studio::RayScene>(std::make_shared<const studio::Scene>(quads.scene),
+                                                  0.0f);
     };
     cli::InputOptions options;
     options.width = options.height = 2;
     const auto dark = sceneOf(false, true), off = sceneOf(true, false), on = sceneOf(true, true);
-    const cli::RenderInputs none(*dark, studio::Camera{}, options), unlit(*off, studio::Camera{}, options),
-        lit(*on, studio::Camera{}, options);
+    const cli::RenderInputs none(*dark, studio::Camera{}, options),
+        unlit(*off, studio::Camera{}, options), lit(*on, studio::Camera{}, options);
     CHECK(none.geometry().triangleEmission == nullptr);
     CHECK(unlit.geometry().triangleEmission == nullptr);
     REQUIRE(lit.geometry().triangleCount == 4);
     REQUIRE(lit.geometry().triangleEmission != nullptr);
     const float* emission = lit.geometry().triangleEmission;
-    CHECK(std::vector<float>(emission, emission + 12) == std::vector<float>{0, 0, 0, 0, 0, 0, 3, 2, 1, 3, 2, 1});
+    CHECK(std::vector<float>(emission, emission + 12) ==
+          std::vector<float>{0, 0, 0, 0, 0, 0, 3, 2, 1, 3, 2, 1});
     CHECK(none.geometry().version == unlit.geometry().version);
-    CHECK(lit.geometry().version != none.geometry().version);  // else a technique would keep the dark ones
+    CHECK(lit.geometry().version !=
+          none.geometry().version);  // else a technique would keep the dark ones
 }
