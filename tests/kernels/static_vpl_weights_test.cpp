@@ -79,9 +79,11 @@ TEST_CASE("a place that is alone stands for nothing", "[static_vpl_weights]") {
 TEST_CASE("what memory holds behind the last place is nobody's area", "[static_vpl_weights]") {
     KernelRig rig(GENERATE(1u, 16u));
     constexpr std::size_t kCount = 21;  // not a whole number of lanes
-    PassScene scene(kCount);
+    StaticScene scene;
+    scene.vpls = roomOfPlaces(kCount, 5);
+    scene.lights = {pointLight({2, 1.5, 2.5}, {10, 12, 14})};
     StaticVplInput input;
-    import(rig, input, scene);
+    input.import(rig.executor(), scene.frame(), 1.0f, true, {});
     StaticVplWeights weights(rig.device(), 1);
     weights.reserve(kCount, true);
     rig.executor().fill("test.poison", weights.areas(), 0x7fc00000u, 0, weights.areas().bytes());  // no numbers
