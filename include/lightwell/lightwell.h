@@ -769,6 +769,16 @@ typedef struct LWStaticVplDesc {
     uint32_t interleave;      /**< as LWRsmDesc's */
     uint32_t filter;          /**< as LWRsmDesc's */
     LWResolution resolution;  /**< as LWRsmDesc's */
+    LWVisibility visibility;  /**< what stands between VPLs and what they light: nothing (the default), or LWFrame::geometry in paraboloid
+                                   maps or voxels, as LWSsvpDesc's. A frame without geometry is then an error of lwUpdate */
+    uint32_t clusters;        /**< VPLs of a frame up to this many see for themselves; more are put into so many clusters, and a
+                                   cluster's share what its middle one sees. 1 .. 64; 0: every VPL sees for itself */
+    uint32_t mapSize;         /**< as LWSsvpDesc's */
+    LWOccluders occluders;    /**< AUTO, TRIANGLES or SURFELS, as LWSsvpDesc's */
+    float lift;               /**< how far off its surface a VPL looks from, as a share of the radius of the disc that it stands for: one
+                                   that lies a little inside is not in the dark for it. 0 .. 1 */
+    uint32_t shadowedBounces; /**< 1: light of the VPLs opposite goes through walls, as these lie where nothing may be; 2: it does not */
+    uint32_t voxels;          /**< as LWRsmDesc's */
 } LWStaticVplDesc;
 
 LW_API void lwDefaultStaticVpl(LWStaticVplDesc* desc);

@@ -32,8 +32,9 @@ bool describe(const studio::StaticVpl& from, float areaPerWeight, LWStaticVpl& t
 
 FrameVpls::FrameVpls(const std::string& file) : source_(studio::readStaticVpls(file)) {}
 
-FrameVpls::FrameVpls(const RenderInputs& inputs) {
+FrameVpls::FrameVpls(const RenderInputs& inputs, std::uint32_t cap) {
     studio::PlacementOptions options;
+    if (cap != 0) options.cap = int(cap);
     for (const studio::Light& light : inputs.scene().lights())
         if (light.kind != studio::LightKind::Sun) options.from.push_back(light.position);
     if (options.from.empty()) options.from.push_back(inputs.gbuffer().camera.position);

@@ -48,8 +48,8 @@ LibraryRenderer::LibraryRenderer(const lightwell::Device& device, const Paramete
       descriptor_(device, parameters),
       technique_(device, parameters.technique().c_str(), descriptor_.get()),
       quantity_(quantity),
-      vpls_(!parameters.takesVpls()            ? FrameVpls()
-            : parameters.vplsFile().empty() ? FrameVpls(inputs)
+      vpls_(!parameters.takesVpls()         ? FrameVpls()
+            : parameters.vplsFile().empty() ? FrameVpls(inputs, parameters.vplsCap())
                                             : FrameVpls(parameters.vplsFile())),
       irradiance_(inputs.gbuffer().width, inputs.gbuffer().height, 3),
       validity_(inputs.gbuffer().width, inputs.gbuffer().height, 1),

@@ -28,6 +28,7 @@ LightList::LightList(Device& device, const LightListOptions& options)
     : device_(device),
       options_(options),
       cull_(device.programs().kernel("light_list/light_list", "light_list_cull")),
+      sites_(device.programs().kernel("light_list/light_list_sites", "light_list_sites")),
       assign_(device.programs().kernel(kMerge, "light_list_assign")),
       begin_(device.programs().kernel(kMerge, "light_list_begin")),
       sum_(device.programs().kernel(kMerge, "light_list_sum")) {}
@@ -60,6 +61,12 @@ void LightList::recordCull(Executor& executor, const Buffer& inputs, const lw_st
                  gridOver(std::size_t(order_.subsets) * std::size_t(order_.capacity)), kGroup, inputs,
                  frame, lit, options_.threshold, cl_int(options_.relative), options_.hysteresis, kept_,
                  order_, cl_int(lists_), vpls_, baked());
+}
+
+void LightList::recordSites(Executor& executor, std::uint32_t count, float lift, const Buffer& sites) {
+    if (count == 0) return;
+    executor.run("light_list.sites", sites_, gridOver(count), kGroup, vpls_, baked(), cl_int(lists_),
+                 cl_int(count), lift, sites);
 }
 
 void LightList::recordLights(Executor& executor, double diagonal) {

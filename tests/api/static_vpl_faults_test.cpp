@@ -1,5 +1,5 @@
-// A driver that fails at any call of technique static_vpl's frames, the list of lights among them: it is told, and the next
-// frames are right.
+// A driver that fails at any call of technique static_vpl's frames, with shadows or with the list of lights: it is told, and the
+// next frames are right.
 #include <catch2/catch.hpp>
 
 #include "api/failing_frames.h"
@@ -46,6 +46,35 @@ struct Lit : ApiScene {
     float hit[3] = {0, 0, 0};
 };
 
+constexpr std::uint32_t kPlaces = 6;
+
+// Places on the rig's floor under the surfaces above it, and a plate in between, as triangles.
+struct Shadowed : ApiScene {
+    Shadowed() {
+        for (std::uint32_t i = 0; i < kPlaces; ++i) {
+            vpls[i].position[0] = float(i) / kPlaces - 0.4f;
+            vpls[i].normal[1] = 1.0f;
+            for (float& part : vpls[i].reflectance) part = 0.5f;
+        }
+        sun.structSize = sizeof sun;
+        sun.direction[1] = -1.0f;
+        for (float& part : sun.irradiance) part = 4.0f;
+        geometry.structSize = sizeof geometry;
+        geometry.vertices = vertices;
+        geometry.vertexCount = 6;
+        geometry.triangleCount = 2;
+        frame.geometry = &geometry;
+        frame.lights = &sun;
+        frame.lightCount = 1;
+        frame.staticVpls = vpls;
+        frame.staticVplCount = kPlaces;
+    }
+    LWStaticVpl vpls[kPlaces] = {};
+    LWLight sun{};
+    LWGeometry geometry{};
+    float vertices[18] = {-0.2f, 0.25f, -1, 0.1f, 0.25f, -1, 0, 0.25f, 1, -1, 0, -1, 0, 0, 1, 1, 0, -1};
+};
+
 }  // namespace
 
 TEST_CASE("whichever OpenCL call of a static_vpl frame fails, it is told, and the next frames are right", "[faults][static_vpl]") {
@@ -72,5 +101,23 @@ TEST_CASE("whichever OpenCL call of a static_vpl frame fails, it is told, and th
                                 }
                             return status;
                         }},
+                       before, scene);
+}
+
+TEST_CASE("whichever OpenCL call of a static_vpl frame with shadows fails, it is told, and the next frames are right", "[faults][static_vpl]") {
+    LWStaticVplDesc desc;
+    lwDefaultStaticVpl(&desc);
+    desc.bounces = 2;
+    desc.visibility = GENERATE(LW_VISIBILITY_HARD, LW_VISIBILITY_VOXEL);
+    desc.clusters = desc.visibility == LW_VISIBILITY_HARD ? 2 : 0;
+    desc.mapSize = 64;
+    desc.voxels = 32;
+    Shadowed scene, before;
+    before.geometry.triangleCount = 1;
+    before.geometry.vertexCount = 3;
+    scene.geometry.version = 1;
+    scene.frame.reset = 1;  // clusters begin with it
+    CAPTURE(desc.visibility);
+    checkFailingFrames({[&](LWDevice device, LWTechnique* technique) { return lwCreateStaticVpl(device, &desc, technique); }, 7, {}},
                        before, scene);
 }

@@ -164,6 +164,26 @@ class PlaceVpls(CommandLine):
         self.assertFalse(os.path.exists(self.path("never.json")))
 
 
+class StaticVplTechnique(CommandLine):
+    def test_placed_without_a_file(self):
+        """What `static_vpl` places by itself is what `place-vpls` would: the same picture, to the bit, as with its file."""
+        path = self.path("v.json")
+        self.done("place-vpls", "cornell", "--cap", "20", "--out", path)
+        with open(path, encoding="utf-8") as file:
+            count = len(json.load(file)["vpls"])
+        base = ["render", "cornell", "--technique", "static_vpl", *SIZE, "--warmup", "0", "--frames", "1", "--json"]
+        given, placed = (self.json(*base, "--set", key) for key in ("vpls_file=" + path, "vpls_cap=20"))
+        self.assertEqual(given["hash"], placed["hash"])
+        self.assertEqual(placed["parameters"]["vpls_cap"], 20)
+        self.assertNotIn("vpls_cap", given["parameters"])
+        self.assertTrue(10 < count <= 20, count)
+        self.assertNotEqual(self.json(*base, "--set", "vpls_cap=10")["hash"], placed["hash"])
+        for key in ("0", "4097"):
+            self.refused([*base, "--set", "vpls_cap=" + key], "vpls_cap", "1 to 4096")
+        self.refused([*base, "--set", "vpls_cap=20", "vpls_file=" + path], "vpls_file", "vpls_cap", "both")
+        self.refused(["render", "cornell", "--technique", "rsm", *SIZE, "--json", "--set", "vpls_cap=20"], "vpls_cap", "vpls")
+
+
 class InstantRadiosity(CommandLine):
     def test_render_and_its_vpls(self):
         """One VPL is the lamp's axis; the VPLs of a picture, summed by the path tracer, make the picture again."""
