@@ -94,12 +94,12 @@ def table(heads, rows):
     return ["| | " + " | ".join(heads) + " |", "| --- |" + " ---: |" * len(heads)] + [f"| {title} | " + " | ".join(cells) + " |" for title, cells in rows]
 
 
-def error(value):
-    return f"{value:.2g}" if value < 100 else f"{value:.0f}"
+def short(value):
+    return f"{value:#.2g}".rstrip(".") if value < 99.5 else f"{value:.0f}"
 
 
 def full(found):
-    return [error(found["relMSE"]), f"{found['nrmse']:.2f}", f"{found['bias']:+.2f}", f"{found['score']:.1f}"]
+    return [short(found["relMSE"]), f"{found['nrmse']:.2f}", f"{found['bias']:+.2f}", f"{found['score']:.1f}"]
 
 
 def of_scenes(bench, settings):
@@ -119,7 +119,7 @@ def by_steps(bench):
     def cell(scene, settings):
         found = bench.judged(scene, settings)
         taken = f"{found['counts']['steps']}: " if "sweep" not in settings else ""
-        return taken + error(found["relMSE"])
+        return taken + short(found["relMSE"])
     return table(list(SCENES.values()), [(f"`{'steps=64' if s == DEFAULT else s}`", [cell(scene, s) for scene in SCENES]) for s in RANGE])
 
 
@@ -128,7 +128,7 @@ def half(bench):
         for scene in SCENES:
             for resolution in ("", " resolution=half"):
                 found = bench.judged(scene, settings + resolution)
-                yield f"{error(found['relMSE'])}, {found['nrmse']:.2f}"
+                yield f"{short(found['relMSE'])}, {found['nrmse']:.2f}"
     heads = [head for title in SCENES.values() for head in (f"{title} full", "half")]
     return table(heads, [(f"`{s}`", list(cells(s))) for s in HALF])
 
@@ -152,7 +152,7 @@ def cascades(bench):
 def times(made):
     of = {p["name"]: p["ms"] for p in made["passes"]}
     sums = [sum(of.get(name, 0) for name in names) for names in COLUMNS.values()] + [made["total_ms"]]
-    return [f"{t:.2g}" if t < 10 else f"{t:.0f}" for t in sums] + [f"{made['bytes']['device'] / 1e6:.0f}"]
+    return [short(t) for t in sums] + [f"{made['bytes']['device'] / 1e6:.0f}"]
 
 
 if __name__ == "__main__":
