@@ -235,6 +235,7 @@ void Stability::renderFrame(const FailureSequence& sequence, const FrameScene& n
     options.width = now.frame.width;
     options.height = now.frame.height;
     options.time = now.frame.time;
+    options.scale = sequence.scale;
     studio::Camera previous;
     if (before != nullptr && !now.frame.isCut) {
         previous = scaled.camera(before->frame.camera);

@@ -131,13 +131,15 @@ bool knowsPictureOnly(const Parameters& parameters) {
 }
 
 std::string describeDifference(const Parameters& parameters) {
-    const auto defaults = parameters.defaults().resolved(), values = parameters.resolved();
+    // Values that only the command line knows (a file of VPLs) have no default to stand beside.
+    const auto defaults = parameters.defaults().resolved();
     const auto usual = Parameters(parameters.technique()).resolved();
     std::string text;
-    for (std::size_t i = 0; i < values.size(); ++i)
-        if (!(values[i] == defaults[i]) || isOther(parameters, values[i], usual))
-            text += fmt::format("{}{}={}", text.empty() ? "" : " ", values[i].first,
-                                valueText(values[i].second));
+    for (const auto& value : parameters.resolved())
+        if (std::find(defaults.begin(), defaults.end(), value) == defaults.end() ||
+            isOther(parameters, value, usual))
+            text +=
+                fmt::format("{}{}={}", text.empty() ? "" : " ", value.first, valueText(value.second));
     return text.empty() ? "defaults" : text;
 }
 
