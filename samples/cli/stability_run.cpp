@@ -33,7 +33,6 @@ using Json = nlohmann::ordered_json;
 using studio::FailureSequence;
 using studio::SequenceFrame;
 using Truths = std::map<int, std::shared_ptr<const FrameTruth>>;  // by bounces; 0: all
-
 constexpr const char* kProtocol = "1";  // part of every key: raise it when the way of measuring changes
 
 // One technique on its way through one sequence.
