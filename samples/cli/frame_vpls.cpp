@@ -30,7 +30,10 @@ bool describe(const studio::StaticVpl& from, float areaPerWeight, LWStaticVpl& t
 
 }  // namespace
 
-FrameVpls::FrameVpls(const std::string& file) : source_(studio::readStaticVpls(file)) {}
+FrameVpls::FrameVpls(const std::string& file, const RenderInputs& inputs)
+    : source_(studio::readStaticVpls(file)) {
+    source_.metresPerUnit *= inputs.scale();  // positions, radii and, squared, areas
+}
 
 FrameVpls::FrameVpls(const RenderInputs& inputs, std::uint32_t cap) {
     studio::PlacementOptions options;

@@ -12,8 +12,8 @@ namespace cli {
 class FrameVpls {
 public:
     FrameVpls() = default;  // none
-    // Reads it; std::runtime_error as of readStaticVpls.
-    explicit FrameVpls(const std::string& file);
+    // Reads it, in the inputs' unit of length; std::runtime_error as of readStaticVpls.
+    FrameVpls(const std::string& file, const RenderInputs& inputs);
 
     // Without a file: placed as `lightwell place-vpls` does by default, or with a --cap, from the lamps,
     // or from where the camera is. None, with a word to the user, where that cannot be.

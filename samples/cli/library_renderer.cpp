@@ -50,7 +50,7 @@ LibraryRenderer::LibraryRenderer(const lightwell::Device& device, const Paramete
       quantity_(quantity),
       vpls_(!parameters.takesVpls()         ? FrameVpls()
             : parameters.vplsFile().empty() ? FrameVpls(inputs, parameters.vplsCap())
-                                            : FrameVpls(parameters.vplsFile())),
+                                            : FrameVpls(parameters.vplsFile(), inputs)),
       irradiance_(inputs.gbuffer().width, inputs.gbuffer().height, 3),
       validity_(inputs.gbuffer().width, inputs.gbuffer().height, 1),
       share_(inputs.gbuffer().width, inputs.gbuffer().height, 1),

@@ -99,6 +99,7 @@ RenderInputs::RenderInputs(const studio::RayScene& scene, const studio::Camera& 
                            const InputOptions& options)
     : scene_(scene),
       time_(options.time),
+      scale_(options.scale),
       gbuffer_(studio::renderGBuffer(
           scene, camera, options.width, options.height,
           options.previousCamera != nullptr ? *options.previousCamera : camera,

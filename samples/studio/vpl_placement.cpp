@@ -32,6 +32,7 @@ void require(bool holds, const char* option, const char* expected, double got) {
 void checkOptions(const PlacementOptions& o) {
     require(o.points >= 1, "points", "at least 1", o.points);
     require(o.paths >= 1, "paths", "at least 1", o.paths);
+    require(o.lightPaths >= 0, "lightPaths", "at least 0", o.lightPaths);
     require(o.depth >= 1, "depth", "at least 1", o.depth);
     require(o.cap >= 1 && std::size_t(o.cap) <= kMostStaticVpls, "cap", "1 .. 4096", o.cap);
     require(o.spacing >= 0.0 && std::isfinite(o.spacing), "spacing", "0 or a length", o.spacing);
@@ -90,6 +91,7 @@ std::vector<SurfaceHit> Placer::findHits() {
     report_.points = points.size();
     PathOptions paths;
     paths.paths = options_.paths;
+    paths.lightPaths = options_.lightPaths;
     paths.depth = options_.depth;
     paths.seed = options_.seed;
     paths.threads = options_.threads;

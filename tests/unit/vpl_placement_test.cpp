@@ -181,6 +181,19 @@ TEST_CASE("placement: VPLs of moving things stand in their coordinates, set back
             CHECK(double(std::abs(world.vpls[i].position.y - 0.25f)) == Approx(0.0625).epsilon(1e-3));
 }
 
+TEST_CASE("without paths of the lights, places are those of a room without lights") {
+    test::QuadScene lit = room();
+    lit.point({1.5f, 0.8f, 0.5f}, vec3(1.0f));
+    const RayScene withLight = lit.build(), without = room().build();
+    PlacementOptions options = fewPaths();
+    const StaticVpls dark = placeVpls(without, options, {}).vpls;
+    CHECK_FALSE(same(placeVpls(withLight, options, {}).vpls, dark));
+    options.lightPaths = 0;
+    const Placement placed = placeVpls(withLight, options, {});
+    CHECK(placed.report.hits == std::size_t(options.paths * options.depth));  // the room is closed
+    CHECK(same(placed.vpls, dark));
+}
+
 TEST_CASE("placement refuses what it cannot mean") {
     const RayScene scene = room().build();
     const auto refused = [&](const char* option, const auto& spoil) {
@@ -190,6 +203,7 @@ TEST_CASE("placement refuses what it cannot mean") {
     };
     refused("points", [](auto& o) { o.points = 0; });
     refused("paths", [](auto& o) { o.paths = 0; });
+    refused("lightPaths", [](auto& o) { o.lightPaths = -1; });
     refused("depth", [](auto& o) { o.depth = 0; });
     refused("cap", [](auto& o) { o.cap = 4097; });
     refused("degrees", [](auto& o) { o.degrees = 90.0; });
