@@ -84,7 +84,7 @@ TEST_CASE("static_vpl with shadows: same input, same bits; widths agree", "[stat
     desc.shadowedBounces = 2;
     desc.interleave = GENERATE(1u, 4u);
     const auto first = render(16, desc, scene, view);
-    for (int run = 0; run < 4; ++run) CHECK(bitDifference(render(16, desc, scene, view), first) == "");
+    for (int run = 0; run < 3; ++run) CHECK(bitDifference(render(16, desc, scene, view), first) == "");
     // Texels on an edge may fall to either side of it.
     CHECK(difference(render(1, desc, scene, view), first) < 1e-3);
     LWStaticVplDesc all = desc;
