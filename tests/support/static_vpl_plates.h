@@ -61,10 +61,10 @@ inline Walls withPlate(double left = kPlate[0][0]) {
     addPlate(walls, left);
     return walls;
 }
-// A floor over the floor: no light of the floor's VPLs gets out.
+// A room with a floor over its floor, below all that pixels show and far enough above for voxels: no light gets out.
 inline Walls shut() {
-    Walls walls = open();
-    walls.add({-1, 0.05, -0.5}, {2, 0, 0}, {0, 0, 2});
+    Walls walls = Walls::room();
+    walls.add({-0.5, 0.11, 0}, {1, 0, 0}, {0, 0, 1});
     return walls;
 }
 
