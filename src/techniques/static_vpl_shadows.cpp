@@ -90,7 +90,7 @@ std::vector<GatheredList> StaticVplShadows::recordRest(Executor& executor, int l
         {{vpls, shadowed_}, &clusters().assignment(), clusters().clusterCount()}};
     if (rest == 0) return lists;
     own.reserve(device_, rest * sizeof(lw_vpl), "VPLs without shadows");
-    executor.copy("static_vpl.rest", vpls.get(), own.get(), shadowed_ * sizeof(lw_vpl), 0,
+    executor.copy("light_list.rest", vpls.get(), own.get(), shadowed_ * sizeof(lw_vpl), 0,
                   rest * sizeof(lw_vpl));
     lists.push_back({{own, rest}});
     return lists;

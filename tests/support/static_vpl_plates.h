@@ -46,15 +46,25 @@ inline void addPlate(Walls& walls, double left = kPlate[0][0]) {
     walls.add({left, kPlateHeight, kPlate[1][0]}, {kPlate[0][1] - kPlate[0][0], 0, 0},
               {0, 0, kPlate[1][1] - kPlate[1][0]});
 }
+// The floor, and walls well behind all that pixels show: where two walls meet, maps of any kind err by a
+// texel.
+inline Walls open() {
+    Walls walls;
+    walls.add({-1, 0, -0.5}, {2, 0, 0}, {0, 0, 2});
+    walls.add({-1, 2, -0.5}, {2, 0, 0}, {0, 0, 2});
+    for (const double x : {-1.0, 1.0}) walls.add({x, 0, -0.5}, {0, 2, 0}, {0, 0, 2});
+    for (const double z : {-0.5, 1.5}) walls.add({-1, 0, z}, {2, 0, 0}, {0, 2, 0});
+    return walls;
+}
 inline Walls withPlate(double left = kPlate[0][0]) {
-    Walls walls = Walls::room();
+    Walls walls = open();
     addPlate(walls, left);
     return walls;
 }
-// The room with a floor over its floor: no light of the floor's VPLs gets out.
+// A room with a floor over its floor, below all that pixels show and far enough above for voxels: no light gets out.
 inline Walls shut() {
     Walls walls = Walls::room();
-    walls.add({-0.5, 0.05, 0}, {1, 0, 0}, {0, 0, 1});
+    walls.add({-0.5, 0.11, 0}, {1, 0, 0}, {0, 0, 1});
     return walls;
 }
 
