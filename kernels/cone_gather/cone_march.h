@@ -21,6 +21,7 @@ typedef struct {
     real r, g, b;   // W/(sr m^2)
     real through;   // what still gets through
     real occluded;  // by the steps' dimming
+    real before;    // opacity of the sample before
 } cone_light;
 
 // Where rays begin, in voxels from each grid's corner.
@@ -59,11 +60,19 @@ LW_FN real corrected(real a, float e) {
 }
 
 // What one sample adds: `through` of the lanes that it counts for, 0 of the others.
+//
+// A wall between two samples is seen by both, as w and 1 - w of their cells: a layer that the one has part of is the one that the other has
+// the rest of, not another one behind it, and what has got past the first has 1 - w left of which the second takes all. Multiplied
+// as two layers w (1 - w) gets through. What is spread evenly has no layer: there samples multiply. So what counts of the one before is
+// how closed this one's voxels are.
 LW_FN void add_sample(cone_light* l, const cone_sample* s, const LwConeStep* step, float exponent, real through) {
-    real weight = through;
+    real weight = (real)1.0f;
 #if LW_CONE_CORRECT
     if (exponent != 1.0f) weight *= corrected(s->a, exponent);
 #endif
+    const real alone = weight * s->a, left = fmax(fma_(-s->closed, l->before, (real)1.0f), (real)1e-6f);
+    weight *= through / fmax(left, alone);
+    l->before = select_((real)0.0f, alone, through > 0.0f);
     const real opacity = weight * s->a;
 #if LW_CONE_LIGHT
     weight *= step->light;
@@ -96,6 +105,7 @@ LW_FN int find_at(cone_corner* corner, const cone_volume* volumes, const cone_or
 LW_FN void march(cone_light* l, const cone_volume* volumes, const cone_origin* from, int grid, real dx, real dy, real dz,
                  __global const LwConeStep* steps, int count, float reach, real far, mask live) {
     const int last = LW_CONE_CASCADES - 1, size = volumes[0].grids.size;
+    l->before = (real)0.0f;
     const float most = (float)size, whole = (float)(1 << last);
     const real leaves = fmin(way_out(from->x[last], dx, most), fmin(way_out(from->y[last], dy, most), way_out(from->z[last], dz, most)));
     const real out = whole * leaves;
@@ -109,9 +119,15 @@ LW_FN void march(cone_light* l, const cone_volume* volumes, const cone_origin* f
         const LwConeStep step = steps[i];
         if (step.begins > end || step.distance > reaches) break;
         nextHas = i + 1 < count && steps[i + 1].begins <= end && find_at(&next, volumes, from, 0, steps + i + 1, dx, dy, dz, live, out, far);
-        if (!has) continue;
+        if (!has) {
+            l->before = (real)0.0f;
+            continue;
+        }
         const mask lit = and_(corner.has, l->through > LW_CONE_LEAST);
-        if (!any_(lit)) continue;
+        if (!any_(lit)) {
+            l->before = (real)0.0f;
+            continue;
+        }
         cone_sample s;
         sample_corner(&s, volumes, step.level, &corner, dx, dy, dz);
         add_sample(l, &s, &step, step.exponent, select_((real)0.0f, l->through, lit));
@@ -127,6 +143,8 @@ LW_FN void march(cone_light* l, const cone_volume* volumes, const cone_origin* f
         // The finest grid that has all of the sample; the outermost one whatever it has.
         mask left = live;
         const int wanted = step.level + grid;
+        const real before = l->before;
+        real now = (real)0.0f;
         for (int c = 0; c < LW_CONE_CASCADES; ++c) {
             const int level = min(max(wanted - c, 0), volumes[c].grids.levels - 1);
             const float margin = 0.5f * (float)(1 << level);
@@ -141,8 +159,11 @@ LW_FN void march(cone_light* l, const cone_volume* volumes, const cone_origin* f
             sample_corner(&s, volumes + c, level, &corner, dx, dy, dz);
             // Of cells coarser than the cone the step is a smaller part.
             const float exponent = c > wanted ? step.exponent / (float)(1 << (c - wanted)) : step.exponent;
+            l->before = before;
             add_sample(l, &s, &step, exponent, select_((real)0.0f, l->through, own));
+            now += l->before;
         }
+        l->before = now;
     }
 #endif
 }

@@ -28,7 +28,9 @@ typedef struct {
     int unit;
 } cone_volume;
 
-typedef struct { real r, g, b, a; } cone_sample;  // premultiplied
+// Premultiplied; and how much of a is in closed voxels, 1, or spread over all, 0: the variance of opacity among the voxels that were
+// interpolated over what it would be if each were open or closed.
+typedef struct { real r, g, b, a, closed; } cone_sample;
 
 // The lower of the eight voxels around a place as a word of its plane, and the upper ones' shares.
 typedef struct {
@@ -113,14 +115,16 @@ LW_FN int find_corner(cone_corner* c, __global const int* table, int size, int l
 #define LW_CONE_GREEN_STEP 64.0f
 #define LW_CONE_BLUE_STEP 8192.0f
 
-typedef struct { real r, g, b, a, ones; } cone_words;
+typedef struct { real r, g, b, a, ones, squares; } cone_words;  // squares: of the opacity's fractions with their ones
 LW_FN real fraction(laneu word, uint field, laneu one) { return as_real_((word & field) | one); }
 LW_FN laneu exponent_of(laneu low) { return (low & LW_VOXEL_EXPONENT_MASK) | (laneu)LW_CONE_LEAST_EXPONENT; }
 
 // One word's share of a sum, with the ones.
 LW_FN void add_word(cone_words* sum, laneu word, real weight) {
     const laneu low = word >> LW_VOXEL_EXPONENT_SHIFT;
-    sum->a = fma_(fraction(low, LW_VOXEL_OPACITY_MASK >> LW_VOXEL_EXPONENT_SHIFT, (laneu)LW_CONE_ONE), weight, sum->a);
+    const real opacity = fraction(low, LW_VOXEL_OPACITY_MASK >> LW_VOXEL_EXPONENT_SHIFT, (laneu)LW_CONE_ONE), share = opacity * weight;
+    sum->a += share;
+    sum->squares = fma_(opacity, share, sum->squares);
 #if LW_CONE_LIGHT
     const laneu one = exponent_of(low), high = word << 10;
     sum->ones = fma_(as_real_(one), weight, sum->ones);
@@ -144,7 +148,15 @@ LW_FN void add_plane(cone_words* sum, __global const uint* words, const cone_cor
     }
 }
 
-LW_FN void begin_words(cone_words* sum) { sum->r = sum->g = sum->b = sum->a = sum->ones = (real)0.0f; }
+LW_FN void begin_words(cone_words* sum) { sum->r = sum->g = sum->b = sum->a = sum->ones = sum->squares = (real)0.0f; }
+
+// Opacity's variance, and what it would be of open and closed voxels alone, times 255/256 squared. has: the sum of weights, 1 or 0.
+LW_FN void spread_of(real* variance, real* most, const cone_words* sum, real has) {
+    const real a = sum->a - has;
+    *variance = sum->squares - fma_((real)2.0f, a, has) - a * a;
+    *most = a * (has * (1.0f / LW_CONE_OPACITY_STEP) - a);
+}
+LW_FN real closed_of(real variance, real most) { return clamp(variance / fmax(most, (real)1e-6f), (real)0.0f, (real)1.0f); }
 
 // has: the sum of weights, of those lanes that have any.
 LW_FN void finish_words(cone_sample* sample, const cone_words* sum, real has, int unit) {
@@ -160,7 +172,7 @@ LW_FN void finish_words(cone_sample* sample, const cone_words* sum, real has, in
 
 // The plane of an axis that a ray meets, seen at the cosine of its angle to that axis; `closed`: the largest share of a voxel's side that
 // something covers; `ones`: of opacity's sum.
-LW_FN void add_side(cone_words* sum, real* closed, real* ones, __global const uint* words, const cone_corner* c, int plane, real d, real has) {
+LW_FN void add_side(cone_words* sum, real* closed, real* ones, real* variance, real* most, __global const uint* words, const cone_corner* c, int plane, real d, real has) {
     const real cosine = fabs(d);
     cone_words side;
     begin_words(&side);
@@ -172,6 +184,10 @@ LW_FN void add_side(cone_words* sum, real* closed, real* ones, __global const ui
     sum->ones = fma_(cosine, side.ones, sum->ones);
     *ones = fma_(cosine, has, *ones);
     *closed = fmax(*closed, side.a - has);
+    real v, m;
+    spread_of(&v, &m, &side, has);
+    *variance = fma_(cosine, v, *variance);
+    *most = fma_(cosine, m, *most);
 }
 
 // Three of six sides. Small surfaces, A of them facing an axis, take A |d| of a step's light: x in all. Where they close a share F of the
@@ -182,10 +198,10 @@ LW_FN void sample_sides(cone_sample* sample, __global const uint* words, const c
                         int unit) {
     cone_words sum;
     begin_words(&sum);
-    real closed = (real)0.0f, ones = (real)0.0f;
-    add_side(&sum, &closed, &ones, words, c, plane, dx, has);
-    add_side(&sum, &closed, &ones, words + 2 * plane, c, plane, dy, has);
-    add_side(&sum, &closed, &ones, words + 4 * plane, c, plane, dz, has);
+    real closed = (real)0.0f, ones = (real)0.0f, variance = (real)0.0f, most = (real)0.0f;
+    add_side(&sum, &closed, &ones, &variance, &most, words, c, plane, dx, has);
+    add_side(&sum, &closed, &ones, &variance, &most, words + 2 * plane, c, plane, dy, has);
+    add_side(&sum, &closed, &ones, &variance, &most, words + 4 * plane, c, plane, dz, has);
     finish_words(sample, &sum, ones, unit);
     const real taken = fmax((sum.a - ones) * LW_CONE_OPACITY_STEP, (real)0.0f);
     const real share = 1.0f / fmax(taken + (1.0f - fmin(closed * LW_CONE_OPACITY_STEP, (real)1.0f)), (real)1e-6f);
@@ -193,6 +209,7 @@ LW_FN void sample_sides(cone_sample* sample, __global const uint* words, const c
     sample->r *= share;
     sample->g *= share;
     sample->b *= share;
+    sample->closed = closed_of(variance, most);
 }
 
 #if LW_CONE_MODE == 2 && LW_CONE_LIGHT
@@ -221,7 +238,9 @@ LW_FN void add_harmonics(cone_sample* sum, __global const uint* words, const con
         LW_UNROLL for (int i = 0; i < 2; ++i) {
             const laneu w = word[i];
             const real step = weight[i] * as_real_(((w >> LW_VOXEL_EXPONENT_SHIFT) & LW_VOXEL_EXPONENT_MASK) + (uint)unit);
-            sum->a = fma_(to_real(as_lanei_(w & LW_VOXEL_OPACITY_MASK)), weight[i], sum->a);
+            const real opacity = to_real(as_lanei_(w & LW_VOXEL_OPACITY_MASK)) * LW_VOXEL_OPACITY_STEP, share = opacity * weight[i];
+            sum->a += share;
+            sum->closed = fma_(opacity, share, sum->closed);
             sum->r = fma_(to_real(as_lanei_(w & LW_VOXEL_RED_MASK)) * step, fma_((real)-LW_CONE_SHARE, along(r[i], dx, dy, dz), even_light), sum->r);
             sum->g = fma_(to_real(as_lanei_(w & LW_VOXEL_GREEN_MASK)) * step, fma_((real)-LW_CONE_SHARE, along(g[i], dx, dy, dz), even_light), sum->g);
             sum->b = fma_(to_real(as_lanei_(w & LW_VOXEL_BLUE_MASK)) * step, fma_((real)-LW_CONE_SHARE, along(b[i], dx, dy, dz), even_light), sum->b);
@@ -233,13 +252,14 @@ LW_FN void add_harmonics(cone_sample* sum, __global const uint* words, const con
 // Light and opacity between a corner's eight voxels, seen by a ray that goes along d.
 LW_FN void sample_corner(cone_sample* sample, const cone_volume* v, int level, const cone_corner* c, real dx, real dy, real dz) {
     const real has = ones_(c->has), none = (real)0.0f;
-    sample->r = sample->g = sample->b = sample->a = none;
+    sample->r = sample->g = sample->b = sample->a = sample->closed = none;
     __global const uint* words = level == 0 ? v->base : v->mips;
     const int plane = level == 0 ? v->grids.basePlane : v->grids.mipPlane;
 #if LW_CONE_MODE == 2 && LW_CONE_LIGHT
     if (level > 0 || !LW_CONE_SIDES) {
         add_harmonics(sample, words, c, plane, dx, dy, dz, has, v->unit);
-        sample->a = fmin(sample->a * LW_VOXEL_OPACITY_STEP, (real)1.0f);
+        sample->closed = closed_of(sample->closed - sample->a * sample->a, sample->a * (1.0f - sample->a));
+        sample->a = fmin(sample->a, (real)1.0f);
         sample->r = fmax(sample->r * LW_VOXEL_RED_STEP, none);
         sample->g = fmax(sample->g * LW_VOXEL_GREEN_STEP, none);
         sample->b = fmax(sample->b * LW_VOXEL_BLUE_STEP, none);
@@ -254,6 +274,9 @@ LW_FN void sample_corner(cone_sample* sample, const cone_volume* v, int level, c
     begin_words(&sum);
     add_plane(&sum, words, c, c->at, has);
     finish_words(sample, &sum, has, v->unit);
+    real variance, most;
+    spread_of(&variance, &most, &sum, has);
+    sample->closed = closed_of(variance, most);
 }
 
 #endif
