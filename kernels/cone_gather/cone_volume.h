@@ -32,11 +32,12 @@ typedef struct {
 // interpolated over what it would be if each were open or closed.
 typedef struct { real r, g, b, a, closed; } cone_sample;
 
-// The lower of the eight voxels around a place as a word of its plane, and the upper ones' shares.
+// The lower of the eight voxels around a place as a word of its plane, and the upper ones' shares. `side`: voxels a side of the level.
 typedef struct {
     lanei at;
     real x, y, z;
     mask has;
+    int side;
 } cone_corner;
 
 // at[l] and the word behind it: two voxels along x.
@@ -83,13 +84,21 @@ LW_FN lanei brick_at(lanei slot) { return (((slot << 4) + (slot << 3)) - slot) <
 
 // x, y, z: in voxels of the finest level. table: of the level. 0: no live lane has anything there.
 LW_FN int find_corner(cone_corner* c, __global const int* table, int size, int level, real x, real y, real z, mask live) {
-    const float scale = as_float((127 - level) << 23), most = (float)((size >> level) - 1);
+    const int side = size >> level;
+    c->side = side;
+    if (side == 1) {  // all of the weights but the lower corner's are 0
+        const int only = table[0];
+        c->has = live;
+        c->at = (lanei)(only * LW_VOXEL_STRIDE);
+        c->x = c->y = c->z = (real)0.0f;
+        return only >= 0;
+    }
+    const float scale = as_float((127 - level) << 23), most = (float)(side - 1);
     const real qx = from_centre(x, scale, most), qy = from_centre(y, scale, most), qz = from_centre(z, scale, most);
     const lanei ix = to_lanei(qx), iy = to_lanei(qy), iz = to_lanei(qz);
     c->x = qx - to_real(ix);
     c->y = qy - to_real(iy);
     c->z = qz - to_real(iz);
-    const int side = size >> level;
     if (side <= LW_VOXEL_BRICK) {
         const int slot = table[0];
         c->has = live;
@@ -134,11 +143,26 @@ LW_FN void add_word(cone_words* sum, laneu word, real weight) {
 #endif
 }
 
-// The eight voxels' words of one plane, each lane's with `weight`, onto the sum.
+// The eight voxels' words of one plane, each lane's with `weight`, onto the sum. Neighbouring pixels' cones are mostly between the same
+// voxels from a few levels on: their words are then loaded once for all lanes, and of a level that is one voxel, one.
 LW_FN void add_plane(cone_words* sum, __global const uint* words, const cone_corner* c, lanei at, real weight) {
+    const int first = firsti_lane(at), shared = LW_WIDTH > 1 && !any_(at != (lanei)first);
+    if (shared && c->side == 1) {
+        add_word(sum, (laneu)words[first], weight);
+        return;
+    }
     const real upper = weight * c->z, lower = weight - upper;
     const real w3 = upper * c->y, w2 = upper - w3, w1 = lower * c->y, w0 = lower - w1;
     const real rows[4] = {w0, w1, w2, w3};
+    if (shared) {
+        LW_UNROLL for (int k = 0; k < 4; ++k) {
+            const int row = first + ((k & 1) ? LW_VOXEL_STORED : 0) + ((k & 2) ? LW_VOXEL_STORED * LW_VOXEL_STORED : 0);
+            const real far = rows[k] * c->x;
+            add_word(sum, (laneu)words[row], rows[k] - far);
+            add_word(sum, (laneu)words[row + 1], far);
+        }
+        return;
+    }
     LW_UNROLL for (int k = 0; k < 4; ++k) {
         laneu low, high;
         gather_pairs(words, at + ((k & 1) ? LW_VOXEL_STORED : 0) + ((k & 2) ? LW_VOXEL_STORED * LW_VOXEL_STORED : 0), &low, &high);
