@@ -8,7 +8,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
 def read_options(description, scenes, spp, size="1280x720", parts=(), default=None, more=()):
-    """The options of a script, with `work` as a folder that exists. `parts`: what --part may name; all of them, or `default`, unless it does. `more`: options of its own."""
+    """The options of a script, with `work` as a folder that exists. `parts`: what --part may name; all of them, or `default`, unless it does. `more`:
+    options of its own."""
     parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--lightwell", default=str(ROOT / "build/release/bin/lightwell"))
     parser.add_argument("--work", type=pathlib.Path, default=ROOT / "build/figures")
