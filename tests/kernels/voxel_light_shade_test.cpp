@@ -58,6 +58,31 @@ TEST_CASE("a thin wall shows each side its own light where voxels know what face
     CHECK(across == 0.0);
 }
 
+TEST_CASE("light on a sheet's back leaves by no other side, nor out of what stands in its voxels", "[voxel_light]") {
+    VoxelLightRig rig(16, 32, LW_VOXEL_MODE_ANISOTROPIC, true);
+    rig.aware = true;
+    // A sheet that faces down x, lit from above; in one voxel a sixteenth of it faces up, in another a wall crosses it.
+    const std::vector<VoxelTriangle> back = voxelSheet(13.5, 8.0, 24.0, 1);
+    std::vector<VoxelTriangle> sheet = voxelSheet(13.5, 8.0, 24.0, -1), wall = voxelSheet(20.5, 13.0, 14.0, 1);
+    append(sheet, voxelSheet(13.7, 10.0, 10.25, 1));
+    for (VoxelTriangle& t : wall)
+        for (auto& corner : t.at) std::swap(corner[0], corner[1]);
+    append(sheet, wall);
+    rig.setTriangles(sheet);
+    rig.shine(texelsOn(back, 40000, {1.0, 1.0, 1.0}, 3));
+    const VoxelLevel level = VoxelLevel::of(rig.volume, 0);
+    const auto seen = [&](int side, int x, int y, int z) { return level.value(side, x, y, z, rig.lit().unit); };
+    // Some 156 texels fell on it.
+    CHECK(double(seen(0, 13, 10, 10).opacity) == Approx(1.0 / 16).margin(1.0 / 255));
+    CHECK(double(seen(0, 13, 10, 10).red) == Approx(1.0 / 16).epsilon(0.1));
+    CHECK(seen(0, 13, 12, 12).red == 0.0f);
+    CHECK(seen(1, 13, 12, 12).opacity == 1.0f);
+    CHECK(seen(1, 13, 12, 12).red == 0.0f);
+    const bool crosses = seen(2, 13, 20, 13).opacity > 0.5f || seen(3, 13, 20, 13).opacity > 0.5f;
+    CHECK(crosses);
+    for (int side = 2; side < 6; ++side) CHECK(seen(side, 13, 20, 13).red < 1e-5f);
+}
+
 TEST_CASE("SH2 keeps the flux of a wall, and shines to its own side", "[voxel_light][large]") {
     VoxelLightRig rig(16, 32, LW_VOXEL_MODE_SH2, false);
     const std::vector<VoxelTriangle> wall = voxelSheet(13.5, 0.0, 32.0, -1);
