@@ -26,8 +26,8 @@ std::pair<double, double> rangeOf(const std::vector<float>& values) {
 
 }  // namespace
 
-// What cones lose of a closed box: slanted ones get past a wall between samples that lie on both sides of it, and in edges they begin
-// within the other wall's voxels (docs/techniques/cone_gather.md).
+// What cones lose of a closed box: slanted ones get past a wall between samples that lie on both sides
+// of it, and in edges they begin within the other wall's voxels (docs/techniques/cone_gather.md).
 TEST_CASE("in a closed box of even walls the irradiance is theirs, but for what cones let through", "[cone_tracing]") {
     TestDevice device(GENERATE(1u, 16u));
     const bool emits = GENERATE(false, true);
