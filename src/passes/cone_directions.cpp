@@ -17,9 +17,10 @@ constexpr double kNearHeight = 1.5;
 // How nearly a cone may touch its own surface before apertureOffset moves it no further: of the six,
 // five touch it.
 constexpr double kLeastGap = 0.1;
-// Half a cone's width over its distance at which one cell lies between a distance and twice that, so that cells are 0.87 to 0.43 of the cone's
-// width. Interpolated cells weigh places by their distance with a deviation of half a side, a disc by a quarter of its diameter: a cell as
-// wide as the cone sees what is half a cone beside it, the wall that the cone begins at and the next, and as coarse as it is
+// Half a cone's width over its distance at which one cell lies between a distance and twice that, so
+// that cells are 0.87 to 0.43 of the cone's width. Interpolated cells weigh places by their distance
+// with a deviation of half a side, a disc by a quarter of its diameter: a cell as wide as the cone sees
+// what is half a cone beside it, the wall that the cone begins at and the next, and as coarse as it is
 // closed where only a part is. Smaller than half, and what the cone meets between samples is missed.
 constexpr double kCells = 0.57735026918962576;
 
@@ -140,9 +141,10 @@ ConeWindow coneWindow(std::uint32_t count) {
     return {8, 8, count / 64};
 }
 
-// Samples lie one behind the other without gaps, each in a cell of 2^level voxels as long as the part of the cone that it stands for: from
-// `cells` of them off the apex to twice as far, then in cells of twice the side. Interpolated, cells reach one side to either side, so that
-// what samples take of a thin wall adds up to all of it, and to no more.
+// Samples lie one behind the other without gaps, each in a cell of 2^level voxels as long as the part of
+// the cone that it stands for: from `cells` of them off the apex to twice as far, then in cells of twice
+// the side. Interpolated, cells reach one side to either side, so that what samples take of a thin wall
+// adds up to all of it, and to no more.
 std::vector<LwConeStep> coneSteps(double halfAngle, double cosine, const ConeSchedule& schedule) {
     const double tangent = std::tan(halfAngle);
     const double height =
@@ -177,10 +179,12 @@ std::vector<LwConeStep> coneSteps(double halfAngle, double cosine, const ConeSch
         }
     }
     int level = levelOf(begin);
-    for (double from = std::max(0.0, begin - 0.5 * std::ldexp(schedule.step, level)), end; from < schedule.reach; from = end, ++level) {
+    for (double from = std::max(0.0, begin - 0.5 * std::ldexp(schedule.step, level)), end;
+         from < schedule.reach; from = end, ++level) {
         end = std::ldexp(2.0 * cells, level);
         const double parts = std::max(1.0, std::round(std::ldexp((end - from) / schedule.step, -level)));
-        for (double i = 0.5; i < parts; ++i) add(from + (end - from) * i / parts, level, (end - from) / parts, 1.0);
+        for (double i = 0.5; i < parts; ++i)
+            add(from + (end - from) * i / parts, level, (end - from) / parts, 1.0);
     }
     return steps;
 }

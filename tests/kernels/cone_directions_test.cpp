@@ -140,7 +140,8 @@ TEST_CASE("samples lie behind each other in cells of half the cone's width, what
     schedule.nudge = 2.0;
     for (int k = 0; k < 3; ++k) {
         schedule.step = std::ldexp(1.0, -k);
-        // What each level has of the way adds up to the same: from twice its first distance on to twice that.
+        // What each level has of the way adds up to the same: from twice its first distance on to twice
+        // that.
         std::array<double, 8> lengths{};
         const auto steps = coneSteps(halfAngle, 1.0, schedule);
         CHECK(double(steps[0].distance) == Approx(2.0).margin(0.5 * schedule.step));
@@ -153,7 +154,8 @@ TEST_CASE("samples lie behind each other in cells of half the cone's width, what
             lengths[std::size_t(step.level)] += length;
             CHECK(length <= 1.5 * schedule.step * cell);
             const double width = 2 * std::tan(halfAngle) * double(step.distance);
-            if (step.level > 0) CHECK(cell > 0.29 * width);  // 1 / 4 t where there is one cell, least for the widest
+            if (step.level > 0)
+                CHECK(cell > 0.29 * width);  // 1 / 4 t where there is one cell, least for the widest
             CHECK(cell < std::max(1.001, 1.1 * width));
         }
         const double first = std::max(1.0, std::round(std::tan(sixty) / std::tan(halfAngle)));

@@ -58,12 +58,15 @@ TEST_CASE("a thin wall shows each side its own light where voxels know what face
     CHECK(across == 0.0);
 }
 
-TEST_CASE("light on a sheet's back leaves by no other side, nor out of what stands in its voxels", "[voxel_light]") {
+TEST_CASE("light on a sheet's back leaves by no other side, nor out of what stands in its voxels",
+          "[voxel_light]") {
     VoxelLightRig rig(16, 32, LW_VOXEL_MODE_ANISOTROPIC, true);
     rig.aware = true;
-    // A sheet that faces down x, lit from above; in one voxel a sixteenth of it faces up, in another a wall crosses it.
+    // A sheet that faces down x, lit from above; in one voxel a sixteenth of it faces up, in another a
+    // wall crosses it.
     const std::vector<VoxelTriangle> back = voxelSheet(13.5, 8.0, 24.0, 1);
-    std::vector<VoxelTriangle> sheet = voxelSheet(13.5, 8.0, 24.0, -1), wall = voxelSheet(20.5, 13.0, 14.0, 1);
+    std::vector<VoxelTriangle> sheet = voxelSheet(13.5, 8.0, 24.0, -1),
+                               wall = voxelSheet(20.5, 13.0, 14.0, 1);
     append(sheet, voxelSheet(13.7, 10.0, 10.25, 1));
     for (VoxelTriangle& t : wall)
         for (auto& corner : t.at) std::swap(corner[0], corner[1]);
@@ -71,7 +74,9 @@ TEST_CASE("light on a sheet's back leaves by no other side, nor out of what stan
     rig.setTriangles(sheet);
     rig.shine(texelsOn(back, 40000, {1.0, 1.0, 1.0}, 3));
     const VoxelLevel level = VoxelLevel::of(rig.volume, 0);
-    const auto seen = [&](int side, int x, int y, int z) { return level.value(side, x, y, z, rig.lit().unit); };
+    const auto seen = [&](int side, int x, int y, int z) {
+        return level.value(side, x, y, z, rig.lit().unit);
+    };
     // Some 156 texels fell on it.
     CHECK(double(seen(0, 13, 10, 10).opacity) == Approx(1.0 / 16).margin(1.0 / 255));
     CHECK(double(seen(0, 13, 10, 10).red) == Approx(1.0 / 16).epsilon(0.1));

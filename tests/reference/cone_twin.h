@@ -148,7 +148,8 @@ struct ConeTwin {
                                      ? 1 - std::pow(1 - std::min(1.0, s.opacity), exponent)
                                      : s.opacity;
             // Of what the sample before has left of a layer that both see.
-            const double share = 1 / std::max({1 - s.closed * before, alone, 1e-6}), opacity = alone * share;
+            const double share = 1 / std::max({1 - s.closed * before, alone, 1e-6}),
+                         opacity = alone * share;
             before = alone;
             // Voxels of next to no opacity may have some light.
             const double ratio = share * (s.opacity > 1e-6            ? alone / s.opacity
