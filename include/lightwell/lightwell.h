@@ -721,7 +721,7 @@ typedef struct LWConeTracingDesc {
     uint32_t bounces;        /**< 1; or 0: all of them, each frame adding to the voxels what the last one's send on */
     uint32_t sparse;         /**< 1: only bricks of voxels that hold something are stored and filtered; 0: all */
     float nudge;             /**< where cones begin, in voxels along the normal; 0 .. 8 */
-    float step;              /**< of a cone, in its diameters; 0.125 .. 1. Less: time, fewer bands */
+    float step;              /**< of a cone, in the cells that it reads; 0.125 .. 1. Less: time, fewer bands */
     float distance;          /**< that cones reach, in sides of the largest grid; above 0 .. 2 */
     uint32_t opacityCorrection;  /**< 1: opacity follows the length of steps; 0: each step takes its voxel's as it is */
     uint32_t directionalOpacity; /**< 1: the finest voxels too have an opacity for each axis, of what they show that way */
