@@ -73,7 +73,7 @@ def pictures(bench, name, frame):
     second = ["bounces=2", f"average_reflectance={REFLECTANCE[name]}"]
     for variant, (_, technique, cap, settings) in VARIANTS.items():
         exr, one, counts = light(variant, technique, cap, settings)
-        kept = counts.get("kept_vpls", counts.get("vpls"))
+        kept = counts["kept_vpls"] + counts["phantom_vpls"] if "kept_vpls" in counts else counts["vpls"]
         made[variant] = {"exr": exr, "one": one, "vpls": kept}
         if technique == "static_vpl":
             made[variant]["two"] = light(f"{variant} second", technique, cap, settings + second)[1]

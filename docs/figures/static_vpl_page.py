@@ -94,8 +94,8 @@ def studs(found):
         panels[0].plot(x, row["red"], ".-", color=colour(way), label=way)
         if row["degrees"]:
             panels[1].plot(x, row["degrees"], ".-", color=colour(way), label=way)
-    panels[0].set(xlabel="the beam's axis, m from the seam", ylabel="R / (R + G) on the wall opposite")
-    panels[1].set(xlabel="the beam's axis, m from the seam", ylabel="VPLs' mean normal off the wall's, degrees")
+    panels[0].set(xlabel="the beam's axis, m from the seam", ylabel="R / (R + G) opposite")
+    panels[1].set(xlabel="the beam's axis, m from the seam", ylabel="mean normal off the wall's, degrees")
     for axes in panels:
         axes.grid(alpha=0.3)
     panels[0].legend(fontsize=7)
