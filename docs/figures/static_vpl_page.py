@@ -65,12 +65,14 @@ def road(found):
             f"of one ray {abs(numpy.diff(place)).max():.2f}.", ""]
 
 
-def flip(found):
+def flip(found, exrs):
     lines = []
     for scene, rows in found.items():
+        pictures(exrs[scene], list(exrs[scene]), f"flip_{scene}")
         body = [[variant, f"{numpy.mean(r['vpls']):.0f}", *(f"{mean(r[b], key):{f}}" for b in ("one", "two") for key, f in
                 (("flip", ".3f"), ("relMSE", ".2g"), ("bias", "+.0%")))] for variant, r in rows.items()]
-        lines += [f"**{scene}**", "", *table(["what", "VPLs that light", "FLIP, one bounce", "relMSE", "bias", "FLIP, two bounces", "relMSE", "bias"], body)]
+        lines += [f"**{scene}**", "", f"![{scene}](../images/static_vpl_flip_{scene}.jpg)", "", "*" + " | ".join(exrs[scene]) + "*, one bounce, second frame", "",
+                  *table(["what", "VPLs that light", "FLIP, one bounce", "relMSE", "bias", "FLIP, two bounces", "relMSE", "bias"], body)]
     figure, panels = plt.subplots(1, len(found), figsize=(9, 2.8), sharey=True, squeeze=False)
     for axes, (scene, rows) in zip(panels[0], found.items()):
         for i, (variant, r) in enumerate(rows.items()):
