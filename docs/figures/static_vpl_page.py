@@ -7,7 +7,6 @@ import matplotlib.pyplot as plt  # noqa: E402
 import numpy  # noqa: E402
 
 import thesis_pictures  # noqa: E402
-from exr_planes import read_planes  # noqa: E402
 from program import ROOT  # noqa: E402
 from static_vpl_flicker import INDICES  # noqa: E402
 from static_vpl_flip import VARIANTS, mean  # noqa: E402

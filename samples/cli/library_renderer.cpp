@@ -48,7 +48,7 @@ LibraryRenderer::LibraryRenderer(const lightwell::Device& device, const Paramete
       descriptor_(device, parameters),
       technique_(device, parameters.technique().c_str(), descriptor_.get()),
       quantity_(quantity),
-      vpls_(!parameters.takesVpls()            ? FrameVpls()
+      vpls_(!parameters.takesVpls()         ? FrameVpls()
             : parameters.vplsFile().empty() ? FrameVpls(inputs)
                                             : FrameVpls(parameters.vplsFile(), inputs)),
       irradiance_(inputs.gbuffer().width, inputs.gbuffer().height, 3),
