@@ -256,7 +256,9 @@ TEST_CASE("a light's direction keeps its bits, and its meaning at the ends of fl
     const auto directionOf = [](const std::string& text) {
         const TempFolder folder;
         const std::string path = folder.write(
-            "sun.json", minimal(R"(, "lights": [{"name": "l", "kind": "sun", "irradiance": 1, "direction": )" + text + "}]"));
+            "sun.json",
+            minimal(R"(, "lights": [{"name": "l", "kind": "sun", "irradiance": 1, "direction": )" +
+                    text + "}]"));
         return loadScene(path).lights.at(0).direction;
     };
     // Kept truths are named by the scene's bits: the sun of `basic`, as single precision has it.
