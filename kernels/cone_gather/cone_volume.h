@@ -237,9 +237,12 @@ LW_FN void sample_sides(cone_sample* sample, __global const uint* words, const c
     const real taken = fmax((sum.a - ones) * LW_CONE_OPACITY_STEP, (real)0.0f);
     const real share = 1.0f / fmax(taken + (1.0f - fmin(closed * LW_CONE_OPACITY_STEP, (real)1.0f)), (real)1e-6f);
     sample->a = fmin(taken * share, (real)1.0f);
-    sample->r *= share;
-    sample->g *= share;
-    sample->b *= share;
+    // A word's opacity is in whole steps, so that 0 may stand for less than one and have light. That must not grow with the share that a
+    // closed side has which the ray hardly meets: voxels would light themselves at several times what they send (with all bounces, without end).
+    const real bright = lesser(share, greater(taken * share * 255.0f, (real)1.0f));
+    sample->r *= bright;
+    sample->g *= bright;
+    sample->b *= bright;
     keep_spread(sample, variance, most);
 }
 

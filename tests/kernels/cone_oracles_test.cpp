@@ -124,6 +124,30 @@ TEST_CASE("many cones keep a room's light between walls one voxel thick", "[cone
     CHECK(kept < 1.0001);
 }
 
+TEST_CASE("cones along closed sides of voxels bring no more light than those send", "[cone_gather]") {
+    // Floors that close their voxels' upper and lower sides, with next to nothing that faces along them: its opacity is no whole
+    // step of a word's, its light is something. Level rays meet the floors at any small angle.
+    KernelRig rig(16);
+    constexpr double kLight = 0.8, kSliver = 7e-4;
+    HostVoxels floors{32, 1, true, {}};
+    for (int level = 0; level < voxel_levels(floors.size); ++level) {
+        const auto voxels = std::size_t(std::pow(floors.sideOf(level), 3));
+        floors.levels.emplace_back();
+        for (int plane = 0; plane < floors.planesOf(level); ++plane) {
+            const double a = plane / 2 == 1 ? 1.0 : kSliver;
+            floors.levels.back().emplace_back(voxels, Rgba{a * kLight, a * kLight, a * kLight, a});
+        }
+    }
+    ConeGatherOptions options = optionsOf(32, 1, 9u);
+    options.sides = true;
+    ConeGather pass(rig.device(), options);
+    const double tilt = GENERATE(0.0, 1e-3, 0.03);
+    const ConeLight seen = traceCones(rig, pass, deviceVoxels(rig, {floors}), onePoint({16, 16, 16}, {std::sqrt(1 - tilt * tilt), tilt, 0}));
+    CAPTURE(tilt);
+    CHECK(double(seen.irradiance[0]) < 1.001 * kPi * kLight);
+    CHECK(double(seen.irradiance[0]) > 0.5 * kPi * kLight);
+}
+
 TEST_CASE("grids nested in each other and filled alike give what one grid gives",
           "[cone_gather][large]") {
     KernelRig rig(16);  // cone_gather_test has nested grids at both

@@ -103,10 +103,13 @@ struct ConeTwin {
             highest += std::abs(way[a]) * side[a].mostVariance();
         }
         sum.closed = std::clamp(variance / std::max(highest, 1e-6), 0.0, 1.0);
+        const double grown = 1 / std::max(1 - closed + taken, 1e-6);
+        // Light that stands beside an opacity of less than a step of 8 bits is not made more than what that step would send.
+        const double bright = std::min(grown, std::max(1.0, 255 * taken * grown));
         for (int a = 0; a < 3; ++a) {
-            const double part = std::abs(way[a]) / std::max(1 - closed + taken, 1e-6);
-            for (int c = 0; c < 3; ++c) sum.colour[c] += part * side[a].colour[c];
-            sum.opacity += part * side[a].opacity;
+            const double part = std::abs(way[a]);
+            for (int c = 0; c < 3; ++c) sum.colour[c] += part * bright * side[a].colour[c];
+            sum.opacity += part * grown * side[a].opacity;
         }
         for (double& c : sum.colour) c = std::max(c, 0.0);
         return sum;
