@@ -171,6 +171,8 @@ LW_FN void march(cone_light* l, const cone_volume* volumes, const cone_origin* f
         l->before = now;
     }
 #endif
+    // What is closed takes all but a rounding, on either side.
+    l->through = greater(l->through, (real)0.0f);
 }
 
 #endif

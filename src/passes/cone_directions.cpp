@@ -179,14 +179,17 @@ std::vector<LwConeStep> coneSteps(double halfAngle, double cosine, const ConeSch
         }
     }
     int level = levelOf(begin);
-    for (double from = std::max(0.0, begin - 0.5 * std::ldexp(schedule.step, level)), end;
-         from < schedule.reach; from = end, ++level) {
+    for (double from = std::max(0.0, begin - 0.5 * std::ldexp(schedule.step, level)), end;;
+         from = end, ++level) {
         end = std::ldexp(2.0 * cells, level);
         const double parts = std::max(1.0, std::round(std::ldexp((end - from) / schedule.step, -level)));
-        for (double i = 0.5; i < parts; ++i)
-            add(from + (end - from) * i / parts, level, (end - from) / parts, 1.0);
+        for (double i = 0.5; i < parts; ++i) {
+            const double d = from + (end - from) * i / parts;
+            // One at least: kernels take from it where the cone begins.
+            if (d > schedule.reach && !steps.empty()) return steps;
+            add(d, level, (end - from) / parts, 1.0);
+        }
     }
-    return steps;
 }
 
 void ConeTable::add(const ConeDirection& direction, double cosine, const ConeSchedule& schedule) {

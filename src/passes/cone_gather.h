@@ -19,7 +19,7 @@ struct ConeGatherOptions {
     std::uint32_t cones = 9;
     bool interleaved = false;
     double nudge = 1.0;     // voxels along the normal
-    double step = 1.0;      // diameters
+    double step = 1.0;      // cells
     double distance = 1.0;  // sides of the largest grid
     bool opacityCorrection = true, apertureOffset = false;
     bool near = false;               // light is dimmed by what stands nearer than where cones begin

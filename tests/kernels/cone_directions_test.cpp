@@ -164,6 +164,23 @@ TEST_CASE("samples lie behind each other in cells of half the cone's width, what
     }
 }
 
+TEST_CASE("cones have one sample however short they are, and none beyond their reach",
+          "[cone_directions]") {
+    ConeSchedule schedule;
+    schedule.levels = 8;
+    schedule.nudge = GENERATE(0.0, 1.0, 8.0);
+    schedule.reach = GENERATE(0.032, 1.0, 5.0, 55.0);
+    const double halfAngle = GENERATE(0.0005, 0.1, 0.5235987755982988);
+    const double cosine = GENERATE(0.05, 0.5, 1.0);
+    const auto steps = coneSteps(halfAngle, cosine, schedule);
+    REQUIRE(!steps.empty());
+    for (std::size_t i = 1; i < steps.size(); ++i)
+        CHECK(double(steps[i].distance) <= schedule.reach * (1 + 1e-6));
+    // As far as it reaches: the next one lies at most 1.5 cells of this level and of twice that off.
+    const double last = double(steps.back().distance), cell = std::ldexp(1.0, int(steps.back().level));
+    CHECK(last + 3.0 * cell > schedule.reach);
+}
+
 TEST_CASE("offset by aperture keeps a cone's first sphere off the surface", "[cone_directions]") {
     ConeSchedule schedule;
     schedule.reach = 100.0;
