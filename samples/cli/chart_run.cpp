@@ -206,7 +206,7 @@ std::string Charter::timeKey(const ChartView& view, const ChartedPoint& point) c
                     options_.width, options_.height, describeRun()["frames"].dump());
     if (point.sweep.parameters.needsDevice())
         text += fmt::format(" {} {} {}", info_.name, info_.driver, info_.width);
-    return shortHash(text);
+    return shortHash(filesKey(point.sweep.parameters) + text);
 }
 
 // What the errors depend on besides.

@@ -4,7 +4,10 @@
 
 #include <cstdlib>
 #include <ctime>
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
+#include <stdexcept>
 
 #include "build_identity.h"
 #include "film.h"
@@ -27,6 +30,16 @@ std::string utcNow() {
 
 std::string shortHash(const std::string& text) {
     return fmt::format("{:016x}", studio::hashBytes(text.data(), text.size(), 5));
+}
+
+std::string filesKey(const Parameters& parameters) {
+    const std::string name = parameters.vplsFile();
+    if (name.empty()) return {};
+    std::ifstream in(name, std::ios::binary);
+    std::ostringstream text;
+    text << in.rdbuf();
+    if (!in) throw std::runtime_error(fmt::format("{}: can't be read", name));
+    return shortHash(text.str()) + " ";
 }
 
 Json parametersJson(const Parameters& parameters) {

@@ -186,7 +186,7 @@ std::string Splitter::pointKey(const ChartView& view, const ChartedPoint& point)
                                    info_.name, info_.driver, info_.width);
     for (const auto& [bounces, judged] : view.truths())
         text += fmt::format(" {} {}", judged.truth.name, judged.truth.samples);
-    return shortHash(text);
+    return shortHash(filesKey(point.sweep.parameters) + text);
 }
 
 void Splitter::splitView(ChartView& view) {

@@ -160,7 +160,7 @@ std::string Stability::keyOf(const FailureSequence& sequence, const Runner& runn
     // The code is in the build's identity; files of shipped scenes are not.
     const SequenceFrame& middle = sequence.frames[sequence.frames.size() / 2];
     text += fmt::format(" {:016x}", studio::hashScene(studio::RayScene(middle.scene, middle.time)));
-    return shortHash(text);
+    return shortHash(filesKey(runner.parameters) + text);
 }
 
 std::vector<Runner*> Stability::dueIn(const FailureSequence& sequence) {

@@ -153,13 +153,22 @@ class PlaceVpls(CommandLine):
         # And so in the catalogue's sequences of other units.
         self.place("cornell", "c.json", *QUICK)
         out = self.path("stability")
-        self.done("stability", "--out", out, "--no-report", "--techniques", "static_vpl,vpls_file=" + self.path("c.json"), "--sequences", "camera_dolly", "scale_small",
-                  "scale_large", "--frames", "2", "--size", "48x27", "--truth-effort", "0.5", "--truth-cache", self.path("truths"))
-        with open(os.path.join(out, "stability.json"), encoding="utf-8") as file:
-            errors = {r["sequence"]: r["errors"] for r in json.load(file)["results"]}
+        def measured(*sequences):
+            self.done("stability", "--out", out, "--no-report", "--techniques", "static_vpl,vpls_file=" + self.path("c.json"), "--sequences", *sequences,
+                      "--frames", "2", "--size", "48x27", "--truth-effort", "0.5", "--truth-cache", self.path("truths"))
+            with open(os.path.join(out, "stability.json"), encoding="utf-8") as file:
+                return {r["sequence"]: r["errors"] for r in json.load(file)["results"]}
+        errors = measured("camera_dolly", "scale_small", "scale_large")
         for name in ("scale_small", "scale_large"):
             for key, value in errors["camera_dolly"].items():
                 self.assertAlmostEqual(errors[name][key], value, delta=1e-3 * abs(value), msg=name + " " + key)
+        # What is kept is of these VPLs, not of any in a file of that name.
+        with open(self.path("c.json"), encoding="utf-8") as file:
+            others = json.load(file)
+        others["area_per_weight"] *= 4
+        with open(self.path("c.json"), "w", encoding="utf-8") as file:
+            json.dump(others, file)
+        self.assertNotEqual(measured("camera_dolly")["camera_dolly"], errors["camera_dolly"])
 
     def test_the_schema_and_the_reader_agree(self):
         """What the reader refuses the schema refuses, and the other way round."""
