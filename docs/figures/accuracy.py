@@ -14,7 +14,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "samples" / "chart"))
-from results import Results, counted, errors, front, is_drawn, means_over_views, value  # noqa: E402
+from results import Results, counted, errors, front, geometric_mean, is_drawn, means_over_views, value  # noqa: E402
 
 BEGIN, END = "<!-- begin: written by docs/figures/accuracy.py -->", "<!-- end -->"
 SCENES = ["cornell", "basic", "rooms", "sibenik", "sponza_dabrovic", "sponza_crytek", "living_room", "wooden_staircase"]
@@ -42,7 +42,7 @@ def main():
 def measured(results):
     lines = conditions(results)
     lines += ["", "![Error against time, geometric means over the views](images/chart_summary.svg)", ""]
-    lines += means_text(results) + [""] + rivalry(results) + front_table(results) + [""]
+    lines += means_text(results) + [""] + rows_table(results) + [""] + rivalry(results) + front_table(results) + [""]
     for technique in results.techniques:
         lines += technique_text(results, technique)
     return lines + not_drawn_text(results)
@@ -102,6 +102,46 @@ def means_text(results):
     return text
 
 
+MOST_ROWS = 16  # of one technique; of those with more settings the defaults and what MARKED picks
+MARKED = "visibility=voxel"
+
+
+def rows_table(results):
+    """Settings beside each other, view by view: what a geometric mean hides. In bold the least of a view among as many bounces."""
+    groups = {}
+    for point in results.points:
+        groups.setdefault((point["technique"], point["settings"]), []).append(point)
+    counts = {t: sum(1 for technique, _ in groups if technique == t) for t in results.techniques}
+    rows = [(key, group) for key, group in groups.items() if counts[key[0]] <= MOST_ROWS or MARKED in key[1] or
+            "default" in group[0]["label"].split(", ")]
+    rows.sort(key=lambda row: results.techniques.index(row[0][0]))
+    place = lambda p: (p["scene"], p["camera"])  # noqa: E731
+    least = {}
+    for _, group in rows:
+        for p in (p for p in group if is_drawn(p)):
+            key = (place(p), p["bounces"])
+            least[key] = min(least.get(key, value(p)), value(p))
+    lines = ["relMSE of each view against as many bounces as a setting models (\\* two, \\*\\* all), ms the geometric mean; in bold the least of a view "
+             "among these of as many bounces, in brackets what the truth's noise may have made:", "",
+             "| technique | settings | ms | " + " | ".join(f"{v['scene']}, {v['camera'].replace('suggested_', '')}" for v in results.views) + " |",
+             "| --- | --- | ---: | " + " | ".join("---:" for _ in results.views) + " |"]
+    for (technique, settings), group in rows:
+        known, cells = {place(p): p for p in group}, []
+        for view in results.views:
+            p = known.get((view["scene"], view["camera"]))
+            text = "" if p is None or not errors(p) else f"{errors(p)['relMSE']:.2g}"
+            if text and not is_drawn(p):
+                text = f"({text})"
+            elif text and value(p) == least[place(p), p["bounces"]]:
+                text = f"**{text}**"
+            cells.append(text)
+        bounces = {1: "", 2: " \\*"}.get(group[0]["bounces"], " \\*\\*")
+        timed = [ms(results, p) for p in group if p["ms"] is not None]
+        mean = f"{geometric_mean(timed):.1f}" if timed else ""
+        lines.append(f"| {technique}{bounces} | `{settings}` | {mean} | " + " | ".join(cells) + " |")
+    return lines
+
+
 def default_of(points):
     return next((p for p in points if "default" in p["label"].split(", ") and is_drawn(p)), None)
 
@@ -140,6 +180,9 @@ def rivalry_row(results, view, technique):
     return (view, ours, min(within, key=value, default=None), min((p for p in as_good if is_drawn(p)), key=lambda p: ms(results, p), default=None))
 
 
+OF_VPLS = {"rsm", "ssvp", "static_vpl", "instant_radiosity"}
+
+
 def rivalry_sentence(results, technique, rows):
     ahead = [view for view, ours, quick, _ in rows if quick is None or value(quick) > value(ours)]
     ratios = [(ms(results, accurate) / ms(results, ours), view["scene"]) for view, ours, _, accurate in rows if accurate]
@@ -150,7 +193,7 @@ def rivalry_sentence(results, technique, rows):
         text += (f" For the same error the rival takes {least[0]:.2g} ({least[1]}) to {most[0]:.2g} times ({most[1]}) its time." if len(ratios) > 1
                  else f" For the same error the rival takes {least[0]:.2g} times its time ({least[1]}).")
     behind = [(view, ours, quick) for view, ours, quick, _ in rows if quick is not None and value(quick) <= value(ours)]
-    if behind:
+    if behind and technique in OF_VPLS:
         bright = sum(errors(ours)["bias"] > 0.1 for _, ours, _ in behind)
         text += (f" Where it is behind, its mean is more than a tenth too bright in {bright} of {len(behind)} views: light that "
                  "comes through walls, which no number of VPLs mends.")

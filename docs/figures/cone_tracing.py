@@ -3,16 +3,19 @@
 
     docs/figures/cone_tracing.py [--lightwell build/release/bin/lightwell] [--work build/figures] [--size 1280x720]
                                  [--scenes cornell sponza_crytek rooms living_room] [--spp 64]
-                                 [--part times errors cascades limit format pictures page]
+                                 [--part times errors cascades limit format pictures page] [--seconds 60]
 
 All parts unless --part names some: `times` (of the first two scenes, at --size) wants nothing else running; the others render and judge at
 480x270, on however busy a machine; `format` also runs build/release/tests/voxel_light_test; `page` writes what all have found, in this call or
-before. That stays in --work (cones_*.json, a file for each part): remove a file to measure anew. Truths stay there, too, and are traced again only
+before. That stays in --work (cones_*.json, a file for each part): remove a file to measure anew. After --seconds no new row is begun, and the call
+ends with status 1 and how many are left: call again for those. Truths stay there, too, and are traced again only
 when missing. Scenes other than the shipped ones are looked for in LIGHTWELL_SCENES. Needs numpy and Pillow.
 """
 import json
 import os
 import pathlib
+import sys
+import time
 
 import cone_tracing_errors
 import cone_tracing_page
@@ -36,6 +39,7 @@ class Bench:
 
     def __init__(self, options):
         self.options, self.call = options, caller(options.lightwell)
+        self.end = time.monotonic() + float(options.seconds) if options.seconds else float("inf")
 
     def render(self, scene, settings, size, out=None, warmup=3, frames=1, extra=()):
         sets = [part for setting in settings for part in ("--set", setting)]
@@ -56,12 +60,18 @@ class Bench:
         for name, function in rows.items():
             if name in found:
                 continue
+            if time.monotonic() > self.end:
+                sys.exit(f"{part}: {sum(name not in found for name in rows)} rows left")
             found[name] = function()
-            self.path(part).write_text(json.dumps(found, indent=1), encoding="utf-8")
+            # Whole or not at all: the call may be ended.
+            path = self.path(part)
+            whole = path.with_suffix(".new")
+            whole.write_text(json.dumps(found, indent=1), encoding="utf-8")
+            whole.replace(path)
 
 
 def main():
-    options = read_options(__doc__, [*TIMED, "rooms", "living_room"], 64, parts=[*MEASURED, "page"])
+    options = read_options(__doc__, [*TIMED, "rooms", "living_room"], 64, parts=[*MEASURED, "page"], more=["seconds"])
     bench = Bench(options)
     if "times" in options.part:
         bench.measure("times", times(bench))
@@ -82,7 +92,7 @@ def times(bench):
         rows[f"samples {scene}"] = lambda scene=scene: cone_tracing_samples.words_per_pixel(bench, scene)
         for mode, resolutions in TRACED.items():
             for resolution in resolutions:
-                add(scene, "rest", "size=128", f"mode={mode}", f"resolution={resolution}")
+                add(scene, "rest", "size=128", f"mode={mode}", f"resolution={resolution}", "cones=9")
         for size in SIZES:
             for kind in ("first", "rest", "light", "object"):
                 add(scene, kind, f"size={size}")

@@ -6,8 +6,8 @@ import subprocess
 import sys
 
 import exr_planes
-from lpv_thesis_pictures import composite, encode, exposure_of, signed
 from program import ROOT
+from thesis_pictures import composite, encode, exposure_of, signed
 
 SIZE = "480x270"
 # Scenes whose paths cost little: so many times the paths, for errors that are smaller there.

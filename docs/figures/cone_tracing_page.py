@@ -69,13 +69,13 @@ def traces(bench, rows):
         for resolution in SHARE:
             line = [scene, f"`{resolution}`"]
             for mode in modes:
-                row = rows.get(f"{scene} rest size=128 mode={mode} resolution={resolution}")
+                row = rows.get(f"{scene} rest size=128 mode={mode} resolution={resolution} cones=9")
                 line.append(f"{ms(spent(row, 'trace'))} + {ms(spent(row, 'from pixel to pixel'))} ({ms(floor_of(bench, rows, scene, 128, mode, resolution))})" if row else "")
             cells.append(line)
     lines += table(["scene", "resolution", *(f"`{mode}`" for mode in modes)], cells, 2)
     for resolution, aim in AIMS.items():
         for mode in ("isotropic", "anisotropic"):
-            each = [rows[f"{scene} rest size=128 mode={mode} resolution={resolution}"] for scene in scenes]
+            each = [rows[f"{scene} rest size=128 mode={mode} resolution={resolution} cones=9"] for scene in scenes]
             sums = [spent(row, "trace") + spent(row, "from pixel to pixel") for row in each]
             verdict = ", ".join(f"{scene} {total:.1f} ({'met' if total < aim else 'missed'})" for scene, total in zip(scenes, sums))
             lines.append(f"- Aim of `{resolution}`, `{mode}`: below {aim} ms with the filter. {verdict}.")

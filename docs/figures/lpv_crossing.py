@@ -1,11 +1,14 @@
 #!/usr/bin/env python3
-"""Writes the measured part of docs/techniques/lpv_crossing.md, and its plot: how lpv's picture changes as its grids move on by cells.
+"""Writes the measured parts of docs/techniques/lpv_crossing.md, and its plot: how lpv's picture changes as its grids move on by cells, and
+what that costs.
 
     docs/figures/lpv_crossing.py [--lightwell build/release/bin/lightwell] [--work build/figures] [--size 320x180] [--spp 64]
+                                 [--part flicker cost] [--before PROGRAM]
 
 Crytek's Sponza is looked for in LIGHTWELL_SCENES. Camera, sun and shadow map rest and so does the truth: only what the grids lie around moves, so
 that all that changes is theirs. Unsnapped is what the library does not do; it is measured by moving everything else through grids at rest.
-Pictures lie in --work and are kept: remove lpv_crossing_* to measure anew. Needs numpy, scipy and matplotlib.
+Part `cost` wants nothing else running; --before names the program of another build, which then takes turns with the one measured.
+Pictures and times lie in --work and are kept: remove lpv_crossing_* to measure anew. Needs numpy, scipy and matplotlib.
 """
 import json
 
@@ -13,9 +16,12 @@ import numpy
 from scipy.ndimage import median_filter
 
 import exr_planes
+import lpv_crossing_cost
 from program import ROOT, caller, read_options, write_between
 
+PAGE = ROOT / "docs/techniques/lpv_crossing.md"
 BEGIN, END = "<!-- begin: figures -->", "<!-- end: figures -->"
+COST_BEGIN, COST_END = "<!-- begin: cost -->", "<!-- end: cost -->"
 FRAMES = 13
 FOCUS = [-2.1, 3.2, 0.1]           # m: ahead of the camera
 STEP = [0.156, 0.017, 0.027]       # m a frame, askew: a quarter of the cell of 32 to 20 m, an eighth of that of 16
@@ -29,19 +35,16 @@ NAMES = ("R", "G", "B", "validity")
 
 
 class Crossing:
-    def __init__(self, options):
-        self.options, self.call = options, caller(options.lightwell)
-        self.mesh = next(s["path"] for s in json.loads(self.call("scenes", "--json")) if s["name"] == "sponza_crytek")
+    def __init__(self, options, mesh):
+        self.options, self.call, self.mesh = options, caller(options.lightwell), mesh
         truth = options.work / "lpv_crossing_truth.exr"
         if not truth.exists():
             self.call("reference", self.scene([0, 0, 0], "rest"), "--bounces", 1, "--spp", options.spp, "--size", options.size, "--compact", "--out", truth)
         self.mean = exr_planes.read_planes(truth).mean()
 
     def scene(self, by, name):
-        path = self.options.work / f"lpv_crossing_{name}.json"
         camera = {**CAMERA, **{key: [a + b for a, b in zip(CAMERA[key], by)] for key in ("position", "target")}}
-        path.write_text(json.dumps({"meshes": [{"file": self.mesh, "translate": by}], "cameras": [camera], "lights": [SUN]}))
-        return path
+        return scene_file(self.options, self.mesh, by, camera, name)
 
     def picture(self, frame, snapped, transport, size, cascades):
         way = [frame * s for s in STEP]
@@ -69,6 +72,12 @@ class Crossing:
                 "steps": steps[:, lit].mean(axis=1), "share": lit.mean()}
 
 
+def scene_file(options, mesh, by, camera, name):
+    path = options.work / f"lpv_crossing_{name}.json"
+    path.write_text(json.dumps({"meshes": [{"file": mesh, "translate": by}], "cameras": [camera], "lights": [SUN]}))
+    return path
+
+
 def tiles(values, counted):
     """Means over the tiles of each frame; tiles of which less than half counts are 0."""
     rows, columns = (numpy.array_split(numpy.arange(n), t) for n, t in zip(counted.shape, TILES))
@@ -82,7 +91,16 @@ def tiles(values, counted):
 
 
 def main():
-    crossing = Crossing(read_options(__doc__, [], 64, "320x180"))
+    options = read_options(__doc__, [], 64, "320x180", ["flicker", "cost"], more=["before"])
+    mesh = next(s["path"] for s in json.loads(caller(options.lightwell)("scenes", "--json")) if s["name"] == "sponza_crytek")
+    if "flicker" in options.part:
+        flicker(Crossing(options, mesh))
+    if "cost" in options.part:
+        found = lpv_crossing_cost.measure(options, lambda camera, name: scene_file(options, mesh, [0, 0, 0], camera, name))
+        write_between(PAGE, COST_BEGIN, COST_END, lpv_crossing_cost.tables(found))
+
+
+def flicker(crossing):
     found = {(t, s, c, snapped): crossing.figures(snapped, t, s, c) for t in TRANSPORTS for s in SIZES for c in EXTENTS for snapped in (True, False)}
     plot(found, ROOT / "docs/images/lpv_crossing.svg")
     lines = ["| transport | cells | cascades | finest cell, m | cells crossed | flicker: snapped | not | worst step of a tile: snapped | not | "
@@ -97,7 +115,7 @@ def main():
                              " | ".join(f"{x[key]:.2g}" for key in ("flicker", "step", "spike") for x in (a, b)) + " |")
     lines += ["", f"{FRAMES} frames of {crossing.options.size}; over pixels that all places of the grids hold "
               f"({100 * min(f['share'] for f in found.values()):.0f} % of the picture at least).", "", "![Frame by frame](../images/lpv_crossing.svg)"]
-    write_between(ROOT / "docs/techniques/lpv_crossing.md", BEGIN, END, lines)
+    write_between(PAGE, BEGIN, END, lines)
 
 
 def plot(found, path):

@@ -7,8 +7,9 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
-def read_options(description, scenes, spp, size="1280x720", parts=()):
-    """The options of a script, with `work` as a folder that exists. `parts`: what --part may name; all of them unless it does."""
+def read_options(description, scenes, spp, size="1280x720", parts=(), default=None, more=()):
+    """The options of a script, with `work` as a folder that exists. `parts`: what --part may name; all of them, or `default`, unless it does. `more`:
+    options of its own."""
     parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--lightwell", default=str(ROOT / "build/release/bin/lightwell"))
     parser.add_argument("--work", type=pathlib.Path, default=ROOT / "build/figures")
@@ -16,7 +17,9 @@ def read_options(description, scenes, spp, size="1280x720", parts=()):
     parser.add_argument("--scenes", nargs="+", default=scenes)
     parser.add_argument("--spp", type=int, default=spp)
     if parts:
-        parser.add_argument("--part", nargs="+", choices=parts, default=list(parts))
+        parser.add_argument("--part", nargs="+", choices=parts, default=list(default or parts))
+    for name in more:
+        parser.add_argument("--" + name)
     options = parser.parse_args()
     options.work.mkdir(parents=True, exist_ok=True)
     return options

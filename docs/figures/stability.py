@@ -10,6 +10,7 @@ yet.
 """
 import argparse
 import json
+import math
 import pathlib
 import shutil
 import subprocess
@@ -54,7 +55,7 @@ def of_scenes(data):
     movements = list(dict.fromkeys(s["id"].split(".")[1] for s in data["sequences"]))
     order = [f"{scene}.{movement}" for scene in SCENES for movement in movements]
     data["sequences"] = sorted((s for s in data["sequences"] if s["id"] in order), key=lambda s: order.index(s["id"]))
-    lines = ["### Real scenes", "", *conditions(data), "", *table(data), ""]
+    lines = ["### Real scenes", "", *conditions(data), "", *summary(data), "", *table(data), ""]
     for technique in techniques(data):
         lines += technique_text(data, technique) + [""]
     return lines + samples_text(data)
@@ -66,7 +67,7 @@ def samples_text(data):
 
 
 def measured(data, folder):
-    lines = conditions(data) + [""] + table(data) + [""]
+    lines = conditions(data) + [""] + summary(data) + [""] + table(data) + [""]
     for technique in techniques(data):
         lines += technique_text(data, technique) + [""]
     return lines + leak_text(data) + pictures(data, folder)
@@ -87,7 +88,7 @@ def conditions(data):
     where = f"{device['name']} ({device['platform']}, {device['driver']}, width {device['width']})" if device else "the host's cores"
     return [f"Measured {header['written'][:10]} at {header['size'][0]}x{header['size'][1]}, {header['frames']} frames each, on {where}, "
             f"{header['versions']['threads']} threads; load average {min(loads):.1f} to {max(loads):.1f}, which none of these figures depends on. "
-            "Each technique with its defaults: " + ", ".join(f"`{t}`" for t in techniques(data)) + "."]
+            "Each technique with its defaults, or what stands behind its name: " + ", ".join(f"`{t}`" for t in techniques(data)) + "."]
 
 
 def cell(result, index):
@@ -109,6 +110,24 @@ def short(value):
     if value == 0.0:
         return "0"
     return f"{value:.2g}" if abs(value) < 1.0 else f"{value:.1f}"
+
+
+def summary(data):
+    """Of how many sequences each index would be noticed in, and the mean error: one line a technique."""
+    lines = ["In how many sequences an index would be noticed, of those whose figure stands out of the noise; relMSE and absolute bias as "
+             "geometric and arithmetic means over the sequences that every technique has, with light in them:", "",
+             "| technique | " + " | ".join(INDICES) + " | relMSE | bias |", "| --- | " + " | ".join("---:" for _ in INDICES) + " | ---: | ---: |"]
+    lit = [s["id"] for s in data["sequences"] if all(find(data, t, s["id"]) and not find(data, t, s["id"])["is_dark_truth"] for t in techniques(data))]
+    for technique in techniques(data):
+        cells = []
+        for index in INDICES:
+            some = trusted(data, technique, index)
+            cells.append(f"{sum(v >= NOTICED[index] for v, _ in some)} of {len(some)}" if some else "")
+        errors = [find(data, technique, s)["errors"] for s in lit]
+        relmse = math.exp(sum(math.log(e["relMSE"]) for e in errors) / len(errors))
+        bias = sum(abs(e["bias"]) for e in errors) / len(errors)
+        lines.append(f"| {technique} | " + " | ".join(cells) + f" | {relmse:.2g} | {100 * bias:.0f} % |")
+    return lines
 
 
 def table(data):

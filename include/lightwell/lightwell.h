@@ -721,7 +721,7 @@ typedef struct LWConeTracingDesc {
     uint32_t bounces;        /**< 1; or 0: all of them, each frame adding to the voxels what the last one's send on */
     uint32_t sparse;         /**< 1: only bricks of voxels that hold something are stored and filtered; 0: all */
     float nudge;             /**< where cones begin, in voxels along the normal; 0 .. 8 */
-    float step;              /**< of a cone, in its diameters; 0.125 .. 1. Less: time, fewer bands */
+    float step;              /**< of a cone, in the cells that it reads; 0.125 .. 1. Less: time, fewer bands */
     float distance;          /**< that cones reach, in sides of the largest grid; above 0 .. 2 */
     uint32_t opacityCorrection;  /**< 1: opacity follows the length of steps; 0: each step takes its voxel's as it is */
     uint32_t directionalOpacity; /**< 1: the finest voxels too have an opacity for each axis, of what they show that way */
@@ -769,6 +769,16 @@ typedef struct LWStaticVplDesc {
     uint32_t interleave;      /**< as LWRsmDesc's */
     uint32_t filter;          /**< as LWRsmDesc's */
     LWResolution resolution;  /**< as LWRsmDesc's */
+    LWVisibility visibility;  /**< what stands between VPLs and what they light: nothing (the default), or LWFrame::geometry in paraboloid
+                                   maps or voxels, as LWSsvpDesc's. A frame without geometry is then an error of lwUpdate */
+    uint32_t clusters;        /**< VPLs of a frame up to this many see for themselves; more are put into so many clusters, and a
+                                   cluster's share what its middle one sees. 1 .. 64; 0: every VPL sees for itself */
+    uint32_t mapSize;         /**< as LWSsvpDesc's */
+    LWOccluders occluders;    /**< AUTO, TRIANGLES or SURFELS, as LWSsvpDesc's */
+    float lift;               /**< how far off its surface a VPL looks from, as a share of the radius of the disc that it stands for: one
+                                   that lies a little inside is not in the dark for it. 0 .. 1 */
+    uint32_t shadowedBounces; /**< 1: light of the VPLs opposite goes through walls, as these lie where nothing may be; 2: it does not */
+    uint32_t voxels;          /**< as LWRsmDesc's */
 } LWStaticVplDesc;
 
 LW_API void lwDefaultStaticVpl(LWStaticVplDesc* desc);

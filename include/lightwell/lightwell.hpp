@@ -112,6 +112,16 @@ public:
         check(lwEstimateMemory(get(), technique, desc, &view, rsmTexels, &bytes), get());
         return bytes;
     }
+    // The same for this frame's maps, VPLs and geometry.
+    std::uint64_t estimateMemory(const char* technique, const void* desc, std::uint32_t maxWidth,
+                                 std::uint32_t maxHeight, const LWFrame& frame) const {
+        auto view = make<LWViewDesc>();
+        view.maxWidth = maxWidth;
+        view.maxHeight = maxHeight;
+        std::uint64_t bytes = 0;
+        check(lwEstimateFrameMemory(get(), technique, desc, &view, &frame, &bytes), get());
+        return bytes;
+    }
 
 private:
     Handle<LWDevice, lwRetainDevice, lwReleaseDevice> handle_;
@@ -175,6 +185,14 @@ public:
     }
     void renderPoints(const LWImage& positions, const LWImage* normals, std::uint32_t count, const LWPointOutput& output) {
         check(lwRenderPoints(get(), &positions, normals, count, &output), device_.get());
+    }
+    // The light of the last update as lights, of techniques that have it so; no more than the technique's `lights`.
+    std::vector<LWListedLight> readLightList() const {
+        std::vector<LWListedLight> lights(64);  // the most that a technique can be asked for
+        std::uint32_t count = 0;
+        check(lwReadLightList(get(), lights.data(), static_cast<std::uint32_t>(lights.size()), &count), device_.get());
+        lights.resize(count);
+        return lights;
     }
     // The arrays it points to live until the next call.
     LWStats stats() const {

@@ -28,13 +28,16 @@ typedef struct {
     int unit;
 } cone_volume;
 
-typedef struct { real r, g, b, a; } cone_sample;  // premultiplied
+// Premultiplied; and how much of a is in closed voxels, 1, or spread over all, 0: the variance of opacity among the voxels that were
+// interpolated over what it would be if each were open or closed.
+typedef struct { real r, g, b, a, closed; } cone_sample;
 
-// The lower of the eight voxels around a place as a word of its plane, and the upper ones' shares.
+// The lower of the eight voxels around a place as a word of its plane, and the upper ones' shares. `side`: voxels a side of the level.
 typedef struct {
     lanei at;
     real x, y, z;
     mask has;
+    int side;
 } cone_corner;
 
 // at[l] and the word behind it: two voxels along x.
@@ -81,13 +84,21 @@ LW_FN lanei brick_at(lanei slot) { return (((slot << 4) + (slot << 3)) - slot) <
 
 // x, y, z: in voxels of the finest level. table: of the level. 0: no live lane has anything there.
 LW_FN int find_corner(cone_corner* c, __global const int* table, int size, int level, real x, real y, real z, mask live) {
-    const float scale = as_float((127 - level) << 23), most = (float)((size >> level) - 1);
+    const int side = size >> level;
+    c->side = side;
+    if (side == 1) {  // all of the weights but the lower corner's are 0
+        const int only = table[0];
+        c->has = live;
+        c->at = (lanei)(only * LW_VOXEL_STRIDE);
+        c->x = c->y = c->z = (real)0.0f;
+        return only >= 0;
+    }
+    const float scale = as_float((127 - level) << 23), most = (float)(side - 1);
     const real qx = from_centre(x, scale, most), qy = from_centre(y, scale, most), qz = from_centre(z, scale, most);
     const lanei ix = to_lanei(qx), iy = to_lanei(qy), iz = to_lanei(qz);
     c->x = qx - to_real(ix);
     c->y = qy - to_real(iy);
     c->z = qz - to_real(iz);
-    const int side = size >> level;
     if (side <= LW_VOXEL_BRICK) {
         const int slot = table[0];
         c->has = live;
@@ -113,14 +124,16 @@ LW_FN int find_corner(cone_corner* c, __global const int* table, int size, int l
 #define LW_CONE_GREEN_STEP 64.0f
 #define LW_CONE_BLUE_STEP 8192.0f
 
-typedef struct { real r, g, b, a, ones; } cone_words;
+typedef struct { real r, g, b, a, ones, squares; } cone_words;  // squares: of the opacity's fractions with their ones
 LW_FN real fraction(laneu word, uint field, laneu one) { return as_real_((word & field) | one); }
 LW_FN laneu exponent_of(laneu low) { return (low & LW_VOXEL_EXPONENT_MASK) | (laneu)LW_CONE_LEAST_EXPONENT; }
 
 // One word's share of a sum, with the ones.
 LW_FN void add_word(cone_words* sum, laneu word, real weight) {
     const laneu low = word >> LW_VOXEL_EXPONENT_SHIFT;
-    sum->a = fma_(fraction(low, LW_VOXEL_OPACITY_MASK >> LW_VOXEL_EXPONENT_SHIFT, (laneu)LW_CONE_ONE), weight, sum->a);
+    const real opacity = fraction(low, LW_VOXEL_OPACITY_MASK >> LW_VOXEL_EXPONENT_SHIFT, (laneu)LW_CONE_ONE), share = opacity * weight;
+    sum->a += share;
+    sum->squares = fma_(opacity, share, sum->squares);
 #if LW_CONE_LIGHT
     const laneu one = exponent_of(low), high = word << 10;
     sum->ones = fma_(as_real_(one), weight, sum->ones);
@@ -130,11 +143,26 @@ LW_FN void add_word(cone_words* sum, laneu word, real weight) {
 #endif
 }
 
-// The eight voxels' words of one plane, each lane's with `weight`, onto the sum.
+// The eight voxels' words of one plane, each lane's with `weight`, onto the sum. Neighbouring pixels' cones are mostly between the same
+// voxels from a few levels on: their words are then loaded once for all lanes, and of a level that is one voxel, one.
 LW_FN void add_plane(cone_words* sum, __global const uint* words, const cone_corner* c, lanei at, real weight) {
+    const int first = firsti_lane(at), shared = LW_WIDTH > 1 && !any_(at != (lanei)first);
+    if (shared && c->side == 1) {
+        add_word(sum, (laneu)words[first], weight);
+        return;
+    }
     const real upper = weight * c->z, lower = weight - upper;
     const real w3 = upper * c->y, w2 = upper - w3, w1 = lower * c->y, w0 = lower - w1;
     const real rows[4] = {w0, w1, w2, w3};
+    if (shared) {
+        LW_UNROLL for (int k = 0; k < 4; ++k) {
+            const int row = first + ((k & 1) ? LW_VOXEL_STORED : 0) + ((k & 2) ? LW_VOXEL_STORED * LW_VOXEL_STORED : 0);
+            const real far = rows[k] * c->x;
+            add_word(sum, (laneu)words[row], rows[k] - far);
+            add_word(sum, (laneu)words[row + 1], far);
+        }
+        return;
+    }
     LW_UNROLL for (int k = 0; k < 4; ++k) {
         laneu low, high;
         gather_pairs(words, at + ((k & 1) ? LW_VOXEL_STORED : 0) + ((k & 2) ? LW_VOXEL_STORED * LW_VOXEL_STORED : 0), &low, &high);
@@ -144,7 +172,15 @@ LW_FN void add_plane(cone_words* sum, __global const uint* words, const cone_cor
     }
 }
 
-LW_FN void begin_words(cone_words* sum) { sum->r = sum->g = sum->b = sum->a = sum->ones = (real)0.0f; }
+LW_FN void begin_words(cone_words* sum) { sum->r = sum->g = sum->b = sum->a = sum->ones = sum->squares = (real)0.0f; }
+
+// Opacity's variance, and what it would be of open and closed voxels alone, times 255/256 squared. has: the sum of weights, 1 or 0.
+LW_FN void spread_of(real* variance, real* most, const cone_words* sum, real has) {
+    const real a = sum->a - has;
+    *variance = sum->squares - fma_((real)2.0f, a, has) - a * a;
+    *most = a * (has * (1.0f / LW_CONE_OPACITY_STEP) - a);
+}
+LW_FN real closed_of(real variance, real most) { return clamp(variance / fmax(most, (real)1e-6f), (real)0.0f, (real)1.0f); }
 
 // has: the sum of weights, of those lanes that have any.
 LW_FN void finish_words(cone_sample* sample, const cone_words* sum, real has, int unit) {
@@ -160,7 +196,7 @@ LW_FN void finish_words(cone_sample* sample, const cone_words* sum, real has, in
 
 // The plane of an axis that a ray meets, seen at the cosine of its angle to that axis; `closed`: the largest share of a voxel's side that
 // something covers; `ones`: of opacity's sum.
-LW_FN void add_side(cone_words* sum, real* closed, real* ones, __global const uint* words, const cone_corner* c, int plane, real d, real has) {
+LW_FN void add_side(cone_words* sum, real* closed, real* ones, real* variance, real* most, __global const uint* words, const cone_corner* c, int plane, real d, real has) {
     const real cosine = fabs(d);
     cone_words side;
     begin_words(&side);
@@ -172,6 +208,10 @@ LW_FN void add_side(cone_words* sum, real* closed, real* ones, __global const ui
     sum->ones = fma_(cosine, side.ones, sum->ones);
     *ones = fma_(cosine, has, *ones);
     *closed = fmax(*closed, side.a - has);
+    real v, m;
+    spread_of(&v, &m, &side, has);
+    *variance = fma_(cosine, v, *variance);
+    *most = fma_(cosine, m, *most);
 }
 
 // Three of six sides. Small surfaces, A of them facing an axis, take A |d| of a step's light: x in all. Where they close a share F of the
@@ -182,10 +222,10 @@ LW_FN void sample_sides(cone_sample* sample, __global const uint* words, const c
                         int unit) {
     cone_words sum;
     begin_words(&sum);
-    real closed = (real)0.0f, ones = (real)0.0f;
-    add_side(&sum, &closed, &ones, words, c, plane, dx, has);
-    add_side(&sum, &closed, &ones, words + 2 * plane, c, plane, dy, has);
-    add_side(&sum, &closed, &ones, words + 4 * plane, c, plane, dz, has);
+    real closed = (real)0.0f, ones = (real)0.0f, variance = (real)0.0f, most = (real)0.0f;
+    add_side(&sum, &closed, &ones, &variance, &most, words, c, plane, dx, has);
+    add_side(&sum, &closed, &ones, &variance, &most, words + 2 * plane, c, plane, dy, has);
+    add_side(&sum, &closed, &ones, &variance, &most, words + 4 * plane, c, plane, dz, has);
     finish_words(sample, &sum, ones, unit);
     const real taken = fmax((sum.a - ones) * LW_CONE_OPACITY_STEP, (real)0.0f);
     const real share = 1.0f / fmax(taken + (1.0f - fmin(closed * LW_CONE_OPACITY_STEP, (real)1.0f)), (real)1e-6f);
@@ -193,6 +233,7 @@ LW_FN void sample_sides(cone_sample* sample, __global const uint* words, const c
     sample->r *= share;
     sample->g *= share;
     sample->b *= share;
+    sample->closed = closed_of(variance, most);
 }
 
 #if LW_CONE_MODE == 2 && LW_CONE_LIGHT
@@ -221,7 +262,9 @@ LW_FN void add_harmonics(cone_sample* sum, __global const uint* words, const con
         LW_UNROLL for (int i = 0; i < 2; ++i) {
             const laneu w = word[i];
             const real step = weight[i] * as_real_(((w >> LW_VOXEL_EXPONENT_SHIFT) & LW_VOXEL_EXPONENT_MASK) + (uint)unit);
-            sum->a = fma_(to_real(as_lanei_(w & LW_VOXEL_OPACITY_MASK)), weight[i], sum->a);
+            const real opacity = to_real(as_lanei_(w & LW_VOXEL_OPACITY_MASK)) * LW_VOXEL_OPACITY_STEP, share = opacity * weight[i];
+            sum->a += share;
+            sum->closed = fma_(opacity, share, sum->closed);
             sum->r = fma_(to_real(as_lanei_(w & LW_VOXEL_RED_MASK)) * step, fma_((real)-LW_CONE_SHARE, along(r[i], dx, dy, dz), even_light), sum->r);
             sum->g = fma_(to_real(as_lanei_(w & LW_VOXEL_GREEN_MASK)) * step, fma_((real)-LW_CONE_SHARE, along(g[i], dx, dy, dz), even_light), sum->g);
             sum->b = fma_(to_real(as_lanei_(w & LW_VOXEL_BLUE_MASK)) * step, fma_((real)-LW_CONE_SHARE, along(b[i], dx, dy, dz), even_light), sum->b);
@@ -233,13 +276,14 @@ LW_FN void add_harmonics(cone_sample* sum, __global const uint* words, const con
 // Light and opacity between a corner's eight voxels, seen by a ray that goes along d.
 LW_FN void sample_corner(cone_sample* sample, const cone_volume* v, int level, const cone_corner* c, real dx, real dy, real dz) {
     const real has = ones_(c->has), none = (real)0.0f;
-    sample->r = sample->g = sample->b = sample->a = none;
+    sample->r = sample->g = sample->b = sample->a = sample->closed = none;
     __global const uint* words = level == 0 ? v->base : v->mips;
     const int plane = level == 0 ? v->grids.basePlane : v->grids.mipPlane;
 #if LW_CONE_MODE == 2 && LW_CONE_LIGHT
     if (level > 0 || !LW_CONE_SIDES) {
         add_harmonics(sample, words, c, plane, dx, dy, dz, has, v->unit);
-        sample->a = fmin(sample->a * LW_VOXEL_OPACITY_STEP, (real)1.0f);
+        sample->closed = closed_of(sample->closed - sample->a * sample->a, sample->a * (1.0f - sample->a));
+        sample->a = fmin(sample->a, (real)1.0f);
         sample->r = fmax(sample->r * LW_VOXEL_RED_STEP, none);
         sample->g = fmax(sample->g * LW_VOXEL_GREEN_STEP, none);
         sample->b = fmax(sample->b * LW_VOXEL_BLUE_STEP, none);
@@ -254,6 +298,9 @@ LW_FN void sample_corner(cone_sample* sample, const cone_volume* v, int level, c
     begin_words(&sum);
     add_plane(&sum, words, c, c->at, has);
     finish_words(sample, &sum, has, v->unit);
+    real variance, most;
+    spread_of(&variance, &most, &sum, has);
+    sample->closed = closed_of(variance, most);
 }
 
 #endif

@@ -3,6 +3,10 @@
 #include "shared/subset_order.h"
 #include "shared/vpl_list.h"
 
+// A threshold relative to the strongest is never above this share of it, up to what its sum is rounded otherwise: where
+// `threshold` times `hysteresis` is 1 or more, nothing would come back after the dark.
+#define LW_STRONGEST 0.9999f
+
 // One work-item = one slot. A place whose mean intensity over the channels is below `threshold` is left out; one that
 // was out must reach `hysteresis` times that. `kept`: an int per place, 1 where it was in the frame before. relative:
 // the threshold is a share of the frame's strongest. baked: the same of what receivers with baked light get, where
@@ -23,8 +27,9 @@ __kernel void light_list_cull(__global float* inputs, lw_static_frame frame, __g
             sum[c / 3] += flux[c];
         }
         const float intensity = fmax(sum[0], sum[1]) * (M_1_PI_F / 3.0f);
-        const float least = relative ? threshold * inputs[LW_FRAME_STRONGEST] : threshold;
-        const int keep = intensity > 0.0f && intensity >= (kept[k] ? least : least * hysteresis);
+        const float most = relative ? LW_STRONGEST * inputs[LW_FRAME_STRONGEST] : INFINITY;
+        const float least = fmin(relative ? threshold * inputs[LW_FRAME_STRONGEST] : threshold, most);
+        const int keep = intensity > 0.0f && intensity >= (kept[k] ? least : fmin(least * hysteresis, most));
         kept[k] = keep;
         if (keep) {
             atomic_inc((__global int*)inputs + LW_FRAME_KEPT);

@@ -99,7 +99,7 @@ __kernel void light_list_sum(__global const lw_vpl* vpls, __global const lw_vpl*
                              __global lw_listed_light* listed) {
     const int m = (int)get_global_id(0);
     if (m >= most) return;
-    float4 flux = (float4)(0.0f), other = (float4)(0.0f), position = (float4)(0.0f), normal = (float4)(0.0f), origin = (float4)(0.0f);
+    float4 flux = (float4)(0.0f), other = (float4)(0.0f), position = (float4)(0.0f), normal = (float4)(0.0f);
     float sum = 0.0f, area = 0.0f;
     uint members = 0;
     for (int k = 0; k < order.count; ++k) {
@@ -113,18 +113,19 @@ __kernel void light_list_sum(__global const lw_vpl* vpls, __global const lw_vpl*
             weight += flux_of(baked[slot]);
             other += baked[slot].flux;
         }
-        // From the first one's place: a light of one VPL lies exactly there.
-        if (members++ == 0) origin = vpl.positionArea;
+        // Means that run along, by shares: sums of fluxes times places, or squares of such sums, leave float's range on
+        // both sides, and a light of one VPL lies exactly there.
+        ++members;
         sum += weight;
+        const float share = weight / sum;
         area += vpl.positionArea.w;
-        position += weight * (vpl.positionArea - origin);
-        normal += weight * vpl.normal;
+        position += share * (vpl.positionArea - position);
+        normal += share * (vpl.normal - normal);
     }
     lw_listed_light light;
     const float size = sqrt(normal.x * normal.x + normal.y * normal.y + normal.z * normal.z);
     const float4 axis = members == 0 ? (float4)(0.0f) : size > 0.0f ? normal / size : (float4)(0.0f, 0.0f, 1.0f, 0.0f);
-    const float4 place = members == 0 ? (float4)(0.0f) : origin + position / sum;
-    light.positionArea = (float4)(place.xyz, area);
+    light.positionArea = (float4)(position.xyz, area);
     light.axis[0] = axis.x;
     light.axis[1] = axis.y;
     light.axis[2] = axis.z;
@@ -139,7 +140,7 @@ __kernel void light_list_sum(__global const lw_vpl* vpls, __global const lw_vpl*
     light.spotIntensity = (float4)(flux.xyz / 5.7355713f, 0.0f);
     listed[m] = light;
     lw_listed_centre centre;
-    centre.position = (float4)(place.xyz, members ? 1.0f : 0.0f);
+    centre.position = (float4)(position.xyz, members ? 1.0f : 0.0f);
     centre.normal = axis;
     centres[m] = centre;
 }

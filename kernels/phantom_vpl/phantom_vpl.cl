@@ -49,7 +49,7 @@ LW_FN lw_vpl opposite_vpl(float4 position, float4 normal, float d, float4 flux, 
     if (!(whole > 0.0f)) return vpl;
     vpl.positionArea = (float4)(position.xyz, area);
     vpl.normal = (float4)(normal.xyz, 0.0f);
-    vpl.flux = flux * (options.reflectance * (area / whole));
+    vpl.flux = fmin(flux * (options.reflectance * (area / whole)), LW_LARGEST_FLUX);
     return bounded(vpl);
 }
 
@@ -96,7 +96,7 @@ __kernel void phantom_vpl_make(__global const float* inputs, lw_static_frame fra
         const float4 emitted = (float4)(light->emitted.xyz, 0.0f);
         first.positionArea = (float4)(now.position.xyz, normal.w);
         first.normal = (float4)(normal.xyz, 0.0f);
-        first.flux = fmin(now.reflectance * normal.w * fmin(emitted * share, 1e34f), LW_LARGEST_FLUX);
+        first.flux = fmin(now.reflectance * normal.w * fmin(emitted * fmin(share, 1e34f), 1e34f), LW_LARGEST_FLUX);
         first = bounded(first);
         if (options.opposite) {
             // Half as far behind the light as the phantom lies ahead of it, and facing that.
@@ -117,24 +117,22 @@ __kernel void phantom_vpl_opposite(lw_static_frame frame, lw_phantom_options opt
                                    __global lw_vpl* baked) {
     if (get_global_id(0) != 0) return;
     float4 first = (float4)(0.0f), second = (float4)(0.0f), position = (float4)(0.0f), normal = (float4)(0.0f);
-    float4 origin = (float4)(0.0f);
     float sum = 0.0f;
     for (int k = 0; k < frame.count; ++k) {
         const int slot = lw_subset_slot(order, k);
         const float4 flux = vpls[slot].flux, other = options.lists > 1 ? baked[slot].flux : (float4)(0.0f);
         const float weight = flux.x + flux.y + flux.z + other.x + other.y + other.z;
         if (!(weight > 0.0f)) continue;
-        if (sum == 0.0f) origin = vpls[slot].positionArea;
         first += flux;
         second += other;
         sum += weight;
-        position += weight * (vpls[slot].positionArea - origin);
-        normal += weight * vpls[slot].normal;
+        // Means that run along: sums of fluxes times places leave float's range.
+        const float share = weight / sum;
+        position += share * (vpls[slot].positionArea - position);
+        normal += share * (vpls[slot].normal - normal);
     }
     lw_vpl a = no_vpl(), b = no_vpl();
     if (sum > 0.0f) {
-        position = origin + position / sum;
-        normal /= sum;
         const float size = sqrt(normal.x * normal.x + normal.y * normal.y + normal.z * normal.z);
         if (size >= 1e-3f) {
             normal /= size;

@@ -22,7 +22,7 @@ LW_FN real past_blockers(__global const float* blockers, int count, const real* 
 }
 
 // One work-item = LW_WIDTH places. `nearest`: a plane of m^2, of those without an area of their own. The strongest
-// intensity without blockers goes to the frame's first word: bits of floats above 0 are ordered as whole numbers, so
+// intensity that some receivers would get without blockers goes to the frame's first word: bits of floats above 0 are ordered as whole numbers, so
 // that the order of work-items does not matter.
 __kernel void static_vpl_light_update(__global float* inputs, lw_static_frame frame, __global const float* nearest,
                                       __global float* lit) {
@@ -35,13 +35,16 @@ __kernel void static_vpl_light_update(__global float* inputs, lw_static_frame fr
         n[a] = load(places, (LW_PLACE_NORMAL + a) * frame.stride);
         rho[a] = load(places, (LW_PLACE_REFLECTANCE + a) * frame.stride);
     }
-    const real own = load(places, LW_PLACE_AREA * frame.stride);
-    const real area = select_(own, load(nearest, i), or_(own == 0.0f, splat_mask(frame.automatic)));
-    store(area, lit, LW_LIT_AREA * frame.stride + i);
     const lanei lights = as_lanei_(load(places, LW_PLACE_LIGHTS * frame.stride));
     const lanei receivers = as_lanei_(load(places, LW_PLACE_RECEIVERS * frame.stride));
+    // Padding has no receivers. An area by distance would be whatever memory holds there, and no number times no light
+    // is no number.
+    const real own = load(places, LW_PLACE_AREA * frame.stride);
+    const mask byDistance = and_(to_mask(receivers), or_(own == 0.0f, splat_mask(frame.automatic)));
+    const real area = select_(own, load(nearest, i), byDistance);
+    store(area, lit, LW_LIT_AREA * frame.stride + i);
 
-    real open = (real)0.0f, sum[2][3] = {{(real)0.0f, (real)0.0f, (real)0.0f}, {(real)0.0f, (real)0.0f, (real)0.0f}};
+    real open[2] = {(real)0.0f, (real)0.0f}, sum[2][3] = {{(real)0.0f, (real)0.0f, (real)0.0f}, {(real)0.0f, (real)0.0f, (real)0.0f}};
     __global const lw_static_light* light = (__global const lw_static_light*)(inputs + frame.lights);
     for (int l = 0; l < frame.lightCount; ++l, ++light) {
         if (light->mask == 0) continue;
@@ -63,22 +66,27 @@ __kernel void static_vpl_light_update(__global float* inputs, lw_static_frame fr
             // A place next to a light would get more than the light sends: no more than a hemisphere's.
             share = cosine / fmax(fmax(d2, cosine * area * (0.5f * M_1_PI_F)), (real)1e-37f) * sent_share(inputs, frame, light, sent);
         }
-        share = select_((real)0.0f, share, to_mask(lights & (lanei)light->mask));
+        // (From 1e-37 m^2 with a profile of 1e6 it would be infinite, and no number behind a blocker.)
+        share = select_((real)0.0f, fmin(share, (real)LW_LARGEST_SHARE), to_mask(lights & (lanei)light->mask));
         if (!any_(share > 0.0f)) continue;
         const real seen = share * past_blockers(inputs + frame.blockers, frame.blockerCount, p, d, scale, distant ? 3e9f : 1.0f);
         LW_UNROLL for (int r = 0; r < 2; ++r) {
             if (!(light->receivers & (r ? LW_RECEIVER_BAKED : LW_RECEIVER_UNBAKED))) continue;
-            LW_UNROLL for (int c = 0; c < 3; ++c) sum[r][c] += fmin(emitted[c] * seen, (real)LW_LARGEST_SHARE);
+            LW_UNROLL for (int c = 0; c < 3; ++c) {
+                sum[r][c] += fmin(emitted[c] * seen, (real)LW_LARGEST_SHARE);
+                open[r] = fma_(fmin(emitted[c] * share, (real)LW_LARGEST_SHARE), rho[c], open[r]);
+            }
         }
-        LW_UNROLL for (int c = 0; c < 3; ++c) open = fma_(fmin(emitted[c] * share, (real)LW_LARGEST_SHARE), rho[c], open);
     }
+    real most = (real)0.0f;
     LW_UNROLL for (int r = 0; r < 2; ++r) {
         const mask reaches = to_mask(receivers & (lanei)(r ? LW_RECEIVER_BAKED : LW_RECEIVER_UNBAKED));
         LW_UNROLL for (int c = 0; c < 3; ++c) {
             const real flux = fmin(rho[c] * area * sum[r][c], (real)LW_LARGEST_FLUX);
             store(select_((real)0.0f, flux, reaches), lit, (3 * r + c) * frame.stride + i);
         }
+        most = fmax(most, select_((real)0.0f, fmin(open[r] * area, (real)LW_LARGEST_FLUX), reaches));
     }
-    const float strongest = max_lane(fmin(open * area, (real)LW_LARGEST_FLUX)) * (M_1_PI_F / 3.0f);
+    const float strongest = max_lane(most) * (M_1_PI_F / 3.0f);
     if (strongest > 0.0f) atomic_max((__global int*)inputs + LW_FRAME_STRONGEST, as_int(strongest));
 }

@@ -2,8 +2,8 @@
 
 # Okabe and Ito's colours, told apart by most colour-blind readers, too; their yellow, faint on white, is a brown here.
 COLOURS = {"rsm": "#0072B2", "ssvp": "#D55E00", "rival": "#009E73", "screen_space": "#CC79A7", "horizon": "#E69F00", "ao": "#56B4E9",
-           "fallback": "#000000", "instant_radiosity": "#882255"}
-SPARE = ["#7A4B00", "#8A8A8A", "#5B3A9B", "#A8C000"]
+           "fallback": "#000000", "instant_radiosity": "#882255", "lpv": "#7A4B00", "cone_tracing": "#5B3A9B", "static_vpl": "#A8C000"}
+SPARE = ["#8A8A8A", "#1B7F79", "#C04040"]
 LINES = ["-", "--", "-."]  # dots are the floors of noise
 MARKERS = ["o", "s", "^", "D", "v", "P", "X", "*"]
 

@@ -39,7 +39,8 @@ def save(results, sequence):
     for axis, key in zip(axes.flat, panels):
         draw(axis, results, sequence, shown, key)
     # Above all panels: with a technique for each colour it would lie over the lines of the first.
-    across = max(1, 3 * columns)
+    longest = max((len(name) for name, _ in shown), default=0)
+    across = max(1, min(3 * columns, int(3.1 * columns / (0.5 + 0.06 * longest))))  # inches: a line, its marker, 7-point letters
     lines = -(-len(shown) // across)
     figure.legend(*axes.flat[0].get_legend_handles_labels(), fontsize=7, loc="upper center", ncol=across, frameon=False)
     figure.tight_layout(rect=(0.0, 0.0, 1.0, 1.0 - (0.06 + 0.17 * lines) / figure.get_figheight()))

@@ -35,8 +35,7 @@ void complete(Arguments& arguments) {
                            ? std::vector<std::string>(std::begin(kQuickScenes), std::end(kQuickScenes))
                            : sceneNames();
     if (chart.techniques.empty()) chart.techniques = techniqueNames();
-    for (const std::string& technique : chart.techniques)
-        requireOneOf("technique", technique, techniqueNames());
+    for (const std::string& technique : chart.techniques) parseVariant(technique);
     requireOneOf("--cameras", arguments.cameras, {"all", "first"});
     for (const std::string& only : chart.only) splitAssignment("--only", only);
     if (chart.deviceWidth != 0)
@@ -85,7 +84,9 @@ void addChart(CLI::App& app) {
         ->required();
     command->add_option("--scenes", options.scenes,
                         "Scenes by name or path; default: all that are found");
-    command->add_option("--techniques", options.techniques, "Techniques by name; default: all");
+    command->add_option("--techniques", options.techniques,
+                        "Techniques by name, with their whole sweep, or as NAME,KEY=VALUE,... one point "
+                        "alone; default: all");
     command->add_option(
         "--only", options.only,
         "key=value,value ..., one or several: of techniques with this parameter, only the "

@@ -44,9 +44,18 @@ std::string pointId(const ChartView& view, const ChartedPoint& point) {
 std::vector<ChartedPoint> chartedPoints(const std::vector<std::string>& techniques, bool quick,
                                         const std::vector<std::string>& only) {
     std::vector<ChartedPoint> points;
-    for (const std::string& technique : techniques)
-        for (SweepPoint& sweep : sweepOf(technique, quick))
-            points.push_back({technique, std::move(sweep)});
+    const auto add = [&](SweepPoint sweep) {
+        const bool isKnown = std::any_of(points.begin(), points.end(), [&](const ChartedPoint& known) {
+            return known.technique == sweep.parameters.technique() &&
+                   known.sweep.parameters.resolved() == sweep.parameters.resolved();
+        });
+        if (!isKnown) points.push_back({sweep.parameters.technique(), std::move(sweep)});
+    };
+    for (const std::string& text : techniques)
+        if (text.find(',') != std::string::npos)
+            add(pointOf(text));
+        else
+            for (SweepPoint& sweep : sweepOf(text, quick)) add(std::move(sweep));
     for (const std::string& assignment : only) {
         const bool picks = std::any_of(points.begin(), points.end(), [&](const ChartedPoint& point) {
             return point.sweep.parameters.has(splitAssignment("--only", assignment).first) &&

@@ -17,8 +17,9 @@ struct ChartedPoint {
     SweepPoint sweep;
 };
 
-// The sweeps of the techniques. `only`: "key=value,value": of points with this parameter, those alone
-// that have such a value. UsageError where an entry picks nothing of any technique.
+// The sweeps of the techniques, and single points of those that are named with parameters
+// ("rsm,vpls=64"). `only`: "key=value,value": of points with this parameter, those alone that have such
+// a value. UsageError where an entry picks nothing of any technique.
 std::vector<ChartedPoint> chartedPoints(const std::vector<std::string>& techniques, bool quick,
                                         const std::vector<std::string>& only);
 

@@ -30,10 +30,14 @@ bool describe(const studio::StaticVpl& from, float areaPerWeight, LWStaticVpl& t
 
 }  // namespace
 
-FrameVpls::FrameVpls(const std::string& file) : source_(studio::readStaticVpls(file)) {}
+FrameVpls::FrameVpls(const std::string& file, const RenderInputs& inputs)
+    : source_(studio::readStaticVpls(file)) {
+    source_.metresPerUnit *= inputs.scale();  // positions, radii and, squared, areas
+}
 
-FrameVpls::FrameVpls(const RenderInputs& inputs) {
+FrameVpls::FrameVpls(const RenderInputs& inputs, std::uint32_t cap) {
     studio::PlacementOptions options;
+    if (cap != 0) options.cap = int(cap);
     for (const studio::Light& light : inputs.scene().lights())
         if (light.kind != studio::LightKind::Sun) options.from.push_back(light.position);
     if (options.from.empty()) options.from.push_back(inputs.gbuffer().camera.position);

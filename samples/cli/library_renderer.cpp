@@ -48,9 +48,9 @@ LibraryRenderer::LibraryRenderer(const lightwell::Device& device, const Paramete
       descriptor_(device, parameters),
       technique_(device, parameters.technique().c_str(), descriptor_.get()),
       quantity_(quantity),
-      vpls_(!parameters.takesVpls()            ? FrameVpls()
-            : parameters.vplsFile().empty() ? FrameVpls(inputs)
-                                            : FrameVpls(parameters.vplsFile())),
+      vpls_(!parameters.takesVpls()         ? FrameVpls()
+            : parameters.vplsFile().empty() ? FrameVpls(inputs, parameters.vplsCap())
+                                            : FrameVpls(parameters.vplsFile(), inputs)),
       irradiance_(inputs.gbuffer().width, inputs.gbuffer().height, 3),
       validity_(inputs.gbuffer().width, inputs.gbuffer().height, 1),
       share_(inputs.gbuffer().width, inputs.gbuffer().height, 1),

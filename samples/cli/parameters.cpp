@@ -10,6 +10,7 @@
 #include "cli.h"
 #include "host_techniques.h"
 #include "open_device.h"
+#include "static_vpls.h"
 
 namespace cli {
 namespace {
@@ -63,7 +64,7 @@ double parseValue(const LWParameter& parameter, const std::string& text) {
 }
 
 // What the library has no parameter for: arrays of a frame, which the host loads.
-constexpr const char* kVplsFile = "vpls_file";
+constexpr const char *kVplsFile = "vpls_file", *kVplsCap = "vpls_cap";
 bool takesVpls(const std::string& technique) { return technique == "static_vpl"; }
 
 std::string defaultText(const LWParameter& parameter) {
@@ -86,6 +87,13 @@ std::string Parameters::vplsFile() const {
     return {};
 }
 
+std::uint32_t Parameters::vplsCap() const {
+    if (vplsCap_ != 0) return vplsCap_;
+    for (const auto& [name, part] : parts_)
+        if (const std::uint32_t cap = part.vplsCap(); cap != 0) return cap;
+    return 0;
+}
+
 std::vector<LWTechniqueInfo> describeTechniques() {
     std::vector<LWTechniqueInfo> infos(lwCountTechniques(), lightwell::make<LWTechniqueInfo>());
     for (std::size_t i = 0; i < infos.size(); ++i)
@@ -105,7 +113,11 @@ std::string describeParameters() {
     for (const LWTechniqueInfo& info : describeTechniques()) {
         text += fmt::format("  {}: {}\n", info.name, info.summary);
         if (takesVpls(info.name))
-            text += fmt::format("    {}=: a file; static VPLs and blockers (docs/vpls-file.md); without it placed as by place-vpls\n", kVplsFile);
+            text += fmt::format(
+                "    {}=: a file; static VPLs and blockers (docs/vpls-file.md); without it placed as by "
+                "place-vpls\n"
+                "    {}=: 1 to {}; without a file, VPLs placed at most, as place-vpls --cap\n",
+                kVplsFile, kVplsCap, studio::kMostStaticVpls);
         for (std::uint32_t i = 0; i < info.parameterCount; ++i) {
             const LWParameter& parameter = info.parameters[i];
             text += fmt::format("    {}={}: {}; {}\n", parameter.name, defaultText(parameter),
@@ -143,21 +155,36 @@ void Parameters::set(const std::string& assignment) {
         part->second.set(assignment.substr(dot + 1));
         return;
     }
-    if (cli::takesVpls(technique_) && name == kVplsFile) {
-        if (value.empty()) throw UsageError("--set vpls_file: expected a file's name, got none");
-        vplsFile_ = value;
-        return;
-    }
+    if (setOwn(name, value)) return;
     const LWParameter* parameter = find(name);
     if (parameter == nullptr) {
         std::vector<std::string> names;
-        if (cli::takesVpls(technique_)) names.emplace_back(kVplsFile);
+        if (cli::takesVpls(technique_)) names = {kVplsFile, kVplsCap};
         for (std::uint32_t i = 0; i < info_.parameterCount; ++i)
             names.emplace_back(info_.parameters[i].name);
         for (const auto& [part, parameters] : parts_) names.push_back(part + ".KEY");
         requireOneOf(fmt::format("--set key of technique {}", info_.name), name, names);
     }
     assign(*parameter, value);
+}
+
+bool Parameters::setOwn(const std::string& name, const std::string& value) {
+    if (!cli::takesVpls(technique_) || (name != kVplsFile && name != kVplsCap)) return false;
+    if (name == kVplsFile ? vplsCap_ != 0 : !vplsFile_.empty())
+        throw UsageError(
+            fmt::format("--set {}: expected {} or {}, got both: a file's VPLs are all taken", name,
+                        kVplsFile, kVplsCap));
+    if (name == kVplsFile) {
+        if (value.empty()) throw UsageError("--set vpls_file: expected a file's name, got none");
+        vplsFile_ = value;
+        return true;
+    }
+    const std::uint64_t cap = parseUnsigned("--set vpls_cap", value);
+    if (cap < 1 || cap > studio::kMostStaticVpls)
+        throw UsageError(fmt::format("--set vpls_cap: '{}' is not valid; expected 1 to {}", value,
+                                     studio::kMostStaticVpls));
+    vplsCap_ = std::uint32_t(cap);
+    return true;
 }
 
 bool Parameters::setEverywhere(const std::string& name, const std::string& value) {
@@ -224,6 +251,7 @@ std::vector<std::pair<std::string, ParameterValue>> Parameters::resolved() const
             values.emplace_back(std::string(parameter.name) + "." + name, std::move(value));
     }
     if (!vplsFile_.empty()) values.emplace_back(kVplsFile, vplsFile_);
+    if (vplsCap_ != 0) values.emplace_back(kVplsCap, std::uint64_t(vplsCap_));
     return values;
 }
 

@@ -40,6 +40,9 @@ public:
     bool takesVpls() const;  // it, or a part, is static_vpl
     // static_vpl: the file of VPLs and blockers (--set vpls_file=FILE), its own or of the first part that has one; "": none.
     std::string vplsFile() const;
+    // static_vpl: how many VPLs are placed at most where there is no file (--set vpls_cap=N), found as
+    // the file; 0: as many as place-vpls does by default.
+    std::uint32_t vplsCap() const;
     // Every parameter as it stands, in the table's order; those of a technique that is a parameter behind it.
     std::vector<std::pair<std::string, ParameterValue>> resolved() const;
     // By the parameter's name.
@@ -57,7 +60,10 @@ private:
     LWTechniqueInfo info_{};
     std::vector<std::uint64_t> bytes_;  // of the descriptor, aligned; techniques in it are null
     std::map<std::string, Parameters> parts_;
-    std::string vplsFile_;  // a key of the command line's own
+    bool setOwn(const std::string& name,
+                const std::string& value);  // false: no key of the command line's own
+    std::string vplsFile_;                  // keys of the command line's own
+    std::uint32_t vplsCap_ = 0;
 };
 
 // "ssvp", or "ssvp,warm_start=off,clusters=16". UsageError as of Parameters.

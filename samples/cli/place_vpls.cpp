@@ -92,6 +92,7 @@ Json describe(const PlaceOptions& options, const std::string& scene, const studi
     for (const glm::vec3& point : asked.from) json["from"].push_back(triple(point));
     json["points"] = report.points;
     json["paths"] = asked.paths;
+    json["light_paths"] = asked.lightPaths;
     json["depth"] = asked.depth;
     json["hits"] = report.hits;
     json["spacing"] = report.spacing;
@@ -175,10 +176,13 @@ void declareSearch(CLI::App& command, PlaceOptions& options) {
     command.add_option("--points", placement.points, "Points of each walk, from which paths are traced")
         ->check(CLI::Range(1, kMostPoints))
         ->capture_default_str();
-    command
-        .add_option("--paths", placement.paths,
-                    "Paths from all points together, and as many again from the lights")
+    command.add_option("--paths", placement.paths, "Paths from all points together")
         ->check(CLI::Range(1, kMostPaths))
+        ->capture_default_str();
+    command
+        .add_option("--light-paths", placement.lightPaths,
+                    "Paths from all lights together; 0: places do not lean towards where light falls now")
+        ->check(CLI::Range(0, kMostPaths))
         ->capture_default_str();
     command.add_option("--depth", placement.depth, "Surfaces that a path meets at most")
         ->check(CLI::Range(1, kMostDepth))

@@ -210,6 +210,7 @@ void render(RenderOptions& options) {
     sequenceOptions.inputs.rsm.cascades = options.cascades;
     sequenceOptions.inputs.focus = parseFocus("--focus", options.focus);
     sequenceOptions.inputs.focus.point *= scale;
+    sequenceOptions.inputs.scale = scale;
     Sequence sequence(scene, sequenceOptions);
     sequence.at(0);
     if (scene->lights.empty())

@@ -51,6 +51,7 @@ LWGeometry describeTriangles(const studio::SceneTriangles& from) {
     LWGeometry to = lightwell::make<LWGeometry>();
     to.vertices = from.vertices.data();
     to.triangleAlbedo = from.albedo.data();
+    to.triangleEmission = from.emission.empty() ? nullptr : from.emission.data();
     to.triangleCount = from.count();
     to.vertexCount = 3 * from.count();
     to.version = from.version;
@@ -98,6 +99,7 @@ RenderInputs::RenderInputs(const studio::RayScene& scene, const studio::Camera& 
                            const InputOptions& options)
     : scene_(scene),
       time_(options.time),
+      scale_(options.scale),
       gbuffer_(studio::renderGBuffer(
           scene, camera, options.width, options.height,
           options.previousCamera != nullptr ? *options.previousCamera : camera,

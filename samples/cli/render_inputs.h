@@ -23,6 +23,7 @@ struct InputOptions {
     // Further source views of the frame: a camera, and the same one the frame before.
     std::vector<std::pair<studio::Camera, studio::Camera>> sources;
     FrameFocus focus;
+    float scale = 1.0f;  // of the scene against its files (scaleScene), for what stands in other files
 };
 
 // The structs point into the buffers beside them: made once, never moved. `scene` must live as long.
@@ -35,6 +36,7 @@ public:
 
     const studio::RayScene& scene() const { return scene_; }
     float time() const { return time_; }
+    float scale() const { return scale_; }
     const studio::GBuffer& gbuffer() const { return gbuffer_; }
     const LWGBuffer& lwGBuffer() const { return lwGBuffer_; }
     // Of the further source views, in their order.
@@ -47,7 +49,7 @@ public:
 
 private:
     const studio::RayScene& scene_;
-    float time_;
+    float time_, scale_;
     studio::GBuffer gbuffer_;
     std::vector<std::vector<studio::Rsm>> rsms_;  // of each light
     std::vector<std::vector<LWRsm>> lwRsms_;

@@ -80,9 +80,11 @@ nlohmann::ordered_json SequencePictures::write(const std::string& folder, const 
     const studio::Image truth = studio::toneMap(trueLight, exposure);
     const studio::Image error = errorMap(judged.frame, judged.truth->mean);
 
+    std::string stem = name;  // of a variant that names a file (vpls_file) with its folders
+    std::replace(stem.begin(), stem.end(), '/', '_');
     nlohmann::ordered_json names;
     const auto write = [&](const char* key, const studio::Image& picture) {
-        const std::string file = "images/" + name + "_" + key + ".png";
+        const std::string file = "images/" + stem + "_" + key + ".png";
         studio::writePng((std::filesystem::path(folder) / file).string(), picture);
         names[key] = file;
     };

@@ -33,7 +33,6 @@ using Json = nlohmann::ordered_json;
 using studio::FailureSequence;
 using studio::SequenceFrame;
 using Truths = std::map<int, std::shared_ptr<const FrameTruth>>;  // by bounces; 0: all
-
 constexpr const char* kProtocol = "1";  // part of every key: raise it when the way of measuring changes
 
 // One technique on its way through one sequence.
@@ -235,6 +234,7 @@ void Stability::renderFrame(const FailureSequence& sequence, const FrameScene& n
     options.width = now.frame.width;
     options.height = now.frame.height;
     options.time = now.frame.time;
+    options.scale = sequence.scale;
     studio::Camera previous;
     if (before != nullptr && !now.frame.isCut) {
         previous = scaled.camera(before->frame.camera);

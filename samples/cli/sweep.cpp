@@ -107,6 +107,20 @@ std::vector<SweepPoint> sweepOf(const std::string& technique, bool quick) {
     return points;
 }
 
+SweepPoint pointOf(const std::string& variant) {
+    SweepPoint point{parseVariant(variant), ""};
+    const std::string& technique = point.parameters.technique();
+    const LWTechniqueInfo& info = infoOf(technique);
+    std::vector<SweepPoint> named;
+    addPoint(named, Parameters(technique), "default");
+    for (std::uint32_t i = 0; i < info.settingCount; ++i)
+        addPoint(named, assigned(technique, splitWords(info.settings[i].assignments)),
+                 info.settings[i].name);
+    for (const SweepPoint& twin : named)
+        if (twin.parameters.resolved() == point.parameters.resolved()) point.label = twin.label;
+    return point;
+}
+
 int modelledBounces(const Parameters& parameters) {
     for (const auto& [name, value] : parameters.resolved())
         if (const auto* count = std::get_if<std::uint64_t>(&value);
@@ -131,13 +145,15 @@ bool knowsPictureOnly(const Parameters& parameters) {
 }
 
 std::string describeDifference(const Parameters& parameters) {
-    const auto defaults = parameters.defaults().resolved(), values = parameters.resolved();
+    // Values that only the command line knows (a file of VPLs) have no default to stand beside.
+    const auto defaults = parameters.defaults().resolved();
     const auto usual = Parameters(parameters.technique()).resolved();
     std::string text;
-    for (std::size_t i = 0; i < values.size(); ++i)
-        if (!(values[i] == defaults[i]) || isOther(parameters, values[i], usual))
-            text += fmt::format("{}{}={}", text.empty() ? "" : " ", values[i].first,
-                                valueText(values[i].second));
+    for (const auto& value : parameters.resolved())
+        if (std::find(defaults.begin(), defaults.end(), value) == defaults.end() ||
+            isOther(parameters, value, usual))
+            text +=
+                fmt::format("{}{}={}", text.empty() ? "" : " ", value.first, valueText(value.second));
     return text.empty() ? "defaults" : text;
 }
 

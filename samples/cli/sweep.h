@@ -19,6 +19,10 @@ struct SweepPoint {
 // moved through its sweep. UsageError for a setting that the technique refuses.
 std::vector<SweepPoint> sweepOf(const std::string& technique, bool quick);
 
+// One point alone, of a technique with parameters ("ssvp,clusters=16", as parseVariant); labelled as the
+// defaults or a named setting where it is one of these.
+SweepPoint pointOf(const std::string& variant);
+
 // Indirect bounces that a set of parameters models; 0: all.
 int modelledBounces(const Parameters& parameters);
 

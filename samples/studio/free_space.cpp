@@ -85,7 +85,7 @@ std::vector<SurfaceHit> findSurfaces(const RayScene& scene, const std::vector<gl
     dealPaths(origins, points.size(), options.paths, [&](std::size_t i, std::uint32_t k) {
         return Origin{&points[i], nullptr, kPointStream + i, k};
     });
-    dealPaths(origins, lights.size(), options.paths, [&](std::size_t i, std::uint32_t k) {
+    dealPaths(origins, lights.size(), options.lightPaths, [&](std::size_t i, std::uint32_t k) {
         return Origin{nullptr, &lights[i], kLightStream + i, k};
     });
 

@@ -23,8 +23,8 @@ struct SurfaceHit {
 };
 
 struct PathOptions {
-    int paths = 4096;  // from the points together, and again from the lights together
-    int depth = 3;     // surfaces that a path meets at most
+    int paths = 4096, lightPaths = 4096;  // from all points together, from all lights together
+    int depth = 3;                        // surfaces that a path meets at most
     std::uint64_t seed = 1;
     int threads = 0;
     std::function<void(double)> progress;  // in [0, 1], by the calling thread; what it throws comes out

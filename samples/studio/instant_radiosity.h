@@ -18,7 +18,8 @@ namespace studio {
 struct InstantRadiosityOptions {
     std::uint32_t vpls = 200;   // photons of each light
     std::uint32_t shadows = 0;  // 1: a shadow ray for each pair of pixel and VPL
-    std::uint32_t seed = 0;     // turns the pattern of directions; 0: the axis of a light is the first
+    std::uint32_t seed =
+        0;  // turns the pattern of directions; 0: a single photon goes along the light's axis
 };
 
 struct InstantRadiosityTimes {

@@ -1,6 +1,7 @@
 // See json_reader.h.
 #include "json_reader.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <stdexcept>
@@ -10,8 +11,26 @@
 namespace studio {
 namespace {
 
+// Lists in lists deeper than this are not written out: dump() goes down them by calls, and a file may be
+// as deep as it is long.
+constexpr int kDeepest = 16;
+
+bool isDeep(const nlohmann::json& json, int left = kDeepest) {
+    return json.is_structured() &&
+           (left == 0 || std::any_of(json.begin(), json.end(), [&](const nlohmann::json& item) {
+                return isDeep(item, left - 1);
+            }));
+}
+
+// Numbers without a fraction count as whole however they are written, as JSON Schema has it: 3.0.
+bool isWhole(const nlohmann::json& json) {
+    return json.is_number_integer() ||
+           (json.is_number() && std::floor(json.get<double>()) == json.get<double>());
+}
+
 std::string shown(const nlohmann::json& json) {
     constexpr std::size_t kLongest = 60;
+    if (isDeep(json)) return "lists in lists";
     std::string text = json.dump();
     return text.size() > kLongest ? text.substr(0, kLongest) + "..." : text;
 }
@@ -47,16 +66,16 @@ bool JsonValue::boolean() const {
 }
 
 int JsonValue::integer(int lowest, int highest) const {
-    if (!json_->is_number_integer() || json_->get<double>() < lowest || json_->get<double>() > highest)
+    if (!isWhole(*json_) || json_->get<double>() < lowest || json_->get<double>() > highest)
         fail(fmt::format("a whole number {} .. {}", lowest, highest));
     return json_->get<int>();
 }
 
 std::uint32_t JsonValue::bits() const {
     constexpr const char* kExpected = "32 bits: a whole number 0 .. 4294967295, or a text as \"0xff\"";
-    if (json_->is_number_unsigned()) {
-        const std::uint64_t value = json_->get<std::uint64_t>();
-        if (value > 0xffffffffu) fail(kExpected);
+    if (json_->is_number()) {
+        const double value = json_->get<double>();
+        if (!isWhole(*json_) || !(value >= 0.0 && value <= 4294967295.0)) fail(kExpected);
         return std::uint32_t(value);
     }
     if (!json_->is_string()) fail(kExpected);
@@ -81,10 +100,10 @@ glm::vec3 JsonValue::vector() const {
 }
 
 glm::vec3 JsonValue::direction() const {
-    const glm::vec3 v = vector();
-    const float length = glm::length(v);
-    if (!(length > 0.0f)) fail("a direction (not zero)");
-    return v / length;
+    const glm::dvec3 v(vector());  // squares of floats leave their range on both sides
+    const double length = glm::length(v);
+    if (!(length > 0.0)) fail("a direction (not zero)");
+    return glm::vec3(v / length);
 }
 
 glm::vec3 JsonValue::colour() const {

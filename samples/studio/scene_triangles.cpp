@@ -1,5 +1,7 @@
 #include "scene_triangles.h"
 
+#include <algorithm>
+
 #include "film.h"
 
 namespace studio {
@@ -35,6 +37,11 @@ Shade shadeOf(const Mesh& mesh, const Material& material, const Texture* texture
 SceneTriangles sceneTriangles(const RayScene& rayScene) {
     const Scene& scene = rayScene.scene();
     SceneTriangles all;
+    const bool glows =
+        scene.emissiveSurfaces &&
+        std::any_of(scene.meshes.begin(), scene.meshes.end(), [&](const Mesh& mesh) {
+            return scene.materials.at(std::size_t(mesh.material)).emission != glm::vec3(0.0f);
+        });
     for (const Mesh& mesh : scene.meshes) {
         const Material& material = scene.materials.at(std::size_t(mesh.material));
         const Texture* texture = material.texture >= 0 && !mesh.uvs.empty()
@@ -51,10 +58,15 @@ SceneTriangles sceneTriangles(const RayScene& rayScene) {
                 for (int axis = 0; axis < 3; ++axis) all.vertices.push_back(world[axis]);
             }
             for (int channel = 0; channel < 3; ++channel) all.albedo.push_back(shade.albedo[channel]);
+            if (glows)
+                for (int channel = 0; channel < 3; ++channel)
+                    all.emission.push_back(material.emission[channel]);
         }
     }
     all.version = hashBytes(all.vertices.data(), all.vertices.size() * sizeof(float), 5);
     all.version = hashBytes(all.albedo.data(), all.albedo.size() * sizeof(float), all.version);
+    if (glows)
+        all.version = hashBytes(all.emission.data(), all.emission.size() * sizeof(float), all.version);
     return all;
 }
 

@@ -32,6 +32,7 @@ void require(bool holds, const char* option, const char* expected, double got) {
 void checkOptions(const PlacementOptions& o) {
     require(o.points >= 1, "points", "at least 1", o.points);
     require(o.paths >= 1, "paths", "at least 1", o.paths);
+    require(o.lightPaths >= 0, "lightPaths", "at least 0", o.lightPaths);
     require(o.depth >= 1, "depth", "at least 1", o.depth);
     require(o.cap >= 1 && std::size_t(o.cap) <= kMostStaticVpls, "cap", "1 .. 4096", o.cap);
     require(o.spacing >= 0.0 && std::isfinite(o.spacing), "spacing", "0 or a length", o.spacing);
@@ -40,10 +41,22 @@ void checkOptions(const PlacementOptions& o) {
     require(o.offset >= 0.0 && std::isfinite(o.offset), "offset", "at least 0", o.offset);
 }
 
+// What scene coordinates and Embree's rays bear.
+constexpr float kFarthest = 1e9f;
+
+void checkPlaces(const RayScene& scene, const PlacementOptions& o) {
+    for (const glm::vec3& from : o.from)
+        for (int axis = 0; axis < 3; ++axis)
+            require(std::abs(from[axis]) <= kFarthest, "from", "coordinates to 1e9", double(from[axis]));
+    require(o.spacing <= double(scene.diagonal()), "spacing",
+            fmt::format("at most the scene's diagonal, {:.3g} m", scene.diagonal()).c_str(), o.spacing);
+}
+
 // Indices as StaticVpl::object names them; those that never move count as one.
 int objectIndex(const Scene& scene, const std::string& name) {
     for (std::size_t i = 1; i < scene.objects.size(); ++i)
-        if (!name.empty() && scene.objects[i].name == name) return int(i);
+        if (!name.empty() && scene.objects[i].name == name)
+            return scene.objects[i].keys.empty() ? 0 : int(i);
     return 0;
 }
 
@@ -78,6 +91,7 @@ std::vector<SurfaceHit> Placer::findHits() {
     report_.points = points.size();
     PathOptions paths;
     paths.paths = options_.paths;
+    paths.lightPaths = options_.lightPaths;
     paths.depth = options_.depth;
     paths.seed = options_.seed;
     paths.threads = options_.threads;
@@ -156,7 +170,13 @@ StaticVpl Placer::made(const VplPlace& place) const {
         vpl.normal = glm::normalize(glm::vec3(inverse * glm::vec4(vpl.normal, 0.0f)));
     }
     vpl.position /= unit;
-    vpl.weight = float(place.area / double(earlier_.areaPerWeight * unit * unit));
+    const double perWeight = double(earlier_.areaPerWeight) * double(unit) * double(unit);
+    vpl.weight = float(place.area / perWeight);
+    if (!(*vpl.weight > 0.0f && std::isfinite(*vpl.weight)))
+        throw std::invalid_argument(
+            fmt::format("placement: area_per_weight: expected one in which {:.3g} m^2 is a weight that "
+                        "floats hold, got {:.3g} m^2",
+                        place.area, perWeight));
     vpl.population = place.population;
     return vpl;
 }
@@ -194,6 +214,7 @@ Placement Placer::run() {
 
 Placement placeVpls(const RayScene& scene, const PlacementOptions& options, const StaticVpls& earlier) {
     checkOptions(options);
+    checkPlaces(scene, options);
     std::size_t byHand = 0;
     for (const StaticVpl& vpl : earlier.vpls) byHand += vpl.population == 0 ? 1 : 0;
     require(byHand <= std::size_t(options.cap), "cap", "at least the number of VPLs set by hand",

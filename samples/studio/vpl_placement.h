@@ -14,7 +14,8 @@ namespace studio {
 struct PlacementOptions {
     std::vector<glm::vec3> from;  // where the walks through free space begin
     int points = 30;              // of each walk
-    int paths = 4096;             // from the points together, and again from the lights
+    int paths = 4096;             // from all points together
+    int lightPaths = 4096;        // from all lights together
     int depth = 3;                // surfaces along a path
     int cap = 256;                // VPLs at most
     double spacing = 0.0;         // m; 0: the least, in steps of a fifth, at which `cap` holds

@@ -22,6 +22,10 @@ constexpr std::size_t kCandidates = 8;
 constexpr std::uint64_t kStream = 0x61726561u;  // of random numbers; any
 constexpr std::size_t kBlock = 1024;            // samples of a work item
 
+// As much as is told apart from places set by hand where the heaviest are kept; a file may say anything.
+constexpr std::uint32_t kByHand = std::numeric_limits<std::uint32_t>::max(),
+                        kMostPopulation = kByHand - 1;
+
 bool isAlike(const SurfaceHit& hit, const VplPlace& place, const MergeOptions& options) {
     if (hit.object != place.object) return false;
     if (double(glm::dot(hit.normal, place.normal)) < options.leastCosine) return false;
@@ -31,11 +35,11 @@ bool isAlike(const SurfaceHit& hit, const VplPlace& place, const MergeOptions& o
 
 void takeUp(const SurfaceHit& hit, VplPlace& place) {
     if (place.population == 0) return;  // set by hand
-    const float share = 1.0f / float(place.population + 1);
+    const float share = float(1.0 / (double(place.population) + 1.0));
     place.position += (hit.position - place.position) * share;
     place.normal = glm::normalize(place.normal + (hit.normal - place.normal) * share);
     place.reflectance += (hit.reflectance - place.reflectance) * share;
-    ++place.population;
+    if (place.population < kMostPopulation) ++place.population;
 }
 
 struct Sample {
@@ -131,9 +135,8 @@ bool mergeHits(const std::vector<SurfaceHit>& hits, const MergeOptions& options,
 
 std::uint64_t keepHeaviest(std::size_t cap, std::vector<VplPlace>& places) {
     if (places.size() <= cap) return 0;
-    constexpr std::uint32_t kByHand = std::numeric_limits<std::uint32_t>::max();
     const auto heaviness = [&](std::size_t i) {
-        return places[i].population == 0 ? kByHand : places[i].population;
+        return places[i].population == 0 ? kByHand : std::min(places[i].population, kMostPopulation);
     };
     std::vector<std::size_t> order(places.size());
     std::iota(order.begin(), order.end(), std::size_t(0));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include <glm/glm.hpp>
 
@@ -68,12 +69,31 @@ bool hasProfile(const LWLight& light) {
     return light.profileCount > 0 && light.kind != LW_LIGHT_DIRECTIONAL;
 }
 
+// As of all other positions; beyond, squares of distances leave float's range, and a second bounce were
+// no number.
+void checkReach(const float* p, std::uint32_t light, const char* field) {
+    if (!(glm::length(glm::dvec3(p[0], p[1], p[2])) <= double(LW_LARGEST_DISTANCE)))
+        fail(LW_ERROR_INVALID_ARGUMENT, "frame.lights[", light, "].", field, ": expected at most ",
+             LW_LARGEST_DISTANCE, " from the origin for technique static_vpl, got ", p[0], " ", p[1],
+             " ", p[2]);
+}
+
 }  // namespace
 
 void StaticVplInput::check(const LWFrame& frame) {
     if (frame.blockerCount > kMostBlockers)
         fail(LW_ERROR_INVALID_ARGUMENT, "frame.blockerCount: expected at most ", kMostBlockers,
              " for technique static_vpl, got ", frame.blockerCount);
+    for (std::uint32_t i = 0; i < frame.lightCount; ++i) {
+        const LWLight& light = frame.lights[i];
+        if (light.kind == LW_LIGHT_DIRECTIONAL) continue;
+        checkReach(light.position, i, "position");
+        if (light.kind == LW_LIGHT_SPOT && light.hit) checkReach(light.hit, i, "hit");
+        const float* d = light.direction;
+        if (hasProfile(light) && d[0] == 0.0f && d[1] == 0.0f && d[2] == 0.0f)
+            fail(LW_ERROR_INVALID_ARGUMENT, "frame.lights[", i,
+                 "].direction: expected one, as `profile` goes by the angle to it, got 0 0 0");
+    }
 }
 
 void StaticVplInput::measure(const LWFrame& frame) {
@@ -93,8 +113,7 @@ void StaticVplInput::measure(const LWFrame& frame) {
 void StaticVplInput::packPlaces(const LWFrame& frame, float unitArea) {
     float* places = packed_.data() + frame_.places;
     const auto stride = std::size_t(frame_.stride);
-    // Padding has an area of its own: one by distance would be whatever memory holds, and no number
-    // times no light is no number.
+    // Padding has an area of its own, and no receivers.
     std::fill(places + LW_PLACE_AREA * stride + frame.staticVplCount,
               places + (LW_PLACE_AREA + 1) * stride, 1.0f);
     for (std::size_t i = 0; i < frame.staticVplCount; ++i) {
@@ -106,8 +125,10 @@ void StaticVplInput::packPlaces(const LWFrame& frame, float unitArea) {
             places[(LW_PLACE_NORMAL + a) * stride + i] = float(normal[glm::length_t(a)]);
             places[(LW_PLACE_REFLECTANCE + a) * stride + i] = vpl.reflectance[a];
         }
+        // 0 is an area by distance; what floats cannot hold of a small one is not.
+        const double least = vpl.weight > 0.0f ? double(std::numeric_limits<float>::min()) : 0.0;
         places[LW_PLACE_AREA * stride + i] =
-            float(std::min(double(vpl.weight) * double(unitArea), 1e18));
+            float(std::clamp(double(vpl.weight) * double(unitArea), least, 1e18));
         places[LW_PLACE_LIGHTS * stride + i] = asFloat(maskOf(vpl.lightMask));
         places[LW_PLACE_RECEIVERS * stride + i] = asFloat(receiversOf(vpl.receivers));
         anyAutomatic_ |= vpl.weight == 0.0f;

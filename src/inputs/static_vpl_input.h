@@ -17,7 +17,7 @@ class StaticVplInput {
 public:
     static constexpr std::uint32_t kMostBlockers = 1024;
 
-    // Throws INVALID_ARGUMENT naming what a frame has too much of.
+    // Throws INVALID_ARGUMENT naming what a frame has too much of, and lights that cannot be used.
     static void check(const LWFrame& frame);
     // Records the copy (pass "static_vpl_input.upload"). unitArea: of a weight of 1. automatic: no place
     // has an area of its own. phantoms: of spot lights that then light no static VPL.

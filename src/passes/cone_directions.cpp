@@ -17,6 +17,12 @@ constexpr double kNearHeight = 1.5;
 // How nearly a cone may touch its own surface before apertureOffset moves it no further: of the six,
 // five touch it.
 constexpr double kLeastGap = 0.1;
+// Half a cone's width over its distance at which one cell lies between a distance and twice that, so
+// that cells are 0.87 to 0.43 of the cone's width. Interpolated cells weigh places by their distance
+// with a deviation of half a side, a disc by a quarter of its diameter: a cell as wide as the cone sees
+// what is half a cone beside it, the wall that the cone begins at and the next, and as coarse as it is
+// closed where only a part is. Smaller than half, and what the cone meets between samples is missed.
+constexpr double kCells = 0.57735026918962576;
 
 void addWide(std::vector<ConeDirection>& set, double x, double y, double z) {
     const double length = std::sqrt(x * x + y * y + z * z);
@@ -135,48 +141,50 @@ ConeWindow coneWindow(std::uint32_t count) {
     return {8, 8, count / 64};
 }
 
+// Samples lie one behind the other without gaps, each in a cell of 2^level voxels as long as the part of
+// the cone that it stands for: from `cells` of them off the apex to twice as far, then in cells of twice
+// the side. Interpolated, cells reach one side to either side, so that what samples take of a thin wall
+// adds up to all of it, and to no more.
 std::vector<LwConeStep> coneSteps(double halfAngle, double cosine, const ConeSchedule& schedule) {
     const double tangent = std::tan(halfAngle);
     const double height =
         schedule.apertureOffset ? std::max(cosine - std::sin(halfAngle), kLeastGap) : cosine;
     const double begin = schedule.nudge / height;
-    // A whole number of samples each time the distance doubles, so that the levels come in turn and each
-    // sample takes but one.
-    const auto perDoubling = [tangent](double step) {
-        return std::ceil(std::log(2.0) / std::log1p(2.0 * tangent * step) - 1e-9);
+    const double cells = std::max(1.0, std::round(kCells / tangent));
+    const auto levelOf = [&](double d) {
+        return d < 2.0 * cells ? 0 : int(std::floor(std::log2(d / cells)));
     };
-    const double count = perDoubling(schedule.step), ratio = std::exp2(1.0 / count),
-                 widening = perDoubling(1.0) / count;
-    const auto add = [&](std::vector<LwConeStep>& steps, double d, double cells, double light) {
-        const double level = std::round(std::log2(std::max(1.0, 2.0 * tangent * d)));
+    std::vector<LwConeStep> steps;
+    const auto add = [&](double d, int level, double length, double light) {
         LwConeStep step{};
         step.distance = lw_float(d);
-        step.exponent = schedule.corrected ? lw_float(cells) : 1.0f;
+        step.exponent = schedule.corrected ? lw_float(std::ldexp(length, -level)) : 1.0f;
         step.light = lw_float(light);
         // 1 / (1 + lambda d), lambda so that a fifth is left at the reach.
         step.dimming =
             d <= schedule.openReach ? lw_float(1.0 / (1.0 + 4.0 * d / schedule.openReach)) : 0.0f;
-        step.level = lw_int(std::min(level, double(schedule.levels - 1)));
+        step.level = lw_int(std::min(level, int(schedule.levels) - 1));
         // Not before the last one's, where the level rises faster than the distance: a cone that has left does not come back.
         step.begins = lw_float(d - 0.5 * std::exp2(double(step.level)));
         if (!steps.empty()) step.begins = std::max(step.begins, steps.back().begins);
         steps.push_back(step);
     };
-    std::vector<LwConeStep> steps;
     if (schedule.near) {
         const double from = kNearHeight / cosine, length = begin - from;
         const auto parts =
             length > 0.0 ? std::size_t(std::ceil(length / std::min(1.0, schedule.step))) : 0;
-        for (std::size_t i = 0; i < parts; ++i)
-            add(steps, from + length * double(i) / double(parts), length / double(parts), 0.0);
+        for (std::size_t i = 0; i < parts; ++i) {
+            const double d = from + length * double(i) / double(parts);
+            add(d, levelOf(d), length / double(parts), 0.0);
+        }
     }
-    for (double d = begin; steps.empty() || d <= schedule.reach;) {
-        const bool widens = 2.0 * tangent * d >= 1.0;
-        // A voxel's opacity is that of a step of one diameter, and a medium the same however it is cut
-        // into steps: a part of the doubling, or of the voxel, counts as that part of the whole step's
-        // exponent.
-        add(steps, d, widens ? widening : schedule.step, 1.0);
-        d = widens ? d * ratio : d + schedule.step;
+    int level = levelOf(begin);
+    for (double from = std::max(0.0, begin - 0.5 * std::ldexp(schedule.step, level)), end;
+         from < schedule.reach; from = end, ++level) {
+        end = std::ldexp(2.0 * cells, level);
+        const double parts = std::max(1.0, std::round(std::ldexp((end - from) / schedule.step, -level)));
+        for (double i = 0.5; i < parts; ++i)
+            add(from + (end - from) * i / parts, level, (end - from) / parts, 1.0);
     }
     return steps;
 }

@@ -33,7 +33,7 @@ ConeWindow coneWindow(std::uint32_t count);
 // Of all a set's cones.
 struct ConeSchedule {
     double nudge = 1.0;  // where cones begin: voxels along the normal
-    double step = 1.0;   // in diameters, at most
+    double step = 1.0;   // in cells
     double reach = 1.0;  // in voxels
     double openReach =
         0.0;  // within which ambient occlusion counts what it meets, in voxels; 0: nothing

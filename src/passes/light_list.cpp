@@ -10,6 +10,9 @@ namespace lightwell {
 namespace {
 
 constexpr Range kGroup{64, 1};
+// Of 1 / diagonal^2: times the square of the largest distance it is still a float, or no light would be
+// a VPL's nearest.
+constexpr double kMostScale = 1e18;
 constexpr const char* kMerge = "light_list/light_list_merge";
 
 std::size_t listBytes(lw_subset_order order) {
@@ -25,6 +28,7 @@ LightList::LightList(Device& device, const LightListOptions& options)
     : device_(device),
       options_(options),
       cull_(device.programs().kernel("light_list/light_list", "light_list_cull")),
+      sites_(device.programs().kernel("light_list/light_list_sites", "light_list_sites")),
       assign_(device.programs().kernel(kMerge, "light_list_assign")),
       begin_(device.programs().kernel(kMerge, "light_list_begin")),
       sum_(device.programs().kernel(kMerge, "light_list_sum")) {}
@@ -59,6 +63,12 @@ void LightList::recordCull(Executor& executor, const Buffer& inputs, const lw_st
                  order_, cl_int(lists_), vpls_, baked());
 }
 
+void LightList::recordSites(Executor& executor, std::uint32_t count, float lift, const Buffer& sites) {
+    if (count == 0) return;
+    executor.run("light_list.sites", sites_, gridOver(count), kGroup, vpls_, baked(), cl_int(lists_),
+                 cl_int(count), lift, sites);
+}
+
 void LightList::recordLights(Executor& executor, double diagonal) {
     const std::uint32_t most = options_.lights;
     const std::size_t count = std::size_t(std::max(order_.count, 1));
@@ -69,7 +79,7 @@ void LightList::recordLights(Executor& executor, double diagonal) {
     if (!centresKnown_)
         executor.fill("light_list.restart", centres_, 0, 0, most * sizeof(lw_listed_centre));
     const cl_int lists = cl_int(lists_), alone = order_.count <= cl_int(most) ? 1 : 0;
-    const float scale = diagonal > 0.0 ? float(std::min(1.0 / (diagonal * diagonal), 1e30)) : 0.0f;
+    const float scale = diagonal > 0.0 ? float(std::min(1.0 / (diagonal * diagonal), kMostScale)) : 0.0f;
     const auto assign = [&] {
         if (order_.count > 0)
             executor.run("light_list.assign", assign_, gridOver(count), kGroup, vpls_, baked(), lists,

@@ -30,6 +30,10 @@ public:
     // others are emptied. restart: what was kept in the frame before is no matter.
     void recordCull(Executor& executor, const Buffer& inputs, const lw_static_frame& frame,
                     const Buffer& lit, bool restart);
+    // Pass "light_list.sites", once the lists are whole, of lists for one subset: from where the first
+    // `count` VPLs look, each raised off its surface by `lift` radii of its disc, as VPLs of the same
+    // numbers; without flux those that are out.
+    void recordSites(Executor& executor, std::uint32_t count, float lift, const Buffer& sites);
     // Passes "light_list.assign", ".begin", ".sum", once the lists are whole: the lights of this frame.
     // diagonal: of the places, m.
     void recordLights(Executor& executor, double diagonal);
@@ -51,7 +55,7 @@ public:
 private:
     Device& device_;
     LightListOptions options_;
-    Kernel &cull_, &assign_, &begin_, &sum_;
+    Kernel &cull_, &sites_, &assign_, &begin_, &sum_;
     Buffer kept_, vpls_, baked_;
     Buffer centres_, assignment_, losses_, listed_;
     lw_subset_order order_{};

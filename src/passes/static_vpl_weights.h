@@ -11,7 +11,7 @@ namespace lightwell {
 
 class StaticVplWeights {
 public:
-    // comparisons: distances that a frame looks at, rounded up to whole blocks of 16 places.
+    // comparisons: distances that a frame looks at, rounded down to whole blocks of 16 places, one at least.
     StaticVplWeights(Device& device, std::uint32_t comparisons);
 
     // Makes room for places, and forgets the areas where their number has changed. Without `wanted`

@@ -90,7 +90,7 @@ std::vector<LWParameter> ofCones() {
                   "where cones begin, in voxels along the normal: more, and near light is missed; less, and surfaces light and shadow "
                   "themselves",
                   LW_PARAMETER_FLOAT, offsetof(LWConeTracingDesc, nudge), 0, 8, 1),
-        parameter("step", "of a cone, in its diameters: less, and bands fade; time grows with its inverse", LW_PARAMETER_FLOAT,
+        parameter("step", "of a cone, in the cells that it reads: less, and bands fade; time grows with its inverse", LW_PARAMETER_FLOAT,
                   offsetof(LWConeTracingDesc, step), 0.125, 1, 1),
         parameter("distance", "that cones reach, in sides of the largest grid: less, and far light is missed; time falls little",
                   LW_PARAMETER_FLOAT, offsetof(LWConeTracingDesc, distance), 1e-3, 2, 1.75),

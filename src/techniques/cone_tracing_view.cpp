@@ -3,6 +3,7 @@
 #include "compute/device.h"
 #include "compute/raw_enum.h"
 #include "inputs/image_access.h"
+#include "techniques/gather_report.h"
 
 namespace lightwell {
 namespace {
@@ -159,8 +160,7 @@ void ConeTracingView::traceReduced(Executor& executor, const View& view, ConeTra
 }
 
 void ConeTracingView::startReport(Report& report) {
-    for (const char* name : {"rejected_pixels", "saturated_pixels", "pixels_outside", "upsample_fallbacks"})
-        report.counts.push_back({name, 0});
+    startGatherReport(report);
     ConeTracingRays::startReport(report);
 }
 
@@ -172,11 +172,7 @@ void ConeTracingView::report(Report& report) const {
     open_.report(report);
     rays_.report(device_, report, !isGathered_);
     if (!isGathered_) return;
-    // Down-sampling turns what is neither surface nor background into background; up-sampling counts it.
-    report.read(device_, "rejected_pixels", halvings_ ? upsampleCounts_ : counts_, 0);
-    report.read(device_, "saturated_pixels", counts_, sizeof(cl_int));
-    report.read(device_, "pixels_outside", counts_, 2 * sizeof(cl_int));
-    if (halvings_) report.read(device_, "upsample_fallbacks", upsampleCounts_, sizeof(cl_int));
+    reportGather(device_, report, counts_, halvings_ ? &upsampleCounts_ : nullptr);
 }
 
 void ConeTracingView::addDebugViews(std::vector<DebugView>& views) const {

@@ -2,6 +2,7 @@
 
 #include "compute/device.h"
 #include "passes/lpv_read.h"
+#include "techniques/gather_report.h"
 
 namespace lightwell {
 namespace {
@@ -63,8 +64,7 @@ void LpvView::lightHalf(Executor& executor, const Planes& irradiance, const Plan
 }
 
 void LpvView::startReport(Report& report) {
-    for (const char* name : {"rejected_pixels", "saturated_pixels", "pixels_outside", "upsample_fallbacks"})
-        report.counts.push_back({name, 0});
+    startGatherReport(report);
     LpvSpecularView::startReport(report);
 }
 
@@ -75,11 +75,7 @@ void LpvView::report(Device& device, Report& report) const {
     validity_.report(report);
     specular_.report(device, report, !isGathered_);
     if (!isGathered_) return;
-    // Down-sampling turns what is neither surface nor background into background; up-sampling counts it.
-    report.read(device, "rejected_pixels", lastHalf_ ? upsampleCounts_ : counts_, 0);
-    report.read(device, "saturated_pixels", counts_, sizeof(cl_int));
-    report.read(device, "pixels_outside", counts_, 2 * sizeof(cl_int));
-    if (lastHalf_) report.read(device, "upsample_fallbacks", upsampleCounts_, sizeof(cl_int));
+    reportGather(device, report, counts_, lastHalf_ ? &upsampleCounts_ : nullptr);
 }
 
 void LpvView::addDebugViews(std::vector<DebugView>& views) const {

@@ -11,9 +11,9 @@
 #include "techniques/interleaved_view.h"
 #include "techniques/prewarm.h"
 #include "techniques/rsm_parameters.h"
-#include "techniques/rsm_points.h"
 #include "techniques/rsm_shadows.h"
 #include "techniques/technique_entry.h"
+#include "techniques/vpl_points.h"
 
 namespace lightwell {
 namespace {
@@ -137,7 +137,7 @@ private:
     std::optional<RsmShadows> shadows_;        // with visibility only
     std::optional<TemporalHistory> history_;
     PerView<InterleavedView> states_;
-    std::optional<RsmPoints> points_;  // from the first lwRenderPoints on
+    std::optional<VplPoints> points_;  // from the first lwRenderPoints on
     std::vector<LWChoice> choices_;  // of the last update
 };
 

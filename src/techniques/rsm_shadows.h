@@ -14,7 +14,7 @@
 #include "passes/clustered_gather.h"
 #include "passes/kmeans.h"
 #include "passes/vpl_sampling.h"
-#include "techniques/ssvp_points.h"
+#include "techniques/clustered_points.h"
 #include "techniques/technique.h"
 #include "techniques/voxel_shadows.h"
 
@@ -62,7 +62,7 @@ private:
     KMeans clusters_;
     ClusteredGather gather_;
     std::vector<GatheredList> lists_;  // of the last frame
-    std::optional<SsvpPoints> points_;
+    std::optional<ClusteredPoints> points_;
 };
 
 }  // namespace lightwell

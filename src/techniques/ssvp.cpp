@@ -13,12 +13,12 @@
 #include "passes/second_bounce.h"
 #include "passes/ssvp_plan.h"
 #include "passes/vpl_sampling.h"
+#include "techniques/clustered_points.h"
 #include "techniques/interleaved_view.h"
+#include "techniques/occluder_maps.h"
 #include "techniques/prewarm.h"
-#include "techniques/ssvp_maps.h"
 #include "techniques/ssvp_options.h"
 #include "techniques/ssvp_parameters.h"
-#include "techniques/ssvp_points.h"
 #include "techniques/technique_entry.h"
 
 namespace lightwell {
@@ -32,9 +32,13 @@ struct Stage {
     SecondBounce next;
 };
 
-// What the host gave and this technique does not read, or lacks: said in the stats. `choices`: the maps'.
-std::vector<LWChoice> inputChoices(std::vector<LWChoice> choices, const LWSsvpDesc& desc, const LWFrame& frame) {
+// What the host gave and this technique does not read, or lacks: said in the stats.
+std::vector<LWChoice> inputChoices(const OccluderMaps& maps, const LWSsvpDesc& desc, const LWFrame& frame) {
     constexpr const char* kReason = "not used: technique ssvp takes light from RSMs and authored VPLs only";
+    std::vector<LWChoice> choices = maps.choices(frame);
+    if (frame.sourceViewCount && !maps.usesViews())
+        choices.push_back({"frame.sourceViews", "not used: they are no occluders, and technique ssvp takes light from RSMs and "
+                                                "authored VPLs only"});
     if (frame.blockerCount) choices.push_back({"frame.blockers", kReason});
     if (frame.environment[0] > 0.0f || frame.environment[1] > 0.0f || frame.environment[2] > 0.0f)
         choices.push_back({"frame.environment", kReason});
@@ -51,7 +55,7 @@ public:
         : device_(device),
           desc_(desc),
           sampling_(device, samplingOptions(desc)),
-          maps_(device, desc, stagesOf(desc)),
+          maps_(device, occluderOptions(desc), stagesOf(desc)),
           passes_(device, desc.interleave),
           gather_(device, desc.interleave, groupsOf(desc), visibilityOf(desc)) {
         for (std::size_t i = 0; i < stagesOf(desc); ++i) stages_.emplace_back(device, desc, i);
@@ -94,7 +98,7 @@ public:
         gather_.recordOrder(executor, lists);
         lists_ = std::move(lists);
 
-        choices_ = inputChoices(maps_.choices(frame), desc_, frame);
+        choices_ = inputChoices(maps_, desc_, frame);
         states_.purge();
         states_.each([&](InterleavedView& state) { state.startFrame(restart); });
         if (points_) points_->startFrame();
@@ -198,7 +202,7 @@ private:
     VplSampling sampling_;
     std::optional<SsvpPlan> plan_;  // with an error target only
     std::deque<Stage> stages_;
-    SsvpMaps maps_;
+    OccluderMaps maps_;
     std::vector<GatheredList> lists_;  // of each bounce
     InterleavedGather passes_;
     ClusteredGather gather_;
@@ -207,7 +211,7 @@ private:
     std::optional<VoxelShadows> shadows_;  // with visibility through voxels only
     std::optional<BoundingCompensation> compensation_;
     PerView<InterleavedView> states_;
-    std::optional<SsvpPoints> points_;  // from the first lwRenderPoints on
+    std::optional<ClusteredPoints> points_;  // from the first lwRenderPoints on
     std::vector<LWChoice> choices_;  // of the last update
 };
 

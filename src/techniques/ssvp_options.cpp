@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "inputs/rsm_input.h"
-#include "techniques/ssvp_maps.h"
 
 namespace lightwell {
 
@@ -42,6 +41,19 @@ InterleavedOptions interleavedOptions(const LWSsvpDesc& desc) {
 
 CompensationOptions compensationOptions(const LWSsvpDesc& desc) {
     return {desc.interleave, desc.compensation, desc.sampling == LW_SAMPLING_UNIFORM};
+}
+
+// Occluders serve the visibility and further bounces; maps of a stage's clusters the visibility, but that through voxels,
+// and the bounce after it.
+OccluderOptions occluderOptions(const LWSsvpDesc& desc) {
+    OccluderOptions options;
+    options.occluders = desc.occluders;
+    options.mapSize = desc.mapSize;
+    options.isWanted = desc.visibility != LW_VISIBILITY_NONE || desc.bounces > 1;
+    options.throughVoxels = desc.visibility == LW_VISIBILITY_VOXEL;
+    const bool looks = desc.visibility == LW_VISIBILITY_HARD || desc.visibility == LW_VISIBILITY_SOFT;
+    options.drawn = looks ? stagesOf(desc) : desc.bounces - 1;
+    return options;
 }
 
 ClusterVisibility visibilityOf(const LWSsvpDesc& desc) {
@@ -102,11 +114,11 @@ std::uint64_t estimateSsvpBytes(const void* desc, const LWViewDesc& view, const 
     }
     if (ssvp.autoError > 0.0f)
         total += SsvpPlan::estimateBytes(planOptions(ssvp), shape.texels ? shape.rows : 0);
-    if (ssvp.visibility == LW_VISIBILITY_VOXEL) total += VoxelShadows::estimateBytes(ssvp.voxels, shadowing, SsvpMaps::voxelSurfels(ssvp, shape), shape);
+    if (ssvp.visibility == LW_VISIBILITY_VOXEL) total += VoxelShadows::estimateBytes(ssvp.voxels, shadowing, OccluderMaps::voxelSurfels(occluderOptions(ssvp), shape), shape);
     if (ssvp.compensation > 0) total += BoundingCompensation::estimateBytes(compensationOptions(ssvp));
     return total + RsmInput::estimateBytes(shape) +
            VplSampling::estimateBytes(samplingOptions(ssvp), shape) +
-           SsvpMaps::estimateBytes(ssvp, clusterCounts, shape) +
+           OccluderMaps::estimateBytes(occluderOptions(ssvp), clusterCounts, shape) +
            ClusteredGather::estimateBytes(counts, std::max<std::size_t>(shadowedOf(ssvp), 1),
                                           ssvp.interleave) +
            InterleavedView::estimateBytes(interleavedOptions(ssvp), view, shape.uploads,

@@ -12,6 +12,7 @@
 #include "passes/ssvp_plan.h"
 #include "passes/vpl_sampling.h"
 #include "techniques/interleaved_view.h"
+#include "techniques/occluder_maps.h"
 
 namespace lightwell {
 
@@ -21,6 +22,7 @@ KMeansOptions clusterOptions(const LWSsvpDesc& desc, std::size_t stage);
 SecondBounceOptions nextOptions(const LWSsvpDesc& desc, std::size_t stage);
 InterleavedOptions interleavedOptions(const LWSsvpDesc& desc);
 CompensationOptions compensationOptions(const LWSsvpDesc& desc);  // of one that compensates
+OccluderOptions occluderOptions(const LWSsvpDesc& desc);
 ClusterVisibility visibilityOf(const LWSsvpDesc& desc);
 SsvpPlanOptions planOptions(const LWSsvpDesc& desc);  // of one with an error target
 std::uint32_t groupsOf(const LWSsvpDesc& desc);

@@ -1,7 +1,6 @@
 // Frame part, report and registration; the table of parameters is static_vpl_parameters.cpp's.
 #include "techniques/static_vpl.h"
 
-#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -16,17 +15,17 @@
 #include "techniques/prewarm.h"
 #include "techniques/static_vpl_parameters.h"
 #include "techniques/static_vpl_phantoms.h"
-#include "techniques/static_vpl_points.h"
+#include "techniques/static_vpl_shadows.h"
 #include "techniques/static_vpl_view.h"
 #include "techniques/technique_entry.h"
+#include "techniques/vpl_points.h"
 
 namespace lightwell {
 namespace {
 
 // Squared distance within which one place's look prevails in a phantom, as a share of the places'
 // squared diagonal. The source's code has 0.005 m^2, which is this share in a room of 5 m. Smaller: a
-// phantom that passes a place takes its look with a jerk. Larger: the look of all places is mixed
-// everywhere.
+// phantom that passes a place takes its look with a jerk. Larger: the look of all is mixed everywhere.
 constexpr double kNearness = 2e-4;
 
 InterleavedOptions interleavedOptions(const LWStaticVplDesc& desc) {
@@ -38,25 +37,30 @@ InterleavedOptions interleavedOptions(const LWStaticVplDesc& desc) {
     return options;
 }
 
+bool isShadowed(const LWStaticVplDesc& desc) {
+    return desc.visibility != LW_VISIBILITY_NONE;
+}
+
 LightListOptions listOptions(const LWStaticVplDesc& desc) {
     LightListOptions options;
     options.relative = !(desc.cullAbsolute > 0.0f);
     options.threshold = options.relative ? desc.cullRelative : desc.cullAbsolute;
     options.hysteresis = desc.hysteresis;
-    options.subsets = desc.interleave * desc.interleave;
+    // Shadowed ones in their own order: their clusters are dealt out, not this list.
+    options.subsets = isShadowed(desc) ? 1 : desc.interleave * desc.interleave;
     options.lights = desc.lights;
     return options;
 }
 
-// What the host gave and this technique does not read: said in the stats, so that nobody waits for its
-// light.
-std::vector<LWChoice> unusedInputs(const LWFrame& frame) {
+// What occludes, and what the host gave and this technique does not read.
+std::vector<LWChoice> inputChoices(const LWFrame& frame, const StaticVplShadows* shadows) {
     constexpr const char* kReason =
         "not used: technique static_vpl takes light from the frame's lights by its static VPLs only";
     std::vector<LWChoice> unused;
+    if (shadows) unused = shadows->choices(frame);
     if (frame.vplCount) unused.push_back({"frame.vpls", kReason});
     if (frame.sourceViewCount) unused.push_back({"frame.sourceViews", kReason});
-    if (frame.geometry) unused.push_back({"frame.geometry", kReason});
+    if (frame.geometry && !shadows) unused.push_back({"frame.geometry", kReason});
     if (frame.environment[0] > 0.0f || frame.environment[1] > 0.0f || frame.environment[2] > 0.0f)
         unused.push_back({"frame.environment", kReason});
     return unused;
@@ -74,32 +78,33 @@ public:
           list_(device, listOptions(desc)),
           gather_(device, desc.interleave) {
         if (interleavedOptions(desc).half) bilateral_.emplace(device);
+        if (isShadowed(desc)) shadows_.emplace(device, desc);
     }
 
     void update(Executor& executor, const LWFrame& frame) override {
         StaticVplInput::check(frame);
         phantoms_.check(device_, frame);
-        const bool restart = continuity_.beginLost() || frame.reset != 0;
+        if (shadows_) shadows_->check(frame);
+        const bool lost = continuity_.beginLost(), restart = lost || frame.reset != 0;
         phantoms_.import(executor, frame);
         input_.import(executor, frame, desc_.unitArea, desc_.automaticWeights != 0,
                       phantoms_.phantoms());
         const lw_static_frame& scene = input_.frame();
         weights_.reserve(frame.staticVplCount, input_.anyAutomatic());
-        if (restart) {
-            weights_.forget();
-            phantom_.forget();
-        }
+        if (restart) weights_.forget();
+        if (restart || phantoms_.changed()) phantom_.forget();
         if (input_.anyAutomatic()) weights_.record(executor, input_.memory(), scene);
         light_.record(executor, input_.memory(), scene, weights_.areas());
-        list_.reserve(frame.staticVplCount,
-                      PhantomVpl::others(std::uint32_t(scene.phantomCount), desc_.bounces > 1),
-                      input_.bakedReceivers() ? 2 : 1);
+        const std::uint32_t spots = std::uint32_t(scene.phantomCount),
+                            others = PhantomVpl::others(spots, desc_.bounces > 1);
+        list_.reserve(frame.staticVplCount, others, input_.bakedReceivers() ? 2 : 1);
         list_.recordCull(executor, input_.memory(), scene, light_.lit(), restart);
         phantom_.record(executor, input_.memory(), scene, light_.lit(), phantoms_.texels(),
                         phantomOptions(), list_);
+        if (shadows_) shadows_->update(executor, frame, list_, others - spots, restart, lost);
         isListed_ = false;
 
-        choices_ = unusedInputs(frame);
+        choices_ = inputChoices(frame, passes().shadows);
         for (const LWChoice& choice : phantoms_.choices(frame)) choices_.push_back(choice);
         states_.purge();
         states_.each([&](StaticVplView& state) { state.startFrame(restart); });
@@ -112,12 +117,14 @@ public:
         StaticVplView& state = states_.get(view, [&] {
             return std::make_unique<StaticVplView>(device_, interleavedOptions(desc_), *view);
         });
-        state.render(executor, *view, gbuffer, output, gather_, bilateral_ ? &*bilateral_ : nullptr,
-                     list_);
+        state.render(executor, *view, gbuffer, output, passes());
     }
 
     void renderPoints(Executor& executor, const Points& points) override {
         checkPoints(device_, points);
+        if (shadows_)
+            return shadows_->renderPoints(executor, list_.lists() > 1 && points.output.baked ? 1 : 0,
+                                          points);
         if (!points_) points_.emplace(device_);
         points_->render(executor, points, points.output.baked ? list_.baked() : list_.vpls(),
                         list_.order());
@@ -141,6 +148,9 @@ public:
     std::uint64_t bytes() const override;
 
 private:
+    StaticVplPasses passes() {
+        return {gather_, bilateral_ ? &*bilateral_ : nullptr, list_, shadows_ ? &*shadows_ : nullptr};
+    }
     lw_phantom_options phantomOptions() const {
         lw_phantom_options options{};
         options.eps = float(kNearness * input_.diagonal() * input_.diagonal());
@@ -164,21 +174,33 @@ private:
     bool isListed_ = false;  // the frame's lights are made
     InterleavedGather gather_;
     std::optional<JointBilateral> bilateral_;  // half resolution only
+    std::optional<StaticVplShadows> shadows_;  // with visibility only
     PerView<StaticVplView> states_;
-    std::optional<StaticVplPoints> points_;  // from the first lwRenderPoints on
-    std::vector<LWChoice> choices_;          // of the last update
+    std::optional<VplPoints> points_;  // from the first lwRenderPoints on
+    std::vector<LWChoice> choices_;    // of the last update
 };
 
+// Twins, so that this technique's frame stays as it is; kernels belong to the device. Automatic weights
+// depend on the frame, as do, of shadows, what occludes and whether VPLs share what they see.
 void StaticVplTechnique::prewarm(Executor& executor, const std::shared_ptr<View>&) {
-    // A twin, so that this technique's frame stays as it is; kernels belong to the device. Automatic
-    // weights depend on the frame.
     LWStaticVplDesc desc = desc_;
     desc.automaticWeights = 1;
     desc.bounces = 2;
     desc.lights = 1;  // the exercise's VPLs are more: they have to be merged
+    const auto exercise = [&] {
+        StaticVplTechnique twin(device_, desc);
+        exerciseTechnique(executor, twin, 0, true);
+        exercisePoints(executor, twin);
+    };
+    if (!shadows_) exercise();
+    for (int shared = 0; shadows_ && shared < 2; ++shared) {
+        desc.clusters = std::uint32_t(shared);
+        if (desc_.occluders == LW_OCCLUDERS_AUTO)
+            desc.occluders = shared ? LW_OCCLUDERS_SURFELS : LW_OCCLUDERS_TRIANGLES;
+        exercise();
+    }
+    desc.visibility = LW_VISIBILITY_NONE;  // of which the list knows nothing
     StaticVplTechnique twin(device_, desc);
-    exerciseTechnique(executor, twin, 0, true);
-    exercisePoints(executor, twin);
     LWStaticVpl places[2] = {};
     for (LWStaticVpl& place : places) place.normal[1] = 1.0f;
     LWFrame frame{};
@@ -186,8 +208,8 @@ void StaticVplTechnique::prewarm(Executor& executor, const std::shared_ptr<View>
     frame.staticVpls = places;
     frame.staticVplCount = 2;
     twin.update(executor, frame);
-    std::vector<LWListedLight> lights(desc.lights);
-    twin.readLightList(executor, lights.data());
+    LWListedLight light;
+    twin.readLightList(executor, &light);
     device_.finish();
 }
 
@@ -201,10 +223,10 @@ Report StaticVplTechnique::report() {
     report.counts.push_back({"phantom_vpls", std::uint64_t(scene.phantomCount)});
     report.counts.push_back({"vpls", std::uint64_t(list_.order().count)});
     for (const LWChoice& choice : choices_) report.choose(choice.name, choice.reason);
-    report.counts.push_back({"rejected_pixels", 0});
-    report.counts.push_back({"upsample_fallbacks", 0});
-    report.counts.push_back({"saturated_pixels", 0});
-    states_.each([&](const StaticVplView& state) { state.report(report, list_.order()); });
+    for (const char* name : {"rejected_pixels", "upsample_fallbacks", "saturated_pixels"})
+        report.counts.push_back({name, 0});
+    if (shadows_) shadows_->report(report);
+    states_.each([&](const StaticVplView& state) { state.report(report, passes().order()); });
     if (points_) points_->report(report);
     return report;
 }
@@ -228,6 +250,7 @@ std::vector<DebugView> StaticVplTechnique::debugViews(const View* view) {
                          "receivers rgb (W), area (m^2)",
                          lit,
                          {}});
+        if (shadows_) shadows_->addDebugViews(views);
     }
     if (const StaticVplView* state = states_.find(view)) state->addDebugViews(views);
     return views;
@@ -235,7 +258,8 @@ std::vector<DebugView> StaticVplTechnique::debugViews(const View* view) {
 
 std::uint64_t StaticVplTechnique::bytes() const {
     std::uint64_t total = phantoms_.bytes() + input_.bytes() + weights_.bytes() + light_.bytes() +
-                          phantom_.bytes() + list_.bytes() + (points_ ? points_->bytes() : 0);
+                          phantom_.bytes() + list_.bytes() + (shadows_ ? shadows_->bytes() : 0) +
+                          (points_ ? points_->bytes() : 0);
     states_.each([&](const StaticVplView& state) { total += state.bytes(); });
     return total;
 }
@@ -245,17 +269,19 @@ std::uint64_t StaticVplTechnique::bytes() const {
 std::uint64_t estimateBytes(const void* desc, const LWViewDesc& view, const FrameShape& shape) {
     const LWStaticVplDesc& own = *static_cast<const LWStaticVplDesc*>(desc);
     const bool phantoms = own.variant == LW_STATIC_VPL_PHANTOM;
-    const std::uint32_t spots = phantoms ? shape.aimedSpots : 0,
-                        others = PhantomVpl::others(spots, own.bounces > 1);
+    const std::uint32_t places = shape.staticVplCount, spots = phantoms ? shape.aimedSpots : 0,
+                        others = PhantomVpl::others(spots, own.bounces > 1), opposite = others - spots;
     const LightListOptions options = listOptions(own);
-    return StaticVplInput::estimateBytes(shape, phantoms) +
-           StaticVplWeights::estimateBytes(shape.staticVplCount) +
-           StaticVplLight::estimateBytes(shape.staticVplCount) + PhantomVpl::estimateBytes(spots) +
-           (phantoms ? StaticVplPhantoms::estimateBytes(shape) : 0) +
-           LightList::estimateBytes(options, shape.staticVplCount, others,
-                                    shape.bakedReceivers ? 2 : 1) +
-           StaticVplView::estimateBytes(interleavedOptions(own), view, shape,
-                                        LightList::orderOf(options, shape.staticVplCount, others));
+    const std::uint64_t shadows =
+        isShadowed(own) ? StaticVplShadows::estimateBytes(own, others, opposite, shape) : 0;
+    const lw_subset_order order = isShadowed(own)
+                                      ? StaticVplShadows::orderOf(own, places + others, opposite)
+                                      : LightList::orderOf(options, places, others);
+    return shadows + StaticVplInput::estimateBytes(shape, phantoms) +
+           StaticVplWeights::estimateBytes(places) + StaticVplLight::estimateBytes(places) +
+           PhantomVpl::estimateBytes(spots) + (phantoms ? StaticVplPhantoms::estimateBytes(shape) : 0) +
+           LightList::estimateBytes(options, places, others, shape.bakedReceivers ? 2 : 1) +
+           StaticVplView::estimateBytes(interleavedOptions(own), view, shape, order);
 }
 
 }  // namespace

@@ -10,6 +10,11 @@ namespace {
 
 constexpr const char* kVariantNames[] = {"static", "phantom", nullptr};
 constexpr const char* kResolutionNames[] = {"full", "half", nullptr};
+constexpr const char* kVisibilityNames[] = {"none", "hard", "soft", "voxel", nullptr};
+constexpr const char* kOccludersNames[] = {"auto", "triangles", "surfels", nullptr};
+constexpr double kMapSizeValues[] = {64, 96, 128, 192, 256, 384, 512};
+constexpr double kVoxelsValues[] = {32, 64, 128, 256};
+constexpr double kVisibilitySweep[] = {LW_VISIBILITY_NONE, LW_VISIBILITY_HARD};
 constexpr double kInterleaveValues[] = {1, 2, 4, 8};
 constexpr double kVariantSweep[] = {LW_STATIC_VPL_STATIC, LW_STATIC_VPL_PHANTOM};
 constexpr double kBounceSweep[] = {1, 2};
@@ -84,7 +89,44 @@ const std::vector<LWParameter>& staticVplParameters() {
                          "pixels that are gathered; half: every second column and row, up-sampled after",
                          LW_PARAMETER_ENUM, offsetof(Desc, resolution), 0, 1, LW_RESOLUTION_FULL),
                      kResolutionNames),
-            kResolutionSweep)};
+            kResolutionSweep),
+        swept(choosing(
+                  parameter(
+                      "visibility",
+                      "of VPLs: none, or past the frame's geometry, by a map's nearest texel, its four "
+                      "nearest, or voxels: no light through walls, time and memory",
+                      LW_PARAMETER_ENUM, offsetof(Desc, visibility), 0, 3, LW_VISIBILITY_NONE),
+                  kVisibilityNames),
+              kVisibilitySweep),
+        whole("clusters",
+              "VPLs up to which each sees for itself; more share so many maps or sweeps: fewer false "
+              "shadows with "
+              "more of them, memory and time; 0: always each for itself",
+              offsetof(Desc, clusters), 0, 64, 32),
+        allowing(
+            whole("map_size",
+                  "texels a side of a map: finer occluders, memory and drawing time with its square",
+                  offsetof(Desc, mapSize), 64, 512, 128),
+            kMapSizeValues),
+        choosing(parameter(
+                     "occluders",
+                     "what shadows: the frame's triangles if it has some, else its surfels (or else its "
+                     "triangles, sampled)",
+                     LW_PARAMETER_ENUM, offsetof(Desc, occluders), 0, 2, LW_OCCLUDERS_AUTO),
+                 kOccludersNames),
+        real("lift",
+             "how far off its surface a VPL looks from, of its disc's radius: fewer in the dark that "
+             "lie inside; "
+             "what is near casts less shadow",
+             offsetof(Desc, lift), 0, 1, 0.05),
+        whole("shadowed_bounces", "2: of the second bounce's VPLs too, which may lie behind walls",
+              offsetof(Desc, shadowedBounces), 1, 2, 1),
+        allowing(whole("voxels",
+                       "a side of the grid that visibility=voxel looks through: finer occluders; memory "
+                       "and drawing "
+                       "time with its cube",
+                       offsetof(Desc, voxels), 32, 256, 64),
+                 kVoxelsValues)};
     return table;
 }
 
@@ -114,4 +156,11 @@ extern "C" void lwDefaultStaticVpl(LWStaticVplDesc* desc) {
     desc->interleave = 1;
     desc->filter = 1;
     desc->resolution = LW_RESOLUTION_FULL;
+    desc->visibility = LW_VISIBILITY_NONE;
+    desc->clusters = 32;
+    desc->mapSize = 128;
+    desc->occluders = LW_OCCLUDERS_AUTO;
+    desc->lift = 0.05f;
+    desc->shadowedBounces = 1;
+    desc->voxels = 64;
 }

@@ -1,5 +1,7 @@
 #include "techniques/static_vpl_phantoms.h"
 
+#include <algorithm>
+
 #include "compute/device.h"
 #include "inputs/camera.h"
 #include "inputs/image_check.h"
@@ -50,8 +52,9 @@ void StaticVplPhantoms::check(Device& device, const LWFrame& frame) const {
 // Of a map only its middle is read. As an image of one texel it lies exactly on the camera's axis, also
 // where it has an even number of texels and none of them does: depth leads to a place on the axis.
 void StaticVplPhantoms::import(Executor& executor, const LWFrame& frame) {
+    const std::vector<lw_phantom> before = std::move(phantoms_);
     phantoms_.clear();
-    fromMaps_ = false;
+    fromMaps_ = changed_ = false;
     if (!wanted_) return;
     std::vector<LWLight> lights = lightsByMap(frame);
     std::vector<LWRsm> rsms(lights.size());
@@ -82,6 +85,8 @@ void StaticVplPhantoms::import(Executor& executor, const LWFrame& frame) {
             phantom.texel = cl_int(rsms_.spans[span++].firstTexel);
         phantoms_.push_back(phantom);
     }
+    changed_ = !std::equal(before.begin(), before.end(), phantoms_.begin(), phantoms_.end(),
+                           [](const lw_phantom& a, const lw_phantom& b) { return a.light == b.light; });
 }
 
 std::vector<LWChoice> StaticVplPhantoms::choices(const LWFrame& frame) const {

@@ -22,13 +22,15 @@ public:
     void import(Executor& executor, const LWFrame& frame);
 
     const std::vector<lw_phantom>& phantoms() const { return phantoms_; }
+    // They are other lights' than those of the import before.
+    bool changed() const { return changed_; }
     Planes texels() const { return phantoms_.empty() || !fromMaps_ ? Planes{} : rsms_.texels; }
     std::vector<LWChoice> choices(const LWFrame& frame) const;
     std::uint64_t bytes() const { return rsms_.bytes(); }
     static std::uint64_t estimateBytes(const FrameShape& shape);
 
 private:
-    bool wanted_, fromMaps_ = false;
+    bool wanted_, fromMaps_ = false, changed_ = false;
     RsmInput rsms_;
     std::vector<lw_phantom> phantoms_;
 };

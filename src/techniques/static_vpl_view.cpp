@@ -35,21 +35,26 @@ StaticVplView::StaticVplView(Device& device, const InterleavedOptions& options, 
     : device_(device), options_(options), whole_(device, options, view) {}
 
 void StaticVplView::gatherOf(Executor& executor, InterleavedView& state, const View& view,
-                             const LWGBuffer& gbuffer, const LWOutput& output, InterleavedGather& gather,
-                             JointBilateral* bilateral, const Buffer& vpls, lw_subset_order order) {
-    state.render(executor, view, gbuffer, output, {gather, bilateral, nullptr},
+                             const LWGBuffer& gbuffer, const LWOutput& output,
+                             const StaticVplPasses& passes, int list) {
+    const Buffer& vpls = passes.vpls(list);
+    const lw_subset_order order = passes.order();
+    state.render(executor, view, gbuffer, output, {passes.gather, passes.bilateral, nullptr},
                  [&](const Planes& position, const Planes& normal, const Planes& irradiance) {
-                     const Buffer& masks = state.cull(executor, gather, position, normal, vpls, order);
-                     gather.recordGather(executor, position, normal, vpls, order, masks, irradiance,
-                                         state.counts());
+                     const Buffer& masks =
+                         state.cull(executor, passes.gather, position, normal, vpls, order);
+                     if (passes.shadows)
+                         return passes.shadows->recordGather(executor, list, position, normal, masks,
+                                                             irradiance, state.counts());
+                     passes.gather.recordGather(executor, position, normal, vpls, order, masks,
+                                                irradiance, state.counts());
                  });
 }
 
 void StaticVplView::render(Executor& executor, const View& view, const LWGBuffer& gbuffer,
-                           const LWOutput& output, InterleavedGather& gather, JointBilateral* bilateral,
-                           const LightList& list) {
-    if (list.lists() == 1 || imageAbsent(gbuffer.bakedMask)) {
-        gatherOf(executor, whole_, view, gbuffer, output, gather, bilateral, list.vpls(), list.order());
+                           const LWOutput& output, const StaticVplPasses& passes) {
+    if (passes.list.lists() == 1 || imageAbsent(gbuffer.bakedMask)) {
+        gatherOf(executor, whole_, view, gbuffer, output, passes, 0);
         return;
     }
     GBufferInput::check(device_, view, gbuffer, kNeedsBakedMask, "gbuffer");
@@ -74,8 +79,7 @@ void StaticVplView::render(Executor& executor, const View& view, const LWGBuffer
         LWOutput light = output;
         if (irradiance) light.irradiance = imageOf(planes(both.irradiance, i));
         if (validity) light.validity = imageOf(planes(both.validity, i));
-        gatherOf(executor, i ? both.view : whole_, view, part, light, gather, bilateral,
-                 i ? list.baked() : list.vpls(), list.order());
+        gatherOf(executor, i ? both.view : whole_, view, part, light, passes, i);
     }
     if (irradiance)
         both.split.recordJoin(executor, mask, planes(both.irradiance, 0), planes(both.irradiance, 1),

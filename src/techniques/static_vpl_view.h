@@ -8,15 +8,30 @@
 #include "passes/light_list.h"
 #include "passes/receiver_split.h"
 #include "techniques/interleaved_view.h"
+#include "techniques/static_vpl_shadows.h"
 
 namespace lightwell {
+
+// What a frame's VPLs are gathered with; shadows, bilateral: null without.
+struct StaticVplPasses {
+    InterleavedGather& gather;
+    JointBilateral* bilateral;
+    const LightList& list;
+    StaticVplShadows* shadows;
+
+    // list: 0, or 1 of receivers with baked light.
+    const Buffer& vpls(int which) const {
+        return shadows ? shadows->vpls(which) : which ? list.baked() : list.vpls();
+    }
+    lw_subset_order order() const { return shadows ? shadows->order() : list.order(); }
+};
 
 class StaticVplView {
 public:
     StaticVplView(Device& device, const InterleavedOptions& options, const View& view);
 
     void render(Executor& executor, const View& view, const LWGBuffer& gbuffer, const LWOutput& output,
-                InterleavedGather& gather, JointBilateral* bilateral, const LightList& list);
+                const StaticVplPasses& passes);
 
     void startFrame(bool forget);
     void report(Report& report, lw_subset_order order) const;
@@ -37,8 +52,7 @@ private:
         OutputTarget irradianceOut, validityOut;
     };
     void gatherOf(Executor& executor, InterleavedView& state, const View& view, const LWGBuffer& gbuffer,
-                  const LWOutput& output, InterleavedGather& gather, JointBilateral* bilateral,
-                  const Buffer& vpls, lw_subset_order order);
+                  const LWOutput& output, const StaticVplPasses& passes, int list);
 
     Device& device_;
     InterleavedOptions options_;

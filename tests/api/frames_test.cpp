@@ -319,31 +319,3 @@ TEST_CASE("log callbacks can't call back", "[api]") {
     lwReleaseTechnique(technique);
     lwReleaseDevice(device);
 }
-
-TEST_CASE("lightwell.hpp owns, shares and throws", "[api]") {
-    ApiScene scene;
-    auto desc = lightwell::Device::defaults();
-    desc.width = 16;
-    lightwell::Device device(desc);
-    auto technique = std::make_unique<lightwell::Technique>(device, "rsm");
-    lightwell::Technique copy = *technique;
-    technique.reset();
-    lightwell::View view(device, 24, 10);
-    copy.prewarm(view);
-    copy.update(scene.frame);
-    copy.render(view, scene.gbuffer, scene.output);
-    device.finish();
-    CHECK(scene.lit());
-    CHECK(copy.stats().frameIndex == 12345);
-    CHECK(copy.debugViews(&view).size() > 0);
-    CHECK(view.size() == std::pair<std::uint32_t, std::uint32_t>(24, 10));
-    CHECK(device.estimateMemory("rsm", nullptr, 24, 10, 256) > 0);
-    try {
-        view.setSize(25, 10);
-        FAIL("expected an exception");
-    } catch (const lightwell::Error& error) {
-        CHECK(error.status() == LW_ERROR_INVALID_ARGUMENT);
-        CHECK_THAT(error.what(), Contains("lwSetViewSize") && Contains("25"));
-    }
-    CHECK_THROWS_WITH(lightwell::Technique(device, "fog"), Contains("fog"));
-}

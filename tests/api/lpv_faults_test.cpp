@@ -1,47 +1,21 @@
 // A driver that fails at any call of technique lpv's frames: it is told, and the next frames are right.
-#include <algorithm>
 #include <catch2/catch.hpp>
-#include <string>
-#include <vector>
 
-#include "api/api_rig.h"
-#include "support/cl_faults.h"
+#include "api/failing_frames.h"
 
 using namespace lightwell::test;
 
 namespace {
 
-constexpr int kMostCalls = 2000;
-
-std::vector<double> pixelsOf(const ApiScene& scene) {
-    std::vector<double> all;
-    for (std::uint32_t y = 0; y < scene.irradiance.height(); ++y)
-        for (std::uint32_t x = 0; x < scene.irradiance.width(); ++x)
-            for (int c = 0; c < 3; ++c) all.push_back(scene.irradiance.value(x, y, c));
-    return all;
-}
-
-bool isDriverError(LWStatus status) {
-    return status == LW_ERROR_OUT_OF_MEMORY || status == LW_ERROR_DEVICE || status == LW_ERROR_INTERNAL;
-}
-
-// The rig's floor, and a slope that looks down on it, as triangles.
-struct Whole : ApiScene {
+struct Whole : FloorAndSlope {
     Whole() {
         vpl.position[1] = 0.2f;
         vpl.normal[1] = 1;
         vpl.flux[0] = 0.1f;
         frame.vpls = &vpl;
         frame.vplCount = 1;
-        geometry.structSize = sizeof geometry;
-        geometry.vertices = vertices;
-        geometry.vertexCount = 6;
-        geometry.triangleCount = 2;
-        frame.geometry = &geometry;
     }
     LWVpl vpl{};
-    LWGeometry geometry{};
-    float vertices[18] = {-1, 0, -1, 0, 0, 1, 1, 0, -1, -1, 1, -1, 1, 1, -1, 0, 1, 1};
 };
 
 }  // namespace
@@ -57,57 +31,16 @@ TEST_CASE("whichever OpenCL call of an lpv frame fails, it is told, and the next
     desc.frames = frames ? frames : 1;
     desc.bounces = 2;
     desc.extent = 3.0f;
-    Whole scene;
-    // Faces down, or nothing would arrive.
-    for (std::uint32_t y = 0; y < scene.position.height(); ++y)
-        for (std::uint32_t x = 0; x < scene.position.width(); ++x)
-            if (x >= scene.position.width() / 2) {
-                const double u = (x + 0.5) / scene.position.width(), v = (y + 0.5) / scene.position.height();
-                scene.position.set(x, y, u - 0.5, 0.9, v - 0.5);
-                scene.normal.set(x, y, 0, -1, 0);
-            }
-    ApiRig rig(makeDevice(16, [](void*, LWLogLevel, const char*) {}), scene);
-    // Before the frame that fails the scene is another, so that all that is kept from frame to frame has to be made anew.
-    Whole before;
+    Whole scene, before;
+    faceDown(scene);
     before.geometry.triangleCount = 1;
     before.geometry.vertexCount = 3;
     scene.geometry.version = 1;
     scene.frame.reset = frames > 1 ? 1 : 0;  // or the picture is the last one's
-    const auto create = [&] {
-        lwReleaseTechnique(rig.technique);
-        REQUIRE(lwCreateLpv(rig.device, &desc, &rig.technique) == LW_SUCCESS);
-    };
-    create();
-    rig.frame(scene);
-    const std::vector<double> expected = pixelsOf(scene);
-    double most = 0;
-    for (const double value : expected) most = std::max(most, value);
-    REQUIRE(most > 1e-3);
-    for (int call = 0; call < kMostCalls; ++call) {
-        create();
-        const bool again = call % 2 == 0;  // the fault in the second frame, or in the first
-        if (again) rig.frame(before);
-        LWStatus updated, rendered, finished;
-        bool happened;
-        std::string function;
-        {
-            const ClFault fault(call / 2 * 5, CL_OUT_OF_RESOURCES);  // some of many alike
-            updated = lwUpdate(rig.technique, &scene.frame);
-            rendered = lwRender(rig.technique, rig.view, &scene.gbuffer, &scene.output);
-            finished = lwFinish(rig.device);
-            happened = fault.happened();
-            function = fault.function();
-        }
-        CAPTURE(frames, call, again, function, updated, rendered, finished);
-        if (!happened) {
-            CHECK(updated == LW_SUCCESS);
-            if (again) continue;
-            break;
-        }
-        CHECK(int(isDriverError(updated)) + int(isDriverError(rendered)) + int(isDriverError(finished)) == 1);
-        for (int after = 0; after < 2; ++after) {
-            rig.frame(scene);
-            REQUIRE(pixelsOf(scene) == expected);
-        }
-    }
+    CAPTURE(frames);
+    checkFailingFrames(
+        {[&](LWDevice device, LWTechnique* technique) { return lwCreateLpv(device, &desc, technique); },
+         5,
+         {}},
+        before, scene);
 }

@@ -3,8 +3,11 @@
 #include <benchmark/benchmark.h>
 
 #include <cmath>
+#include <memory>
 #include <string>
 #include <vector>
+
+#include "box_frame.h"
 
 namespace bench {
 namespace {
@@ -110,9 +113,60 @@ void run(benchmark::State& state, LWDevice device, std::uint32_t count, bool lis
     lwReleaseTechnique(technique);
 }
 
+constexpr std::uint32_t kEyeWidth = 640, kEyeHeight = 360;
+
+// One update and a picture for each eye; with `updatesEach`, as a host does that knows no better, an update for
+// each of them.
+void runEyes(benchmark::State& state, LWDevice device, std::size_t eyes, bool updatesEach) {
+    Room room(200);
+    LWTechnique technique = nullptr;
+    if (failed(state, device, lwCreateStaticVpl(device, nullptr, &technique))) return;
+    LWViewDesc desc;
+    LW_INIT(desc);
+    desc.maxWidth = kEyeWidth;
+    desc.maxHeight = kEyeHeight;
+    std::vector<std::unique_ptr<BoxFrame>> frames;
+    std::vector<LWView> views(eyes);
+    bool ready = true;
+    for (LWView& view : views) {
+        frames.push_back(std::make_unique<BoxFrame>(kEyeWidth, kEyeHeight, 1));
+        ready = ready && !failed(state, device, lwCreateView(device, &desc, &view));
+    }
+    const auto frame = [&](int step) {
+        room.turn(step);
+        for (std::size_t eye = 0; eye < eyes; ++eye) {
+            LWStatus status = LW_SUCCESS;
+            if (eye == 0 || updatesEach) status = lwUpdate(technique, &room.frame);
+            if (status == LW_SUCCESS)
+                status = lwRender(technique, views[eye], &frames[eye]->gbuffer, &frames[eye]->output);
+            if (status != LW_SUCCESS) return status;
+        }
+        return lwFinish(device);
+    };
+    for (int i = 0; ready && i < 20; ++i) ready = !failed(state, device, frame(i));
+    int step = 20;
+    for (auto iteration : state) {
+        (void)iteration;
+        if (!ready || failed(state, device, frame(step++))) break;
+    }
+    for (LWView view : views) lwReleaseView(view);
+    lwReleaseTechnique(technique);
+}
+
 }  // namespace
 
 void registerStaticVplCases(LWDevice device) {
+    struct Eyes {
+        const char* name;
+        std::size_t count;
+        bool updatesEach;
+    };
+    for (const Eyes& eyes : {Eyes{"one", 1, false}, Eyes{"two", 2, false}, Eyes{"two_updates", 2, true}})
+        benchmark::RegisterBenchmark(
+            ("static_vpl.eyes." + std::string(eyes.name)).c_str(),
+            [=](benchmark::State& state) { runEyes(state, device, eyes.count, eyes.updatesEach); })
+            ->UseRealTime()
+            ->Unit(benchmark::kMicrosecond);
     for (const bool lists : {false, true})
         for (const std::uint32_t count : {20u, 200u, 2000u})
             benchmark::RegisterBenchmark(

@@ -158,6 +158,16 @@ class Chart(unittest.TestCase):
         self.assertEqual({p["errors"]["own"]["bounces"] for p in points if p["technique"] == "rival"}, {1, 2})
         self.assertTrue(all(p["ms"]["median"] > 0 and p["device"] is None for p in points if p["technique"] == "rival"))
 
+    def test_points_with_their_parameters(self):
+        """A technique named with parameters is one point alone, beside another's sweep, and none twice; it has the name of a setting."""
+        self.chart("--quick", "--scenes", "cornell", "--size", "32x18", "--noise", "0.5", "--no-report", "--techniques", "rsm,vpls=64,interleave=2",
+                   "rsm,vpls=256", "rsm,seed=0,vpls=256", "instant_radiosity", "--only", "shadows=off")
+        points = self.results()["points"]
+        self.assertEqual([(p["technique"], p["settings"], p["label"]) for p in points if p["technique"] == "rsm"],
+                         [("rsm", "vpls=64 interleave=2", ""), ("rsm", "defaults", "default")])
+        self.assertEqual({p["parameters"]["vpls"] for p in points if p["technique"] != "rsm"}, {1, 20, 200})
+        self.assertIn("vplz", self.chart(*QUICK, "--techniques", "rsm,vplz=64", code=2))
+
     def test_some_pixels_tell_the_error_of_all(self):
         """One pixel of 4 x 4: errors of the irradiance within what so few pixels can tell, at the same effort a better truth."""
         common = ("--quick", "--scenes", "cornell", "--size", "320x180", "--techniques", "rsm", "--only", "vpls=256", "--no-report")

@@ -47,7 +47,7 @@ class Pareto(unittest.TestCase):
 
 
 class Looks(unittest.TestCase):
-    KNOWN = ["rsm", "ssvp", "screen_space", "horizon", "ao", "fallback", "rival", "instant_radiosity"]
+    KNOWN = ["rsm", "ssvp", "screen_space", "horizon", "ao", "fallback", "rival", "instant_radiosity", "lpv", "cone_tracing", "static_vpl"]
 
     def test_each_technique_has_a_colour_of_its_own_in_every_figure(self):
         colours = {name: look[0] for name, look in looks(self.KNOWN + ["new", "newer"]).items()}

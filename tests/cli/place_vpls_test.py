@@ -75,7 +75,7 @@ class PlaceVpls(CommandLine):
         self.assertEqual(report["vpls"], len(placed["vpls"]))
         self.assertLessEqual(report["vpls"], 40)
         self.assertGreater(report["vpls"], 20)
-        self.assertEqual(report["points"], 8)
+        self.assertEqual((report["points"], report["paths"], report["light_paths"]), (8, 400, 4096))
         # Five walls of 0.55 m and two blocks: 1.5 + 0.3 m^2 of walls that can be seen, about 0.55 of blocks.
         self.assertAlmostEqual(report["area"], sum(v["weight"] for v in placed["vpls"]), delta=1e-6)
         self.assertTrue(1.5 < report["area"] < 2.6, report["area"])
@@ -122,6 +122,45 @@ class PlaceVpls(CommandLine):
             self.assertTrue(all(-1.5 < p < 2.5 for p in vpl["position"]), vpl)
         self.assertEqual({v.get("object", "door") for v in placed["vpls"]}, {"door"})
 
+    def test_light_paths(self):
+        """Without paths of the lights it does not matter where the lamp stands."""
+        with open(os.path.join(ROOT, "samples", "scenes", "cornell.json"), encoding="utf-8") as file:
+            scene = json.load(file)
+        scene["lights"][0]["target"] = [0.1, 0, 0.1]
+        del scene["lights"][0]["direction"]
+        moved = self.path("moved.json")
+        with open(moved, "w", encoding="utf-8") as file:
+            json.dump(scene, file)
+        for count, same in ((0, True), (400, False)):
+            made = [self.place(lamp, "v%d.json" % i, *QUICK, "--light-paths", str(count)) for i, lamp in enumerate(("cornell", moved))]
+            self.assertEqual([report["light_paths"] for report, _ in made], [count, count])
+            self.assertEqual(made[0][1]["vpls"] == made[1][1]["vpls"], same)
+
+    def test_a_file_follows_the_unit_of_length(self):
+        """A file is in metres of the scene's file; of a scene in another unit its places and spheres are, too: the picture is the same."""
+        _, placed = self.place("rooms", "v.json", "--time", "2", *QUICK)
+        placed["vpls"][0].pop("weight")  # by the distance to its neighbours
+        self.assertTrue(any("object" in v for v in placed["vpls"]))
+        placed["blockers"] = [{"center": [-1, 1, 0], "radius": 0.7}, {"object": "door", "center": [0, 1, 0.5], "radius": 0.6}]
+        with open(self.path("v.json"), "w", encoding="utf-8") as file:
+            json.dump(placed, file)
+        base = ["render", "rooms", "--technique", "static_vpl", "--set", "vpls_file=" + self.path("v.json"), *SIZE, "--time", "2", "--warmup", "0",
+                "--frames", "1", "--json"]
+        plain = self.json(*base)
+        self.assertGreater(plain["counts"]["kept_vpls"], 3)
+        for scale in ("8", "0.125"):  # a power of two rounds nothing
+            self.assertEqual(self.json(*base, "--scale", scale)["hash"], plain["hash"], scale)
+        # And so in the catalogue's sequences of other units.
+        self.place("cornell", "c.json", *QUICK)
+        out = self.path("stability")
+        self.done("stability", "--out", out, "--no-report", "--techniques", "static_vpl,vpls_file=" + self.path("c.json"), "--sequences", "camera_dolly", "scale_small",
+                  "scale_large", "--frames", "2", "--size", "48x27", "--truth-effort", "0.5", "--truth-cache", self.path("truths"))
+        with open(os.path.join(out, "stability.json"), encoding="utf-8") as file:
+            errors = {r["sequence"]: r["errors"] for r in json.load(file)["results"]}
+        for name in ("scale_small", "scale_large"):
+            for key, value in errors["camera_dolly"].items():
+                self.assertAlmostEqual(errors[name][key], value, delta=1e-3 * abs(value), msg=name + " " + key)
+
     def test_the_schema_and_the_reader_agree(self):
         """What the reader refuses the schema refuses, and the other way round."""
         good = {"format": "lightwell-static-vpls", "version": 1, "metres_per_unit": 0.5, "area_per_weight": 2,
@@ -162,6 +201,26 @@ class PlaceVpls(CommandLine):
         self.refused(["place-vpls", "cornell", *out, "--seed", "x"], "--seed", "'x'")
         self.refused(["place-vpls", "nowhere", *out], "nowhere", "cornell")
         self.assertFalse(os.path.exists(self.path("never.json")))
+
+
+class StaticVplTechnique(CommandLine):
+    def test_placed_without_a_file(self):
+        """What `static_vpl` places by itself is what `place-vpls` would: the same picture, to the bit, as with its file."""
+        path = self.path("v.json")
+        self.done("place-vpls", "cornell", "--cap", "20", "--out", path)
+        with open(path, encoding="utf-8") as file:
+            count = len(json.load(file)["vpls"])
+        base = ["render", "cornell", "--technique", "static_vpl", *SIZE, "--warmup", "0", "--frames", "1", "--json"]
+        given, placed = (self.json(*base, "--set", key) for key in ("vpls_file=" + path, "vpls_cap=20"))
+        self.assertEqual(given["hash"], placed["hash"])
+        self.assertEqual(placed["parameters"]["vpls_cap"], 20)
+        self.assertNotIn("vpls_cap", given["parameters"])
+        self.assertTrue(10 < count <= 20, count)
+        self.assertNotEqual(self.json(*base, "--set", "vpls_cap=10")["hash"], placed["hash"])
+        for key in ("0", "4097"):
+            self.refused([*base, "--set", "vpls_cap=" + key], "vpls_cap", "1 to 4096")
+        self.refused([*base, "--set", "vpls_cap=20", "vpls_file=" + path], "vpls_file", "vpls_cap", "both")
+        self.refused(["render", "cornell", "--technique", "rsm", *SIZE, "--json", "--set", "vpls_cap=20"], "vpls_cap", "vpls")
 
 
 class InstantRadiosity(CommandLine):

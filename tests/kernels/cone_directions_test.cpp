@@ -1,4 +1,5 @@
 // Sets of cones: what a cone's mean light makes of light that is known, and where its samples lie.
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
@@ -121,38 +122,46 @@ TEST_CASE("nine cones have the weights of their cosines", "[cone_directions]") {
     for (std::size_t k = 5; k < 9; ++k) CHECK(kPi * set[k].weight == Approx(0.36193).margin(5e-6));
 }
 
-TEST_CASE("samples double their distance, level by level, whatever they are cut into",
+TEST_CASE("samples lie behind each other in cells of half the cone's width, whatever they are cut into",
           "[cone_directions]") {
     ConeSchedule schedule;
-    schedule.nudge = 1.0;
+    schedule.nudge = 1.5;
     schedule.reach = 128.0;
     schedule.levels = 8;
     const double sixty = kPi / 6;
     const auto whole = coneSteps(sixty, 1.0, schedule);
-    REQUIRE(whole.size() == 8);
+    REQUIRE(whole.size() == 7);
     for (std::size_t i = 0; i < whole.size(); ++i) {
-        CHECK(double(whole[i].distance) == Approx(std::ldexp(1.0, int(i))));
-        CHECK(whole[i].level == lw_int(std::min<std::size_t>(i, 7)));
+        CHECK(double(whole[i].distance) == Approx(std::ldexp(1.5, int(i))));
+        CHECK(whole[i].level == lw_int(i));
         CHECK(whole[i].exponent == 1.0f);
     }
-    // Between 1 and 128 a medium's exponents add up to the same.
-    const double halfAngle = GENERATE(0.01, 0.1, 0.5235987755982988);
-    double sums[3];
+    const double halfAngle = GENERATE(0.01, 0.1, 0.2, 0.3, 0.5235987755982988, 0.7);
+    schedule.nudge = 2.0;
     for (int k = 0; k < 3; ++k) {
         schedule.step = std::ldexp(1.0, -k);
-        sums[k] = 0;
+        // What each level has of the way adds up to the same: from twice its first distance on to twice
+        // that.
+        std::array<double, 8> lengths{};
         const auto steps = coneSteps(halfAngle, 1.0, schedule);
-        for (std::size_t i = 0; i < steps.size(); ++i) {
-            sums[k] += double(steps[i].exponent);
-            if (i > 0) CHECK(double(steps[i].distance) > double(steps[i - 1].distance));
-            // At most `step` diameters, of one voxel at least.
-            const double next = i + 1 < steps.size() ? double(steps[i + 1].distance) : 0.0,
-                         d = double(steps[i].distance);
-            CHECK(next - d <= schedule.step * std::max(1.0, 2 * std::tan(halfAngle) * d) * 1.0001);
+        CHECK(double(steps[0].distance) == Approx(2.0).margin(0.5 * schedule.step));
+        double end = 2.0 - 0.5 * std::ldexp(schedule.step, int(steps[0].level));
+        for (const LwConeStep& step : steps) {
+            const double cell = std::ldexp(1.0, int(step.level)), length = double(step.exponent) * cell;
+            // Each in the middle of its part, which begins where the last one ends.
+            CHECK(double(step.distance) == Approx(end + 0.5 * length).epsilon(1e-5));
+            end += length;
+            lengths[std::size_t(step.level)] += length;
+            CHECK(length <= 1.5 * schedule.step * cell);
+            const double width = 2 * std::tan(halfAngle) * double(step.distance);
+            if (step.level > 0)
+                CHECK(cell > 0.29 * width);  // 1 / 4 t where there is one cell, least for the widest
+            CHECK(cell < std::max(1.001, 1.1 * width));
         }
+        const double first = std::max(1.0, std::round(std::tan(sixty) / std::tan(halfAngle)));
+        for (int level = int(steps[0].level) + 1; level < int(steps.back().level); ++level)
+            CHECK(lengths[std::size_t(level)] == Approx(std::ldexp(first, level)).epsilon(1e-5));
     }
-    CHECK(sums[1] == Approx(sums[0]).margin(1.0));
-    CHECK(sums[2] == Approx(sums[0]).margin(1.0));
 }
 
 TEST_CASE("offset by aperture keeps a cone's first sphere off the surface", "[cone_directions]") {
@@ -162,7 +171,8 @@ TEST_CASE("offset by aperture keeps a cone's first sphere off the surface", "[co
     schedule.apertureOffset = true;
     const double cosine = std::sqrt(0.5);
     const double begin = double(coneSteps(kPi / 6, cosine, schedule)[0].distance);
-    CHECK(begin * (cosine - std::sin(kPi / 6)) == Approx(1.0));
+    // At most half of a cell of 4 voxels off.
+    CHECK(begin == Approx(1.0 / (cosine - std::sin(kPi / 6))).margin(2.0));
     schedule.near = true;
     schedule.nudge = 4.0;
     schedule.apertureOffset = false;
@@ -170,7 +180,7 @@ TEST_CASE("offset by aperture keeps a cone's first sphere off the surface", "[co
     CHECK(double(steps[0].distance) == Approx(1.5 / cosine));
     double nearest = 0;
     for (const LwConeStep& step : steps)
-        if (step.light == 0.0f) nearest += double(step.exponent);
+        if (step.light == 0.0f) nearest += std::ldexp(double(step.exponent), int(step.level));
     CHECK(nearest == Approx(2.5 / cosine));  // voxels between there and where light counts
 }
 

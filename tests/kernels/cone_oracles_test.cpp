@@ -105,7 +105,7 @@ TEST_CASE("walls one voxel thick keep more of a room's light where they are opaq
     }
     CAPTURE(kept[0], kept[1]);
     CHECK(kept[0] < 0.8);
-    CHECK(kept[1] > 0.9);
+    CHECK(kept[1] > 0.95);
     CHECK(kept[1] < 1.0001);
 }
 
@@ -120,7 +120,7 @@ TEST_CASE("many cones keep a room's light between walls one voxel thick", "[cone
     const double kept =
         double(traceCones(rig, pass, voxels, onePoint({16, 4, 16}, {0, 1, 0})).irradiance[0]) / (kPi * 0.8);
     CAPTURE(kept);
-    CHECK(kept > 0.93);
+    CHECK(kept > 0.97);
     CHECK(kept < 1.0001);
 }
 

@@ -65,7 +65,7 @@ TEST_CASE("a homogeneous medium is the same whatever it is cut into", "[cone_ray
         options.step = step;
         options.distance = 15.9 / 32;
         ConeRays rays(rig.device(), options);
-        // A cone of 60 degrees: one voxel's step, then four in which the distance doubles.
+        // A cone of 60 degrees: two voxels' steps, then three in which the distance doubles.
         const double seen = shadowOf(rig, rays, voxels, {2, 16, 16}, {1, 0, 0},
                                      directional(1, 0, 0, 3.14159265358979 / 3));
         CHECK(seen == Approx(std::pow(1 - a, 5)).epsilon(1e-4));
@@ -78,9 +78,9 @@ TEST_CASE("a full wall one voxel thick blocks a cone of matching width", "[cone_
     // The wall's voxel is the first of its cell; a sample of the cone lies in the middle of the cell.
     const int wall = 24;
     const double middle = wall + 0.5 * (1 << level);
-    // Cones of 60 degrees that begin one voxel off: samples at 1 + 0, 1, 2, 4, 8 of levels 0, 0, 1,
+    // Cones of 60 degrees that begin one voxel off: samples at 1 + 0.5, 1.5, 3, 6, 12 of levels 0, 0, 1,
     // 2, 3.
-    const double distance = level == 0 ? 1.0 : 1.0 + (1 << level);
+    const double distance = 1.0 + 1.5 * (1 << level);
     double seen[2];
     for (int mode = 0; mode < 2; ++mode) {
         const DeviceVoxels voxels =

@@ -58,6 +58,36 @@ TEST_CASE("a thin wall shows each side its own light where voxels know what face
     CHECK(across == 0.0);
 }
 
+TEST_CASE("light on a sheet's back leaves by no other side, nor out of what stands in its voxels",
+          "[voxel_light]") {
+    VoxelLightRig rig(16, 32, LW_VOXEL_MODE_ANISOTROPIC, true);
+    rig.aware = true;
+    // A sheet that faces down x, lit from above; in one voxel a sixteenth of it faces up, in another a
+    // wall crosses it.
+    const std::vector<VoxelTriangle> back = voxelSheet(13.5, 8.0, 24.0, 1);
+    std::vector<VoxelTriangle> sheet = voxelSheet(13.5, 8.0, 24.0, -1),
+                               wall = voxelSheet(20.5, 13.0, 14.0, 1);
+    append(sheet, voxelSheet(13.7, 10.0, 10.25, 1));
+    for (VoxelTriangle& t : wall)
+        for (auto& corner : t.at) std::swap(corner[0], corner[1]);
+    append(sheet, wall);
+    rig.setTriangles(sheet);
+    rig.shine(texelsOn(back, 40000, {1.0, 1.0, 1.0}, 3));
+    const VoxelLevel level = VoxelLevel::of(rig.volume, 0);
+    const auto seen = [&](int side, int x, int y, int z) {
+        return level.value(side, x, y, z, rig.lit().unit);
+    };
+    // Some 156 texels fell on it.
+    CHECK(double(seen(0, 13, 10, 10).opacity) == Approx(1.0 / 16).margin(1.0 / 255));
+    CHECK(double(seen(0, 13, 10, 10).red) == Approx(1.0 / 16).epsilon(0.1));
+    CHECK(seen(0, 13, 12, 12).red == 0.0f);
+    CHECK(seen(1, 13, 12, 12).opacity == 1.0f);
+    CHECK(seen(1, 13, 12, 12).red == 0.0f);
+    const bool crosses = seen(2, 13, 20, 13).opacity > 0.5f || seen(3, 13, 20, 13).opacity > 0.5f;
+    CHECK(crosses);
+    for (int side = 2; side < 6; ++side) CHECK(seen(side, 13, 20, 13).red < 1e-5f);
+}
+
 TEST_CASE("SH2 keeps the flux of a wall, and shines to its own side", "[voxel_light][large]") {
     VoxelLightRig rig(16, 32, LW_VOXEL_MODE_SH2, false);
     const std::vector<VoxelTriangle> wall = voxelSheet(13.5, 0.0, 32.0, -1);
@@ -78,6 +108,26 @@ TEST_CASE("SH2 keeps the flux of a wall, and shines to its own side", "[voxel_li
     CHECK(kPi * y0 * c0 + 2.0 * kPi / 3.0 * y1 * -c1[0] == Approx(kPi).epsilon(0.005));
     CHECK(y0 * c0 - y1 * c1[0] == Approx(1.25).epsilon(0.005));
     CHECK(c1[1] == Approx(0.0).margin(0.005));
+}
+
+TEST_CASE("light too weak for the inverse of its brightness stays dark, and comes from nowhere", "[voxel_light]") {
+    const LWVoxelMode mode = GENERATE(LW_VOXEL_MODE_SH2, LW_VOXEL_MODE_ANISOTROPIC);
+    VoxelLightRig rig(GENERATE(1u, 16u), 32, mode, mode == LW_VOXEL_MODE_ANISOTROPIC);
+    rig.aware = true;
+    rig.setTriangles(voxelSheet(13.5, 0.0, 32.0, -1));
+    // Nearer to each other than the whole numbers in which light is added up reach.
+    const double bright = 1e-21, weak = GENERATE(1e-39, 2e-39, 5e-39);
+    rig.shine({{{13.5, 4.5, 4.5}, {-1, 0, 0}, {bright, bright, bright}}, {{13.5, 20.5, 20.5}, {-1, 0, 0}, {weak, weak, 0.0}}});
+    const VoxelLevel level = VoxelLevel::of(rig.volume, 0);
+    const int colours = mode == LW_VOXEL_MODE_ANISOTROPIC ? level.planes : 1;
+    for (int plane = 0; plane < colours; ++plane) {
+        const LwVoxelValue dark = level.value(plane, 13, 20, 20, rig.lit().unit);
+        CAPTURE(weak, plane);
+        CHECK(double(dark.red + dark.green + dark.blue) <= 1e-6 * bright);
+        for (int c = 1; colours == 1 && c < level.planes; ++c)
+            for (int axis = 0; axis < 3 && level.word(c, 13, 20, 20); ++axis)  // 0: of no light
+                CHECK(std::abs(voxel_unpack_harmonic(level.word(c, 13, 20, 20), axis, 1.0f)) < 0.01f);
+    }
 }
 
 TEST_CASE("voxels that hold surfaces hear, and throw back their albedo over pi of it", "[voxel_light]") {

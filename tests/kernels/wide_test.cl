@@ -62,7 +62,7 @@ __kernel void wide_convert(__global const float* floats, __global const int* int
     store(as_real_(as_laneu_(x) >> 1), out + 3 * count, i);
 }
 
-// One work-item = 2 * LW_WIDTH pixels; scalars: min_lane, max_lane of the first LW_WIDTH; integers likewise.
+// One work-item = 2 * LW_WIDTH pixels; scalars: min_lane, max_lane of the first LW_WIDTH; integers likewise, and the first.
 __kernel void wide_lanes(__global const float* floats, __global const int* ints, int count, __global float* out,
                          __global float* scalars, __global int* outInts) {
     const int group = (int)get_global_id(0), i = 2 * LW_WIDTH * group;
@@ -76,8 +76,9 @@ __kernel void wide_lanes(__global const float* floats, __global const int* ints,
     store(to_real(lanei_iota()), out + 2 * count, i + LW_WIDTH);
     scalars[2 * group] = min_lane(a);
     scalars[2 * group + 1] = max_lane(a);
-    outInts[2 * group] = mini_lane(loadi(ints, i));
-    outInts[2 * group + 1] = maxi_lane(loadi(ints, i));
+    outInts[3 * group] = mini_lane(loadi(ints, i));
+    outInts[3 * group + 1] = maxi_lane(loadi(ints, i));
+    outInts[3 * group + 2] = firsti_lane(loadi(ints, i));
 }
 
 // One work-item = LW_WIDTH pixels. `fused` tells whether fma_ is a fused multiply-add here.

@@ -173,7 +173,7 @@ TEST_CASE("forms across lanes at every width", "[wide]") {
     const auto ints = randomInts(9, -99, 99);
     const std::size_t groups = kPixels / (2 * width);
     const Guarded out = rig.make<float>(3 * kPixels), scalars = rig.make<float>(2 * groups);
-    const Guarded outInts = rig.make<cl_int>(2 * groups);
+    const Guarded outInts = rig.make<cl_int>(3 * groups);
     rig.run("test.lanes", rig.kernel(kProgram, "wide_lanes"), {groups, 1}, {1, 1}, rig.upload(floats),
             rig.upload(ints), cl_int(kPixels), out, scalars, outInts);
     const auto values = rig.download<float>(out), extremes = rig.download<float>(scalars);
@@ -191,8 +191,9 @@ TEST_CASE("forms across lanes at every width", "[wide]") {
         CHECK(extremes[2 * group] == *std::min_element(floats.begin() + first, floats.begin() + last));
         CHECK(extremes[2 * group + 1] ==
               *std::max_element(floats.begin() + first, floats.begin() + last));
-        CHECK(integers[2 * group] == *std::min_element(ints.begin() + first, ints.begin() + last));
-        CHECK(integers[2 * group + 1] == *std::max_element(ints.begin() + first, ints.begin() + last));
+        CHECK(integers[3 * group] == *std::min_element(ints.begin() + first, ints.begin() + last));
+        CHECK(integers[3 * group + 1] == *std::max_element(ints.begin() + first, ints.begin() + last));
+        CHECK(integers[3 * group + 2] == ints[std::size_t(first)]);
     }
 }
 

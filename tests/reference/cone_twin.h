@@ -19,6 +19,11 @@ struct ConeTwin {
 
     struct Sample {
         double colour[3] = {0, 0, 0}, opacity = 0;
+        double squares = 0;  // of the voxels' opacities, by weight
+        double closed = 0;   // how much of the opacity is in closed voxels
+
+        double variance() const { return squares - opacity * opacity; }
+        double mostVariance() const { return opacity * (1 - opacity); }
     };
     struct Light {
         double colour[3] = {0, 0, 0}, through = 1, occluded = 0;
@@ -48,6 +53,7 @@ struct ConeTwin {
         sum.colour[1] += weight * double(value.green);
         sum.colour[2] += weight * double(value.blue);
         sum.opacity += weight * double(value.opacity);
+        sum.squares += weight * double(value.opacity) * double(value.opacity);
     }
 
     Sample sample(int cascade, int level, Vec at, Vec d) const {
@@ -83,16 +89,20 @@ struct ConeTwin {
                         weight * one.colour[c] * (0.28209479177387814 + 0.4886025119029199 * along);
                 }
                 sum.opacity += weight * one.opacity;
+                sum.squares += weight * one.squares;
             } else {
                 add(sum, word(cascade, level, 0, i, corner), weight);
             }
         }
         // Surfaces that close a share of the voxel's side, whose layer a ray crosses in 1 / |d| steps.
-        double closed = 0, taken = 0;
+        double closed = 0, taken = 0, variance = sum.variance(), highest = sum.mostVariance();
         for (int a = 0; a < 3; ++a) {
             closed = std::max(closed, side[a].opacity);
             taken += std::abs(way[a]) * side[a].opacity;
+            variance += std::abs(way[a]) * side[a].variance();
+            highest += std::abs(way[a]) * side[a].mostVariance();
         }
+        sum.closed = std::clamp(variance / std::max(highest, 1e-6), 0.0, 1.0);
         for (int a = 0; a < 3; ++a) {
             const double part = std::abs(way[a]) / std::max(1 - closed + taken, 1e-6);
             for (int c = 0; c < 3; ++c) sum.colour[c] += part * side[a].colour[c];
@@ -116,6 +126,7 @@ struct ConeTwin {
 
     Light march(Vec world, Vec d, int grid, const std::vector<LwConeStep>& steps, double reach) const {
         Light light;
+        double before = 0;
         for (const LwConeStep& step : steps) {
             const double distance = std::ldexp(double(step.distance), grid);
             const Vec outermost = placed(world, cascades() - 1) +
@@ -133,13 +144,17 @@ struct ConeTwin {
             const Sample s = sample(cascade, level, at, d);
             const double exponent =
                 double(step.exponent) * std::ldexp(1.0, std::min(0, wanted - cascade));
-            const double opacity = options.opacityCorrection
-                                       ? 1 - std::pow(1 - std::min(1.0, s.opacity), exponent)
-                                       : s.opacity;
+            const double alone = options.opacityCorrection
+                                     ? 1 - std::pow(1 - std::min(1.0, s.opacity), exponent)
+                                     : s.opacity;
+            // Of what the sample before has left of a layer that both see.
+            const double share = 1 / std::max({1 - s.closed * before, alone, 1e-6}),
+                         opacity = alone * share;
+            before = alone;
             // Voxels of next to no opacity may have some light.
-            const double ratio = s.opacity > 1e-6            ? opacity / s.opacity
-                                 : options.opacityCorrection ? exponent
-                                                             : 1;
+            const double ratio = share * (s.opacity > 1e-6            ? alone / s.opacity
+                                          : options.opacityCorrection ? exponent
+                                                                      : 1);
             for (int c = 0; c < 3; ++c)
                 light.colour[c] += light.through * double(step.light) * s.colour[c] * ratio;
             light.occluded += light.through * double(step.dimming) * opacity;

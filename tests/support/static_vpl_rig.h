@@ -68,6 +68,7 @@ struct StaticScene {
     std::vector<LWBlocker> blockers;
     std::vector<LWLight> lights;
     bool reset = false;
+    const LWGeometry* geometry = nullptr;
 
     void block(const glm::dvec3& center, double radius) {
         LWBlocker blocker{};
@@ -85,6 +86,7 @@ struct StaticScene {
         frame.blockerCount = std::uint32_t(blockers.size());
         frame.lights = lights.data();
         frame.lightCount = std::uint32_t(lights.size());
+        frame.geometry = geometry;
         return frame;
     }
 };

@@ -26,8 +26,8 @@ std::pair<double, double> rangeOf(const std::vector<float>& values) {
 
 }  // namespace
 
-// What cones lose of a closed box: between samples that lie on both sides of a wall, which is a voxel thick, 10 to 20 % get through
-// (docs/techniques/cone_gather.md), and in edges the cones begin within the other wall's voxels.
+// What cones lose of a closed box: slanted ones get past a wall between samples that lie on both sides
+// of it, and in edges they begin within the other wall's voxels (docs/techniques/cone_gather.md).
 TEST_CASE("in a closed box of even walls the irradiance is theirs, but for what cones let through", "[cone_tracing]") {
     TestDevice device(GENERATE(1u, 16u));
     const bool emits = GENERATE(false, true);
@@ -39,14 +39,14 @@ TEST_CASE("in a closed box of even walls the irradiance is theirs, but for what 
     const auto [least, most] = rangeOf(light);
     CAPTURE(emits, int(mode), mean, least, most);
     if (mode == LW_VOXEL_MODE_ANISOTROPIC) {
-        CHECK(mean > 0.8);
-        CHECK(mean < 1.05);
+        CHECK(mean > 0.94);
+        CHECK(mean < 1.02);
         CHECK(most < 2.0 * 1.2);
-        CHECK(least > 2.0 * 0.5);
+        CHECK(least > 2.0 * 0.65);
     } else {
-        // Isotropic walls are open to cones wider than they are thick.
-        CHECK(mean > 0.05);
-        CHECK(mean < 1.05);
+        // Walls are open to cones wider than they are thick: 1 - 2^-k on level k.
+        CHECK(mean > 0.25);
+        CHECK(mean < 0.6);
     }
 }
 

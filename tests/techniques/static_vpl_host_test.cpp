@@ -270,7 +270,7 @@ TEST_CASE("static_vpl: no number that is accepted puts anything but numbers into
     StaticRig rig(16, desc);
     WallAndCeiling view(kWidth, kHeight);
     TestView target(rig.device, kWidth, kHeight);
-    const float far[3] = {3e38f, -3e38f, 1.0f}, near[3] = {0, 0, 0};
+    const float far[3] = {6e8f, -6e8f, 1.0f}, near[3] = {0, 0, 0};
     for (const double weight : {0.0, 1e-38, 1.0, 1e18})
         for (const double bright : {0.0, 1e-38, 3e38})
             for (const double place : {0.0, 1e-30, 1e8})
@@ -285,7 +285,7 @@ TEST_CASE("static_vpl: no number that is accepted puts anything but numbers into
                         sunLight({0, 0, 0}, glm::dvec3(bright)),
                         spotLight({0, 1, 0.5}, {0, -1e-30, 0}, glm::dvec3(bright), 0.0, 0.0),
                         sunLight({0, -1, 0}, glm::dvec3(bright)),
-                        spotLight({3e38, 3e38, 3e38}, {3e38, 3e38, 3e38}, glm::dvec3(bright), 0.1, 0.4)};
+                        spotLight({5.7e8, 5.7e8, 5.7e8}, {3e38, 3e38, 3e38}, glm::dvec3(bright), 0.1, 0.4)};
                     for (int i = 2; i < 5; i += 2) scene.lights[std::size_t(i)].hit = hit;
                     scene.block({0, 0.5, 0.5}, 3e38);
                     scene.block({0, 0.5, 0.5}, 1e-38);

@@ -1,7 +1,9 @@
-// What the times of a chart are made of.
+// What the times of a chart are made of, and what its techniques get of a scene's triangles.
 #include <algorithm>
 
 #include <catch2/catch.hpp>
+#include <memory>
+#include <vector>
 
 #include "../support/quad_scene.h"
 #include "chart_frames.h"
@@ -91,4 +93,32 @@ TEST_CASE("a picture is rendered again until it repeats, or as often as it was",
     CHECK(history.frames() == 5);
     cli::renderAgain(longHistory, anyInputs(), 12);
     CHECK(longHistory.frames() == 12);
+}
+
+TEST_CASE("what glows is handed over with the triangles, where the scene lets it light", "[chart]") {
+    const auto sceneOf = [](bool glows, bool lights) {
+        test::QuadScene quads;
+        quads.quad(quads.material(glm::vec3(0.5f)), {-1, 0, -1}, {1, 0, -1}, {1, 0, 1}, {-1, 0, 1});
+        const int lamp = quads.material(glm::vec3(0.25f));
+        quads.quad(lamp, {-1, 2, -1}, {1, 2, -1}, {1, 2, 1}, {-1, 2, 1});
+        if (glows) quads.scene.materials[std::size_t(lamp)].emission = {3.0f, 2.0f, 1.0f};
+        quads.scene.emissiveSurfaces = lights;
+        return std::make_unique<studio::RayScene>(std::make_shared<const studio::Scene>(quads.scene),
+                                                  0.0f);
+    };
+    cli::InputOptions options;
+    options.width = options.height = 2;
+    const auto dark = sceneOf(false, true), off = sceneOf(true, false), on = sceneOf(true, true);
+    const cli::RenderInputs none(*dark, studio::Camera{}, options),
+        unlit(*off, studio::Camera{}, options), lit(*on, studio::Camera{}, options);
+    CHECK(none.geometry().triangleEmission == nullptr);
+    CHECK(unlit.geometry().triangleEmission == nullptr);
+    REQUIRE(lit.geometry().triangleCount == 4);
+    REQUIRE(lit.geometry().triangleEmission != nullptr);
+    const float* emission = lit.geometry().triangleEmission;
+    CHECK(std::vector<float>(emission, emission + 12) ==
+          std::vector<float>{0, 0, 0, 0, 0, 0, 3, 2, 1, 3, 2, 1});
+    CHECK(none.geometry().version == unlit.geometry().version);
+    CHECK(lit.geometry().version !=
+          none.geometry().version);  // else a technique would keep the dark ones
 }

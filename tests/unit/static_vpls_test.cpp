@@ -117,7 +117,7 @@ TEST_CASE("a hand's file: defaults, one reflectance for all, masks in both forms
 TEST_CASE("what is wrong with a file of static VPLs is named") {
     const File file;
     const auto refused = [&](const std::string& text, const std::string& key, const std::string& expected) {
-        CAPTURE(text);
+        CAPTURE(text.substr(0, 200));
         file.write(text);
         CHECK_THROWS_WITH(readStaticVpls(file.name()), Catch::Contains(file.name()) && Catch::Contains(key) &&
                                                            Catch::Contains("expected " + expected));
@@ -145,6 +145,12 @@ TEST_CASE("what is wrong with a file of static VPLs is named") {
     ofVpl(R"(, "receiver_mask": 1.5)", ".receiver_mask", "32 bits");
     ofVpl(R"(, "name": "")", ".name", "a text");
     ofVpl(R"(, "wieght": 1)", ".wieght: unknown key;", "one of");
+    refused(std::string(kHead) + kVpl + R"(, "weight": 1, "weight": 2}]})", "\"weight\"", "once in an object, got twice");
+    ofVpl(R"(, "light_mask": -1)", ".light_mask", "32 bits");
+    // However deep: neither reading nor telling goes down by calls.
+    const std::string deep = std::string(1000000, '[') + std::string(1000000, ']');
+    refused(deep, "the file", "an object, got lists in lists");
+    refused("{\"format\": " + deep + "}", "format", "a text, got lists in lists");
     refused(std::string(kHead) + R"(], "blockers": [{"center": [0, 0, 0], "radius": 0}]})", "blockers[0].radius",
             "a number above 0");
     std::string many = kHead;
@@ -153,6 +159,21 @@ TEST_CASE("what is wrong with a file of static VPLs is named") {
     file.write("{");
     CHECK_THROWS_WITH(readStaticVpls(file.name()), Catch::Contains(file.name()));
     CHECK_THROWS_WITH(readStaticVpls("/no/such/file.json"), Catch::Contains("/no/such/file.json"));
+}
+
+TEST_CASE("normals of any length that floats hold, and whole numbers however they are written") {
+    const File file;
+    const StaticVpls all = readStaticVpls(
+        file.write(R"({"format": "lightwell-static-vpls", "version": 1.0, "vpls": [
+            {"position": [0, 0, 0], "normal": [3e38, 3e38, 0], "reflectance": 1, "population": 5.0, "light_mask": 255.0},
+            {"position": [0, 0, 0], "normal": [0, 0, 1e-44], "reflectance": 1}]})")
+            .name());
+    REQUIRE(all.vpls.size() == 2);
+    CHECK(all.vpls[0].normal.x == Approx(std::sqrt(0.5)));
+    CHECK(all.vpls[0].normal.y == Approx(std::sqrt(0.5)));
+    CHECK(all.vpls[0].population == 5);
+    CHECK(all.vpls[0].lightMask == 255u);
+    CHECK(all.vpls[1].normal.z == 1.0f);
 }
 
 TEST_CASE("units and automatic weights: inches, and discs that reach half-way to the nearest") {

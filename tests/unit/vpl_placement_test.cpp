@@ -1,65 +1,19 @@
-// Placement of static VPLs: walks through free space, merging by hand, areas of known surfaces, several runs, and
-// what hands have set.
+// Placement of static VPLs: walks through free space, merging by hand, areas of known surfaces; several runs and what
+// hands have set stand in vpl_placement_hands_test.cpp.
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "../support/quad_scene.h"
-#include "vpl_places.h"
-#include "vpl_placement.h"
-
-namespace {
+#include "../support/placement_room.h"
 
 using namespace studio;
 using glm::vec3;
-
-constexpr double kCos45 = 0.70710678;
-
-// A closed box from 0 to (2, 1, 1), each wall of another reflectance.
-test::QuadScene room() {
-    test::QuadScene s;
-    const auto wall = [&](float r, const vec3& a, const vec3& b, const vec3& c, const vec3& d) {
-        s.quad(s.material(vec3(r)), a, b, c, d);
-    };
-    wall(0.1f, {0, 0, 0}, {2, 0, 0}, {2, 0, 1}, {0, 0, 1});
-    wall(0.2f, {0, 1, 0}, {2, 1, 0}, {2, 1, 1}, {0, 1, 1});
-    wall(0.3f, {0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0});
-    wall(0.4f, {0, 0, 1}, {2, 0, 1}, {2, 1, 1}, {0, 1, 1});
-    wall(0.5f, {0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1});
-    wall(0.6f, {2, 0, 0}, {2, 1, 0}, {2, 1, 1}, {2, 0, 1});
-    return s;
-}
-
-SurfaceHit hit(const vec3& position, const vec3& normal = {0, 1, 0}, float reflectance = 0.5f, int object = 0) {
-    return {position, glm::normalize(normal), vec3(reflectance), object};
-}
-
-MergeOptions merging(double spacing) {
-    MergeOptions options;
-    options.spacing = spacing;
-    options.leastCosine = kCos45;
-    options.reflectance = 0.1;
-    return options;
-}
-
-bool same(const StaticVpls& a, const StaticVpls& b) {
-    if (a.vpls.size() != b.vpls.size()) return false;
-    for (std::size_t i = 0; i < a.vpls.size(); ++i)
-        if (a.vpls[i].position != b.vpls[i].position || a.vpls[i].normal != b.vpls[i].normal ||
-            a.vpls[i].weight != b.vpls[i].weight || a.vpls[i].population != b.vpls[i].population ||
-            a.vpls[i].reflectance != b.vpls[i].reflectance)
-            return false;
-    return true;
-}
-
-PlacementOptions fewPaths() {
-    PlacementOptions options;
-    options.from = {{0.5f, 0.5f, 0.5f}};
-    options.paths = 2000;
-    options.cap = 60;
-    return options;
-}
-
-}  // namespace
+using test::QuadScene;
+using test::fewPaths;
+using test::hit;
+using test::kCos45;
+using test::merging;
+using test::room;
+using test::same;
 
 TEST_CASE("placement: a walk stays inside, and one outside is refused") {
     const RayScene scene = room().build();
@@ -72,7 +26,7 @@ TEST_CASE("placement: a walk stays inside, and one outside is refused") {
         seesBothEnds[p.x > 1.0f ? 1 : 0] = true;
     }
     CHECK((seesBothEnds[0] && seesBothEnds[1]));
-    test::QuadScene open;
+    QuadScene open;
     open.quad(open.material(vec3(0.5f)), {0, 0, 0}, {1, 0, 0}, {1, 0, 1}, {0, 0, 1});
     CHECK_THROWS_WITH(exploreFreeSpace(open.build(), {0.5f, 1e4f, 0.5f}, 2, 1), Catch::Contains("sees none"));
 }
@@ -147,7 +101,7 @@ TEST_CASE("placement: areas are shared out by the nearest place that sees a surf
 
     // A wall at 0.75 keeps the first from what lies behind it, and the second from what lies before it; a floor below
     // the floor is hidden.
-    test::QuadScene divided = room();
+    QuadScene divided = room();
     divided.quad(divided.material(vec3(0.5f)), {0.6f, 0, 0}, {0.6f, 1, 0}, {0.6f, 1, 1}, {0.6f, 0, 1});
     divided.quad(divided.material(vec3(0.5f)), {0, -0.5f, 0}, {2, -0.5f, 0}, {2, -0.5f, 1}, {0, -0.5f, 1});
     weigh(divided.build());
@@ -183,7 +137,7 @@ TEST_CASE("placement in a closed room: all of its area, all of its walls, by any
 }
 
 TEST_CASE("placement in another unit of length is the same placement") {
-    test::QuadScene large = room();
+    QuadScene large = room();
     for (Mesh& mesh : large.scene.meshes)
         for (vec3& p : mesh.positions) p *= 1024.0f;
     PlacementOptions options = fewPaths();
@@ -198,48 +152,8 @@ TEST_CASE("placement in another unit of length is the same placement") {
     }
 }
 
-TEST_CASE("placement: runs accumulate, and what a hand has set stays") {
-    const RayScene scene = room().build();
-    PlacementOptions options = fewPaths();
-    options.spacing = 0.4;
-    StaticVpls earlier;
-    earlier.metresPerUnit = 0.01f;
-    earlier.areaPerWeight = 100.0f;  // cm^2
-    StaticVpl byHand;
-    byHand.position = {100, 0, 50};  // the middle of the floor
-    byHand.reflectance = vec3(0.1f);
-    byHand.weight = 7.0f;
-    byHand.name = "mine";
-    earlier.vpls.push_back(byHand);
-    earlier.blockers.push_back({{1, 2, 3}, 4.0f, "ball", ""});
-    const Placement first = placeVpls(scene, options, earlier);
-    CHECK(first.report.byHand == 1);
-    options.seed = 2;
-    const Placement second = placeVpls(scene, options, first.vpls);
-    for (const StaticVpls* all : {&first.vpls, &second.vpls}) {
-        CHECK(all->blockers.size() == 1);
-        REQUIRE(all->vpls[0].name == "mine");
-        CHECK(all->vpls[0].weight == 7.0f);
-        CHECK(all->vpls[0].position == byHand.position);
-        CHECK(all->vpls[0].population == 0);
-        double area = 0.0;
-        std::uint32_t population = 0;
-        for (std::size_t i = 1; i < all->vpls.size(); ++i) {
-            const StaticVpl& v = all->vpls[i];
-            area += double(*v.weight) * 100.0 * 1e-4;
-            population += v.population;
-            // Within its spacing of the hand's VPL no other one stands on the floor.
-            if (v.reflectance.x < 0.15f) CHECK(glm::length(v.position - byHand.position) > 30.0f);
-        }
-        CHECK(area > 9.0);
-        CHECK(area < 10.0);  // the floor around the hand's VPL is its
-        CHECK(population > (all == &first.vpls ? 5000u : 10000u));
-    }
-    CHECK(second.report.earlier == first.vpls.vpls.size());
-}
-
 TEST_CASE("placement: VPLs of moving things stand in their coordinates, set back by the offset") {
-    test::QuadScene s = room();
+    QuadScene s = room();
     Object lid;
     lid.name = "lid";
     lid.keys = {{0.0f, {0.5f, 0.25f, 0.25f}, glm::angleAxis(kPi / 2.0f, vec3(0, 1, 0))}};
@@ -267,6 +181,19 @@ TEST_CASE("placement: VPLs of moving things stand in their coordinates, set back
             CHECK(double(std::abs(world.vpls[i].position.y - 0.25f)) == Approx(0.0625).epsilon(1e-3));
 }
 
+TEST_CASE("without paths of the lights, places are those of a room without lights") {
+    test::QuadScene lit = room();
+    lit.point({1.5f, 0.8f, 0.5f}, vec3(1.0f));
+    const RayScene withLight = lit.build(), without = room().build();
+    PlacementOptions options = fewPaths();
+    const StaticVpls dark = placeVpls(without, options, {}).vpls;
+    CHECK_FALSE(same(placeVpls(withLight, options, {}).vpls, dark));
+    options.lightPaths = 0;
+    const Placement placed = placeVpls(withLight, options, {});
+    CHECK(placed.report.hits == std::size_t(options.paths * options.depth));  // the room is closed
+    CHECK(same(placed.vpls, dark));
+}
+
 TEST_CASE("placement refuses what it cannot mean") {
     const RayScene scene = room().build();
     const auto refused = [&](const char* option, const auto& spoil) {
@@ -276,11 +203,20 @@ TEST_CASE("placement refuses what it cannot mean") {
     };
     refused("points", [](auto& o) { o.points = 0; });
     refused("paths", [](auto& o) { o.paths = 0; });
+    refused("lightPaths", [](auto& o) { o.lightPaths = -1; });
     refused("depth", [](auto& o) { o.depth = 0; });
     refused("cap", [](auto& o) { o.cap = 4097; });
     refused("degrees", [](auto& o) { o.degrees = 90.0; });
     refused("spacing", [](auto& o) { o.spacing = -1.0; });
     refused("offset", [](auto& o) { o.offset = -1.0; });
+    refused("spacing", [](auto& o) { o.spacing = 1e30; });
+    refused("from", [](auto& o) { o.from[0].y = 1e30f; });
+    refused("from", [](auto& o) { o.from[0].y = NAN; });
+    // Units in which no float is a place's area: what is written must read back.
+    StaticVpls units;
+    units.areaPerWeight = 1e38f;
+    units.metresPerUnit = 1e4f;
+    CHECK_THROWS_WITH(placeVpls(scene, fewPaths(), units), Catch::Contains("area_per_weight: expected"));
     StaticVpls two;
     two.vpls.resize(2);
     PlacementOptions one = fewPaths();

@@ -1,4 +1,4 @@
-// Technique ssvp's occluders, from which of the host's inputs, and the passes that draw maps of them.
+// What occludes the light of clusters of VPLs, from which of the host's inputs, and the passes that draw maps of it.
 #pragma once
 
 #include <cstdint>
@@ -18,13 +18,24 @@
 
 namespace lightwell {
 
-class SsvpMaps {
+// What a technique asks of them.
+struct OccluderOptions {
+    LWOccluders occluders = LW_OCCLUDERS_AUTO;
+    std::uint32_t mapSize = 128;
+    std::size_t drawn = 1;       // the first so many stages have maps; those of the others are left empty
+    bool isWanted = true;        // false: nothing asks for occluders
+    bool throughVoxels = false;  // the light goes past voxels; maps serve what is drawn from them
+    // What RSMs and source views show may be occluders; else a frame without triangles and surfels is refused.
+    bool takesScreen = true;
+};
+
+class OccluderMaps {
 public:
     // Where a frame's maps come from.
     enum class Source { none, triangles, surfels, sampledTriangles, screen };
 
     // stages: bounces whose VPLs have clusters.
-    SsvpMaps(Device& device, const LWSsvpDesc& desc, std::size_t stages);
+    OccluderMaps(Device& device, const OccluderOptions& options, std::size_t stages);
 
     // Throws what import() would say of this frame, whose RSMs are RsmInput's to check.
     void check(const LWFrame& frame) const;
@@ -41,14 +52,15 @@ public:
     const ParaboloidMap& maps(std::size_t stage) const { return stages_[stage].maps; }
     ParaboloidMap& maps(std::size_t stage) { return stages_[stage].maps; }
 
-    // What of the frame's geometry and views is used, and what is not.
+    bool usesViews() const { return source_ == Source::screen; }
+    // What occludes, and what of the frame's geometry is not used.
     std::vector<LWChoice> choices(const LWFrame& frame) const;
     void report(Report& report) const;
     std::uint64_t bytes() const;
     // clusterCounts: of each stage.
-    static std::uint64_t estimateBytes(const LWSsvpDesc& desc, const std::vector<std::uint32_t>& clusterCounts,
+    static std::uint64_t estimateBytes(const OccluderOptions& options, const std::vector<std::uint32_t>& clusterCounts,
                                        const FrameShape& shape);
-    static std::uint64_t voxelSurfels(const LWSsvpDesc& desc, const FrameShape& shape);  // of surfaces(); 0 of triangles
+    static std::uint64_t voxelSurfels(const OccluderOptions& options, const FrameShape& shape);  // of surfaces(); 0 of triangles
 
 private:
     struct Stage {
@@ -59,10 +71,11 @@ private:
     };
 
     Source sourceOf(const LWFrame& frame) const;
+    bool draws(std::size_t stage) const { return source_ != Source::none && stage < options_.drawn; }
     SurfelSet surfels() const;
 
     Device& device_;
-    LWSsvpDesc desc_;
+    OccluderOptions options_;
     Source source_ = Source::none;
     bool isOther_ = false;  // than in the import before
     GeometryInput triangles_;

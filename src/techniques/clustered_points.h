@@ -1,4 +1,4 @@
-// Technique ssvp's light at points: of all bounces' VPLs at each, with their clusters' visibility, without interleaving, filter,
+// Light of clustered VPLs at points: of all bounces' at each, with their clusters' visibility, without interleaving, filter,
 // compensation or history.
 #pragma once
 
@@ -10,9 +10,9 @@
 
 namespace lightwell {
 
-class SsvpPoints final : private PointGather {
+class ClusteredPoints final : private PointGather {
 public:
-    SsvpPoints(Device& device, ClusterVisibility visibility);
+    ClusteredPoints(Device& device, ClusterVisibility visibility);
 
     void startFrame();
     // The bounces of the last update, and their maps.

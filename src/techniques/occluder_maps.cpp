@@ -1,4 +1,4 @@
-#include "techniques/ssvp_maps.h"
+#include "techniques/occluder_maps.h"
 
 #include <algorithm>
 
@@ -8,21 +8,12 @@
 namespace lightwell {
 namespace {
 
-using Source = SsvpMaps::Source;
+using Source = OccluderMaps::Source;
 
-// Occluders serve the visibility and further bounces.
-bool needsOccluders(const LWSsvpDesc& desc) { return desc.visibility != LW_VISIBILITY_NONE || desc.bounces > 1; }
-
-// Maps of a stage's clusters serve the visibility, but that through voxels, and the bounce after it.
-bool drawsMaps(const LWSsvpDesc& desc, std::size_t stage) {
-    const bool looks = desc.visibility == LW_VISIBILITY_HARD || desc.visibility == LW_VISIBILITY_SOFT;
-    return looks || stage + 1 < desc.bounces;
-}
-
-Source chosenSource(const LWSsvpDesc& desc, std::uint32_t triangles, std::uint32_t surfels) {
-    if (!needsOccluders(desc)) return Source::none;
+Source chosenSource(const OccluderOptions& options, std::uint32_t triangles, std::uint32_t surfels) {
+    if (!options.isWanted) return Source::none;
     const Source sampled = surfels ? Source::surfels : Source::sampledTriangles;
-    switch (desc.occluders) {
+    switch (options.occluders) {
         case LW_OCCLUDERS_TRIANGLES:
             return Source::triangles;
         case LW_OCCLUDERS_SURFELS:
@@ -30,7 +21,20 @@ Source chosenSource(const LWSsvpDesc& desc, std::uint32_t triangles, std::uint32
         case LW_OCCLUDERS_SCREEN:
             return Source::screen;
         default:
-            return triangles ? Source::triangles : surfels ? Source::surfels : Source::screen;
+            if (triangles || !(surfels || options.takesScreen)) return Source::triangles;
+            return surfels ? Source::surfels : Source::screen;
+    }
+}
+
+// What a frame without it is refused for.
+const char* expectation(const OccluderOptions& options) {
+    switch (options.occluders) {
+        case LW_OCCLUDERS_TRIANGLES:
+            return "triangles, as the technique's parameter occluders=triangles asks for them";
+        case LW_OCCLUDERS_SURFELS:
+            return "surfels or triangles, as the technique's parameter occluders=surfels asks for them";
+        default:
+            return "triangles or surfels, as the technique's parameter visibility asks for what may stand in the light's way";
     }
 }
 
@@ -69,25 +73,22 @@ const char* describeVoxels(Source source) {
 
 }  // namespace
 
-SsvpMaps::SsvpMaps(Device& device, const LWSsvpDesc& desc, std::size_t stages)
-    : device_(device), desc_(desc), sampling_(device) {
-    for (std::size_t i = 0; i < stages; ++i) stages_.emplace_back(device, desc.mapSize);
+OccluderMaps::OccluderMaps(Device& device, const OccluderOptions& options, std::size_t stages)
+    : device_(device), options_(options), sampling_(device) {
+    for (std::size_t i = 0; i < stages; ++i) stages_.emplace_back(device, options.mapSize);
 }
 
-Source SsvpMaps::sourceOf(const LWFrame& frame) const {
-    return chosenSource(desc_, trianglesOf(frame), surfelsOf(frame));
+Source OccluderMaps::sourceOf(const LWFrame& frame) const {
+    return chosenSource(options_, trianglesOf(frame), surfelsOf(frame));
 }
 
-void SsvpMaps::check(const LWFrame& frame) const {
+void OccluderMaps::check(const LWFrame& frame) const {
     const Source source = sourceOf(frame);
     const bool drawsTriangles = source == Source::triangles || source == Source::sampledTriangles;
     if (drawsTriangles && trianglesOf(frame) == 0)
-        fail(LW_ERROR_INVALID_ARGUMENT, "frame.geometry: expected ",
-             source == Source::triangles ? "triangles, as the technique's parameter occluders=triangles asks for them"
-                                         : "surfels or triangles, as the technique's parameter occluders=surfels asks for them",
-             ", got none");
+        fail(LW_ERROR_INVALID_ARGUMENT, "frame.geometry: expected ", expectation(options_), ", got none");
     // Without light there is nothing to shadow.
-    if (source == Source::screen && desc_.occluders == LW_OCCLUDERS_SCREEN && frame.vplCount && frame.sourceViewCount == 0 &&
+    if (source == Source::screen && options_.occluders == LW_OCCLUDERS_SCREEN && frame.vplCount && frame.sourceViewCount == 0 &&
         !hasRsm(frame))
         fail(LW_ERROR_INVALID_ARGUMENT, "frame: expected RSMs or sourceViews, as the technique's parameter "
              "occluders=screen asks for them, got neither");
@@ -96,13 +97,13 @@ void SsvpMaps::check(const LWFrame& frame) const {
     if (source == Source::screen) ScreenSurfels::check(device_, frame);
 }
 
-void SsvpMaps::forget() {
+void OccluderMaps::forget() {
     triangles_.forget();
     hostSurfels_.forget();
     for (Stage& stage : stages_) stage.maps.redrawAll();
 }
 
-void SsvpMaps::import(Executor& executor, const LWFrame& frame, const RsmInput& rsms) {
+void OccluderMaps::import(Executor& executor, const LWFrame& frame, const RsmInput& rsms) {
     const Source source = sourceOf(frame);
     isOther_ = source != source_;  // revisions count within a source
     if (isOther_)
@@ -125,7 +126,7 @@ void SsvpMaps::import(Executor& executor, const LWFrame& frame, const RsmInput& 
     if (source != Source::screen) screen_.clear();
 }
 
-VoxelSurfaces SsvpMaps::surfaces() const {
+VoxelSurfaces OccluderMaps::surfaces() const {
     VoxelSurfaces surfaces;
     const bool isTriangles = source_ == Source::triangles || source_ == Source::sampledTriangles;
     if (isTriangles) surfaces.triangles = &triangles_;
@@ -134,22 +135,21 @@ VoxelSurfaces SsvpMaps::surfaces() const {
     return surfaces;
 }
 
-SurfelSet SsvpMaps::surfels() const {
+SurfelSet OccluderMaps::surfels() const {
     return source_ == Source::surfels ? hostSurfels_.surfels()
            : source_ == Source::screen ? screen_.surfels()
                                        : sampling_.surfels();
 }
 
-void SsvpMaps::record(Executor& executor, std::size_t index, const Buffer& clusters, std::uint32_t clusterCount) {
+void OccluderMaps::record(Executor& executor, std::size_t index, const Buffer& clusters, std::uint32_t clusterCount) {
     Stage& stage = stages_[index];
-    const bool draws = source_ != Source::none && drawsMaps(desc_, index);
-    if (!draws) clusterCount = 0;
-    if (!draws || source_ == Source::triangles) {
+    if (!draws(index)) clusterCount = 0;
+    if (!draws(index) || source_ == Source::triangles) {
         stage.maps.record(executor, clusters, clusterCount, triangles_);
         return;
     }
     if (source_ == Source::sampledTriangles && index == 0)
-        sampling_.record(executor, triangles_, SurfelSplat::mostSurfels(desc_.mapSize));
+        sampling_.record(executor, triangles_, SurfelSplat::mostSurfels(options_.mapSize));
     const SurfelSet set = surfels();
     stage.maps.recordPlaces(executor, clusters, clusterCount, *set.diagonal, set.revision);
     stage.splat.record(executor, set, stage.maps.texels());
@@ -157,15 +157,11 @@ void SsvpMaps::record(Executor& executor, std::size_t index, const Buffer& clust
     stage.maps.noteDrawn(set.revision);
 }
 
-std::vector<LWChoice> SsvpMaps::choices(const LWFrame& frame) const {
-    std::vector<LWChoice> choices = {{"occluders", desc_.visibility == LW_VISIBILITY_VOXEL ? describeVoxels(source_) : describe(source_)}};
-    const bool isScreen = source_ == Source::screen;
-    if (isScreen && !hasRsm(frame) && frame.sourceViewCount == 0)
+std::vector<LWChoice> OccluderMaps::choices(const LWFrame& frame) const {
+    std::vector<LWChoice> choices = {{"occluders", options_.throughVoxels ? describeVoxels(source_) : describe(source_)}};
+    if (usesViews() && !hasRsm(frame) && frame.sourceViewCount == 0)
         choices.push_back({"frame.geometry", "neither triangles, surfels, RSMs nor source views: nothing blocks, and there is "
                                              "no second bounce"});
-    if (frame.sourceViewCount && !isScreen)
-        choices.push_back({"frame.sourceViews", "not used: they are no occluders, and technique ssvp takes light from RSMs and "
-                                                "authored VPLs only"});
     if (surfelsOf(frame) && source_ != Source::surfels)
         choices.push_back({"frame.geometry.surfels", "not used: they are no occluders"});
     if (trianglesOf(frame) && source_ != Source::triangles && source_ != Source::sampledTriangles)
@@ -173,32 +169,32 @@ std::vector<LWChoice> SsvpMaps::choices(const LWFrame& frame) const {
     return choices;
 }
 
-void SsvpMaps::report(Report& report) const {
+void OccluderMaps::report(Report& report) const {
     if (source_ == Source::surfels) hostSurfels_.report(report);
     else if (source_ == Source::screen) screen_.report(report);
     else triangles_.report(report);
     if (source_ == Source::sampledTriangles) report.counts.push_back({"surfels", sampling_.surfels().count});
     for (std::size_t i = 0; i < stages_.size(); ++i) {
         stages_[i].maps.report(report);
-        if (source_ != Source::none && source_ != Source::triangles && drawsMaps(desc_, i)) stages_[i].holes.report(report);
+        if (source_ != Source::triangles && draws(i)) stages_[i].holes.report(report);
     }
 }
 
-std::uint64_t SsvpMaps::bytes() const {
+std::uint64_t OccluderMaps::bytes() const {
     std::uint64_t total = triangles_.bytes() + hostSurfels_.bytes() + screen_.bytes() + sampling_.bytes();
     for (const Stage& stage : stages_) total += stage.maps.bytes() + stage.splat.bytes() + stage.holes.bytes();
     return total;
 }
 
-std::uint64_t SsvpMaps::estimateBytes(const LWSsvpDesc& desc, const std::vector<std::uint32_t>& clusterCounts,
+std::uint64_t OccluderMaps::estimateBytes(const OccluderOptions& options, const std::vector<std::uint32_t>& clusterCounts,
                                       const FrameShape& shape) {
-    const Source source = chosenSource(desc, shape.triangles, shape.surfels);
-    const std::uint32_t sampled = SurfelSplat::mostSurfels(desc.mapSize);
+    const Source source = chosenSource(options, shape.triangles, shape.surfels);
+    const std::uint32_t sampled = SurfelSplat::mostSurfels(options.mapSize);
     std::uint64_t total = 0;
     if (source == Source::triangles || source == Source::sampledTriangles) total += GeometryInput::estimateBytes(shape.triangles);
     if (source == Source::none || source == Source::triangles) {
         for (std::size_t i = 0; i < clusterCounts.size(); ++i)
-            total += ParaboloidMap::estimateBytes(desc.mapSize, source == Source::triangles && drawsMaps(desc, i) ? clusterCounts[i] : 0);
+            total += ParaboloidMap::estimateBytes(options.mapSize, source == Source::triangles && i < options.drawn ? clusterCounts[i] : 0);
         return total;
     }
     std::uint64_t surfels = 0;
@@ -214,16 +210,16 @@ std::uint64_t SsvpMaps::estimateBytes(const LWSsvpDesc& desc, const std::vector<
     }
     for (std::size_t i = 0; i < clusterCounts.size(); ++i) {
         const std::uint32_t clusters = clusterCounts[i];
-        total += !drawsMaps(desc, i) ? ParaboloidMap::estimateBytes(desc.mapSize, 0)
-                                     : ParaboloidMap::estimatePlacesBytes(desc.mapSize, clusters) +
+        total += i >= options.drawn ? ParaboloidMap::estimateBytes(options.mapSize, 0)
+                                     : ParaboloidMap::estimatePlacesBytes(options.mapSize, clusters) +
                                            SurfelSplat::estimateBytes(surfels, clusters) +
-                                           PullPush::estimateBytes(desc.mapSize, clusters);
+                                           PullPush::estimateBytes(options.mapSize, clusters);
     }
     return total;
 }
 
-std::uint64_t SsvpMaps::voxelSurfels(const LWSsvpDesc& desc, const FrameShape& shape) {
-    const Source source = chosenSource(desc, shape.triangles, shape.surfels);
+std::uint64_t OccluderMaps::voxelSurfels(const OccluderOptions& options, const FrameShape& shape) {
+    const Source source = chosenSource(options, shape.triangles, shape.surfels);
     return source == Source::surfels ? shape.surfels : source == Source::screen ? shape.paddedTexels + shape.sourcePixels : 0;
 }
 

@@ -1,18 +1,18 @@
-#include "techniques/ssvp_points.h"
+#include "techniques/clustered_points.h"
 
 #include "compute/device.h"
 
 namespace lightwell {
 
-SsvpPoints::SsvpPoints(Device& device, ClusterVisibility visibility)
+ClusteredPoints::ClusteredPoints(Device& device, ClusterVisibility visibility)
     : device_(device), light_(device), cull_(device, 1), gather_(device, 1, 1, visibility), harmonics_(device, visibility) {}
 
-void SsvpPoints::startFrame() {
+void ClusteredPoints::startFrame() {
     light_.startFrame();
     isOrdered_ = false;
 }
 
-void SsvpPoints::render(Executor& executor, const Points& points, const std::vector<GatheredList>& lists, const ClusterMaps& maps) {
+void ClusteredPoints::render(Executor& executor, const Points& points, const std::vector<GatheredList>& lists, const ClusterMaps& maps) {
     checkPoints(device_, points);
     // The view's list is dealt out to subsets of pixels: walked whole, each cluster would be looked up once for every subset.
     if (!isOrdered_) gather_.recordOrder(executor, lists);
@@ -21,7 +21,7 @@ void SsvpPoints::render(Executor& executor, const Points& points, const std::vec
     light_.render(executor, points, *this);
 }
 
-void SsvpPoints::recordIrradiance(Executor& executor, const Planes& position, const Planes& normal, const Planes& irradiance,
+void ClusteredPoints::recordIrradiance(Executor& executor, const Planes& position, const Planes& normal, const Planes& irradiance,
                                   const Planes&, const Buffer& counts) {
     if (!irradiance) return;
     tiles_.reserve(device_, position.width, position.height, gather_.order(), 1);
@@ -30,7 +30,7 @@ void SsvpPoints::recordIrradiance(Executor& executor, const Planes& position, co
                          VplTiles::layout(position.width, position.height, gather_.order(), 1), *maps_, irradiance, counts);
 }
 
-void SsvpPoints::recordHarmonics(Executor& executor, const Planes& position, const Planes& normal, const Harmonics& harmonics,
+void ClusteredPoints::recordHarmonics(Executor& executor, const Planes& position, const Planes& normal, const Harmonics& harmonics,
                                  const Planes&, const Buffer& counts) {
     if (harmonics) harmonics_.record(executor, position, normal, gather_, *maps_, harmonics, counts);
 }

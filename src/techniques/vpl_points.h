@@ -1,4 +1,4 @@
-// Technique static_vpl's light at points: of all VPLs that are kept at each.
+// Light of VPLs at points: of all VPLs at each, without interleaving, filter or history.
 #pragma once
 
 #include "passes/interleaved_gather.h"
@@ -6,9 +6,9 @@
 
 namespace lightwell {
 
-class StaticVplPoints final : private PointGather {
+class VplPoints final : private PointGather {
 public:
-    explicit StaticVplPoints(Device& device);
+    explicit VplPoints(Device& device);
 
     void startFrame() { light_.startFrame(); }
     // vpls: lw_vpl by slot, dealt out as `order` says.
@@ -18,12 +18,10 @@ public:
     std::uint64_t bytes() const { return light_.bytes() + tiles_.bytes(); }
 
 private:
-    void recordIrradiance(Executor& executor, const Planes& position, const Planes& normal,
-                          const Planes& irradiance, const Planes& validity,
-                          const Buffer& counts) override;
-    void recordHarmonics(Executor& executor, const Planes& position, const Planes& normal,
-                         const Harmonics& harmonics, const Planes& validity,
-                         const Buffer& counts) override;
+    void recordIrradiance(Executor& executor, const Planes& position, const Planes& normal, const Planes& irradiance,
+                          const Planes& validity, const Buffer& counts) override;
+    void recordHarmonics(Executor& executor, const Planes& position, const Planes& normal, const Harmonics& harmonics,
+                         const Planes& validity, const Buffer& counts) override;
 
     Device& device_;
     PointLight light_;
