@@ -46,7 +46,7 @@ PARTS = {"first": (static_vpl_first.first, static_vpl_page.first), "door": (stat
          "studs": (static_vpl_weak.studs, static_vpl_page.studs), "block": (static_vpl_weak.block, static_vpl_page.block),
          "flicker": (static_vpl_flicker.flicker, static_vpl_page.flicker), "stereo": (stereo, static_vpl_page.stereo)}
 
-PICTURED = ("first", "block")  # whose pictures the page needs beside the figures; they are kept, too
+PICTURED = ("first", "flip", "block")  # whose pictures the page needs beside the figures; they are kept, too
 
 
 def main():

@@ -5,7 +5,7 @@ import numpy
 
 import exr_planes
 from program import ROOT
-from static_vpl_bench import beam_area, spheres, with_light
+from static_vpl_bench import beam_area, read_vpls, spheres, with_light
 
 FRAMES = 4
 # VPLs, and what makes them. `places` is the cap of place-vpls; a phantom takes its looks from 200.
@@ -67,20 +67,21 @@ def pictures(bench, name, frame):
         if variant.startswith("phantom"):
             own.append(f"unit_area={area:.4g}")
         key = f"{name}_{variant}_{frame}".replace(" ", "_").replace(",", "")
-        exr, report, _ = bench.render(scene, key, technique, settings + own, extra=moment)
-        return exr, exr_planes.read_planes(exr), report["counts"]
+        exr, report, vpls = bench.render(scene, key, technique, settings + own, extra=moment)
+        return exr, exr_planes.read_planes(exr), report["counts"], read_vpls(vpls)[:, 6:9].sum()
 
     second = ["bounces=2", f"average_reflectance={REFLECTANCE[name]}"]
     for variant, (_, technique, cap, settings) in VARIANTS.items():
-        exr, one, counts = light(variant, technique, cap, settings)
-        kept = counts.get("kept_vpls", counts.get("vpls"))
-        made[variant] = {"exr": exr, "one": one, "vpls": kept}
+        exr, one, counts, flux = light(variant, technique, cap, settings)
+        kept = counts["kept_vpls"] + counts["phantom_vpls"] if "kept_vpls" in counts else counts["vpls"]
+        made[variant] = {"exr": exr, "one": one, "vpls": kept, "flux": flux}
         if technique == "static_vpl":
             made[variant]["two"] = light(f"{variant} second", technique, cap, settings + second)[1]
-    # As the paper has it, traced VPLs get the same second bounce as the phantom.
-    more = made["phantom"]["two"] - made["phantom"]["one"]
-    for variant in made:
-        made[variant].setdefault("two", made[variant]["one"] + more)
+    # As the paper has it, traced VPLs get a second bounce like that of places, of their own flux.
+    places = made["static 200"]
+    more = (places["two"] - places["one"]) / places["flux"]
+    for picture in made.values():
+        picture.setdefault("two", picture["one"] + picture["flux"] * more)
     return made, truths(bench, name, scene, frame, moment)
 
 
@@ -92,7 +93,7 @@ def truths(bench, name, scene, frame, moment):
 
 
 def flip(bench):
-    """By scene, variant and bounces: FLIP, relMSE and bias of each frame, and the VPLs' number."""
+    """By scene, variant and bounces: FLIP, relMSE and bias of each frame, and the VPLs' number; and the pictures of one frame, of one bounce."""
     found = bench.kept("flip")
     for name in SCENES:
         if name in found:
@@ -106,12 +107,13 @@ def flip(bench):
                 for bounces in ("one", "two"):
                     image = picture["exr"]  # of one bounce
                     if bounces == "two":
-                        image = with_light(image, picture["two"], bench.work / "static_vpl_flip_judged.exr")
+                        image = with_light(image, picture["two"], bench.work / f"static_vpl_flip_judged_{name}.exr")
                     errors = bench.compare(image, truth[bounces])
                     row[bounces].append({key: errors[key] for key in ("flip", "relMSE", "bias")})
         found[name] = rows
         bench.keep("flip", found)
-    return found
+    names = {"truth": "truth_1_one", "static 200": "static_200_1", "phantom": "phantom_1", "traced 20": "traced_20_1"}
+    return found, {scene: {way: bench.work / f"static_vpl_{scene}_{name}.exr" for way, name in names.items()} for scene in SCENES}
 
 
 def mean(values, key):

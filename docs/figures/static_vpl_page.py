@@ -7,7 +7,6 @@ import matplotlib.pyplot as plt  # noqa: E402
 import numpy  # noqa: E402
 
 import thesis_pictures  # noqa: E402
-from exr_planes import read_planes  # noqa: E402
 from program import ROOT  # noqa: E402
 from static_vpl_flicker import INDICES  # noqa: E402
 from static_vpl_flip import VARIANTS, mean  # noqa: E402
@@ -65,12 +64,14 @@ def road(found):
             f"of one ray {abs(numpy.diff(place)).max():.2f}.", ""]
 
 
-def flip(found):
+def flip(found, exrs):
     lines = []
     for scene, rows in found.items():
+        pictures(exrs[scene], list(exrs[scene]), f"flip_{scene}")
         body = [[variant, f"{numpy.mean(r['vpls']):.0f}", *(f"{mean(r[b], key):{f}}" for b in ("one", "two") for key, f in
                 (("flip", ".3f"), ("relMSE", ".2g"), ("bias", "+.0%")))] for variant, r in rows.items()]
-        lines += [f"**{scene}**", "", *table(["what", "VPLs that light", "FLIP, one bounce", "relMSE", "bias", "FLIP, two bounces", "relMSE", "bias"], body)]
+        lines += [f"**{scene}**", "", f"![{scene}](../images/static_vpl_flip_{scene}.jpg)", "", "*" + " | ".join(exrs[scene]) + "*, one bounce, second frame", "",
+                  *table(["what", "VPLs that light", "FLIP, one bounce", "relMSE", "bias", "FLIP, two bounces", "relMSE", "bias"], body)]
     figure, panels = plt.subplots(1, len(found), figsize=(9, 2.8), sharey=True, squeeze=False)
     for axes, (scene, rows) in zip(panels[0], found.items()):
         for i, (variant, r) in enumerate(rows.items()):
@@ -94,8 +95,8 @@ def studs(found):
         panels[0].plot(x, row["red"], ".-", color=colour(way), label=way)
         if row["degrees"]:
             panels[1].plot(x, row["degrees"], ".-", color=colour(way), label=way)
-    panels[0].set(xlabel="the beam's axis, m from the seam", ylabel="R / (R + G) on the wall opposite")
-    panels[1].set(xlabel="the beam's axis, m from the seam", ylabel="VPLs' mean normal off the wall's, degrees")
+    panels[0].set(xlabel="the beam's axis, m from the seam", ylabel="R / (R + G) opposite")
+    panels[1].set(xlabel="the beam's axis, m from the seam", ylabel="mean normal off the wall's, degrees")
     for axes in panels:
         axes.grid(alpha=0.3)
     panels[0].legend(fontsize=7)

@@ -33,9 +33,6 @@ LW_FN mask in_grid(real x, real y, real z, float low, float high) {
     return and_(and_(and_(x >= low, x <= high), and_(y >= low, y <= high)), and_(z >= low, z <= high));
 }
 
-// One instruction each, where fmin() and fmax() take five to look for NaN, and eight cycles one after the other.
-LW_FN real lesser(real a, real b) { return select_(b, a, a < b); }
-LW_FN real greater(real a, real b) { return select_(b, a, a > b); }
 #if LW_WIDTH == 1
 LW_FN float greatest_lane(real v) { return v; }
 #else
@@ -78,8 +75,8 @@ LW_FN void add_sample(cone_light* l, const cone_sample* s, const LwConeStep* ste
 #if LW_CONE_CORRECT
     if (exponent != 1.0f) weight *= corrected(s->a, exponent);
 #endif
-    const real alone = weight * s->a, left = fmax(fma_(-s->closed, l->before, (real)1.0f), (real)1e-6f);
-    weight *= through / fmax(left, alone);
+    const real alone = weight * s->a, left = greater(fma_(-s->spread, l->before, s->most), s->most * 1e-6f);
+    weight *= through * s->most / greater(left, alone * s->most);
     l->before = select_((real)0.0f, alone, through > 0.0f);
     const real opacity = weight * s->a;
 #if LW_CONE_LIGHT

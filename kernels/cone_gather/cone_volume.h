@@ -28,9 +28,9 @@ typedef struct {
     int unit;
 } cone_volume;
 
-// Premultiplied; and how much of a is in closed voxels, 1, or spread over all, 0: the variance of opacity among the voxels that were
-// interpolated over what it would be if each were open or closed.
-typedef struct { real r, g, b, a, closed; } cone_sample;
+// Premultiplied; and `spread` over `most`: how much of a is in closed voxels, 1, or spread over all, 0. They are the variance of opacity
+// among the voxels that were interpolated, and what it would be if each were open or closed; one division is left to who needs their ratio.
+typedef struct { real r, g, b, a, spread, most; } cone_sample;
 
 // The lower of the eight voxels around a place as a word of its plane, and the upper ones' shares. `side`: voxels a side of the level.
 typedef struct {
@@ -66,6 +66,10 @@ LW_FN void gather_pairs(__global const uint* words, lanei at, laneu* low, laneu*
     *high = (laneu)LW_LANES(LW_GATHER_HIGH);
 }
 #endif
+
+// One instruction each, where fmin() and fmax() take five to look for NaN, and eight cycles one after the other.
+LW_FN real lesser(real a, real b) { return select_(b, a, a < b); }
+LW_FN real greater(real a, real b) { return select_(b, a, a > b); }
 
 // A coordinate in cells from the first one's centre. Half a cell from the grid's border inwards the outermost voxels hold: those beyond
 // are empty because there are none.
@@ -180,7 +184,10 @@ LW_FN void spread_of(real* variance, real* most, const cone_words* sum, real has
     *variance = sum->squares - fma_((real)2.0f, a, has) - a * a;
     *most = a * (has * (1.0f / LW_CONE_OPACITY_STEP) - a);
 }
-LW_FN real closed_of(real variance, real most) { return clamp(variance / fmax(most, (real)1e-6f), (real)0.0f, (real)1.0f); }
+LW_FN void keep_spread(cone_sample* sample, real variance, real most) {
+    sample->most = greater(most, (real)1e-6f);
+    sample->spread = lesser(greater(variance, (real)0.0f), sample->most);
+}
 
 // has: the sum of weights, of those lanes that have any.
 LW_FN void finish_words(cone_sample* sample, const cone_words* sum, real has, int unit) {
@@ -233,7 +240,7 @@ LW_FN void sample_sides(cone_sample* sample, __global const uint* words, const c
     sample->r *= share;
     sample->g *= share;
     sample->b *= share;
-    sample->closed = closed_of(variance, most);
+    keep_spread(sample, variance, most);
 }
 
 #if LW_CONE_MODE == 2 && LW_CONE_LIGHT
@@ -264,7 +271,7 @@ LW_FN void add_harmonics(cone_sample* sum, __global const uint* words, const con
             const real step = weight[i] * as_real_(((w >> LW_VOXEL_EXPONENT_SHIFT) & LW_VOXEL_EXPONENT_MASK) + (uint)unit);
             const real opacity = to_real(as_lanei_(w & LW_VOXEL_OPACITY_MASK)) * LW_VOXEL_OPACITY_STEP, share = opacity * weight[i];
             sum->a += share;
-            sum->closed = fma_(opacity, share, sum->closed);
+            sum->spread = fma_(opacity, share, sum->spread);
             sum->r = fma_(to_real(as_lanei_(w & LW_VOXEL_RED_MASK)) * step, fma_((real)-LW_CONE_SHARE, along(r[i], dx, dy, dz), even_light), sum->r);
             sum->g = fma_(to_real(as_lanei_(w & LW_VOXEL_GREEN_MASK)) * step, fma_((real)-LW_CONE_SHARE, along(g[i], dx, dy, dz), even_light), sum->g);
             sum->b = fma_(to_real(as_lanei_(w & LW_VOXEL_BLUE_MASK)) * step, fma_((real)-LW_CONE_SHARE, along(b[i], dx, dy, dz), even_light), sum->b);
@@ -276,13 +283,14 @@ LW_FN void add_harmonics(cone_sample* sum, __global const uint* words, const con
 // Light and opacity between a corner's eight voxels, seen by a ray that goes along d.
 LW_FN void sample_corner(cone_sample* sample, const cone_volume* v, int level, const cone_corner* c, real dx, real dy, real dz) {
     const real has = ones_(c->has), none = (real)0.0f;
-    sample->r = sample->g = sample->b = sample->a = sample->closed = none;
+    sample->r = sample->g = sample->b = sample->a = sample->spread = none;
+    sample->most = (real)1.0f;
     __global const uint* words = level == 0 ? v->base : v->mips;
     const int plane = level == 0 ? v->grids.basePlane : v->grids.mipPlane;
 #if LW_CONE_MODE == 2 && LW_CONE_LIGHT
     if (level > 0 || !LW_CONE_SIDES) {
         add_harmonics(sample, words, c, plane, dx, dy, dz, has, v->unit);
-        sample->closed = closed_of(sample->closed - sample->a * sample->a, sample->a * (1.0f - sample->a));
+        keep_spread(sample, sample->spread - sample->a * sample->a, sample->a * (1.0f - sample->a));
         sample->a = fmin(sample->a, (real)1.0f);
         sample->r = fmax(sample->r * LW_VOXEL_RED_STEP, none);
         sample->g = fmax(sample->g * LW_VOXEL_GREEN_STEP, none);
@@ -300,7 +308,7 @@ LW_FN void sample_corner(cone_sample* sample, const cone_volume* v, int level, c
     finish_words(sample, &sum, has, v->unit);
     real variance, most;
     spread_of(&variance, &most, &sum, has);
-    sample->closed = closed_of(variance, most);
+    keep_spread(sample, variance, most);
 }
 
 #endif

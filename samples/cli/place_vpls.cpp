@@ -180,8 +180,9 @@ void declareSearch(CLI::App& command, PlaceOptions& options) {
         ->check(CLI::Range(1, kMostPaths))
         ->capture_default_str();
     command
-        .add_option("--light-paths", placement.lightPaths,
-                    "Paths from all lights together; 0: places do not lean towards where light falls now")
+        .add_option(
+            "--light-paths", placement.lightPaths,
+            "Paths from all lights together; 0: places do not lean towards where light falls now")
         ->check(CLI::Range(0, kMostPaths))
         ->capture_default_str();
     command.add_option("--depth", placement.depth, "Surfaces that a path meets at most")

@@ -100,10 +100,14 @@ glm::vec3 JsonValue::vector() const {
 }
 
 glm::vec3 JsonValue::direction() const {
-    const glm::dvec3 v(vector());  // squares of floats leave their range on both sides
-    const double length = glm::length(v);
-    if (!(length > 0.0)) fail("a direction (not zero)");
-    return glm::vec3(v / length);
+    const glm::vec3 v = vector();
+    // In single precision where it can be: with one bit of a light another the truths that are kept of a
+    // scene, named by what is in it, would be traced anew.
+    const float length = glm::length(v);
+    if (length > 1e-15f && length < 1e18f) return v / length;
+    const glm::dvec3 extreme(v);  // squares of floats leave their range on both sides
+    if (!(glm::length(extreme) > 0.0)) fail("a direction (not zero)");
+    return glm::vec3(extreme / glm::length(extreme));
 }
 
 glm::vec3 JsonValue::colour() const {

@@ -115,8 +115,8 @@ void run(benchmark::State& state, LWDevice device, std::uint32_t count, bool lis
 
 constexpr std::uint32_t kEyeWidth = 640, kEyeHeight = 360;
 
-// One update and a picture for each eye; with `updatesEach`, as a host does that knows no better, an update for
-// each of them.
+// One update and a picture for each eye; with `updatesEach`, as a host does that knows no better, an
+// update for each of them.
 void runEyes(benchmark::State& state, LWDevice device, std::size_t eyes, bool updatesEach) {
     Room room(200);
     LWTechnique technique = nullptr;

@@ -251,3 +251,23 @@ TEST_CASE("textures are sRGB, bilinear in linear light, and repeat", "[scene][te
     CHECK(texture.lookup({-7.75f, 3.5f}).r == Approx(half).epsilon(kRounding));
     CHECK(texture.lookup({1.0f, 1.0f}).g == Approx(0.5).epsilon(kRounding));
 }
+
+TEST_CASE("a light's direction keeps its bits, and its meaning at the ends of floats", "[scene]") {
+    const auto directionOf = [](const std::string& text) {
+        const TempFolder folder;
+        const std::string path = folder.write(
+            "sun.json",
+            minimal(R"(, "lights": [{"name": "l", "kind": "sun", "irradiance": 1, "direction": )" +
+                    text + "}]"));
+        return loadScene(path).lights.at(0).direction;
+    };
+    // Kept truths are named by the scene's bits: the sun of `basic`, as single precision has it.
+    const glm::vec3 sun(0.4f, -1.0f, -0.55f);
+    CHECK(directionOf("[0.4, -1.0, -0.55]") == sun / glm::length(sun));
+    for (const char* text : {"[3e30, -4e30, 0]", "[3e-30, -4e-30, 0]"}) {
+        INFO(text);
+        const glm::vec3 direction = directionOf(text);
+        CHECK(std::abs(direction.x - 0.6) < kRounding);
+        CHECK(std::abs(direction.y + 0.8) < kRounding);
+    }
+}
