@@ -18,7 +18,7 @@ BEGIN, END = "<!-- begin: figures -->", "<!-- end: figures -->"
 SHOWN = {row: ROWS[row] for row in ("isotropic 32", "SH 32", "SH 32, VAO", "SH 128")}
 OF_SPONZA = {"cascaded SH 128": ROWS["cascaded SH 128"]}
 # Pairs that the source has nearer than this are counted, not listed.
-APART = 0.3
+APART = 1.5
 
 
 def kept(settings, scene, what):
@@ -34,7 +34,7 @@ def main():
     for scene in SCENES:
         own = {row: what for row, what in OURS.items() if everything or kept(settings, scene, what)}
         lines += rows.table(scene) + own_table(settings, scene, own)
-    lines += rows.correlations() + rows.pairs_against(APART) + vao_tables(rows, everything)
+    lines += rows.correlations(by_error=True) + rows.pairs_against(APART) + vao_tables(rows, everything)
     if everything:
         lines += gain_tables(rows, ("isotropic 32", "SH 32"))
         lines += thesis_pictures.write(settings, ROOT / "docs/images", "cone_tracing_thesis",

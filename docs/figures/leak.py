@@ -1,4 +1,5 @@
-"""Light that a technique's grid lets through a wall between two closed rooms, by the wall's thickness. Used by lpv_leak.py."""
+"""Light that a technique's grid lets through a wall between two closed rooms, by the wall's thickness. Used by lpv_leak.py and
+cone_tracing_leak.py."""
 import json
 
 import exr_planes
@@ -28,9 +29,9 @@ def scene(thickness, lamp):
     return {"materials": {"grey": {"albedo": 0.6}}, "meshes": walls, "cameras": cameras, "lights": [light], "sky": 0}
 
 
-def measure(description, technique, variants, phases, style):
+def measure(description, technique, variants, phases, style, dashes):
     """Writes a technique's table and plot. variants: settings by name; phases: cells by which a border of cells lies behind the wall's lit
-    face; style(settings): a line's colour, whether it is dashed, and whether it is named."""
+    face; style(settings): a line's colour, whether it is dashed, and whether it is named; dashes: what dashed lines have."""
     options = read_options(description, [], 256, "160x120")
     call = caller(options.lightwell)
     leaks = {}
@@ -45,7 +46,7 @@ def measure(description, technique, variants, phases, style):
             for thickness in THICKNESSES:
                 leaks[lamp, variant, thickness] = [
                     leak(options, call, lamp, thickness, phase, technique, settings) / lit for phase in phases]
-    plot(leaks, variants, style, ROOT / f"docs/images/{technique}_leak.svg")
+    plot(leaks, variants, style, dashes, ROOT / f"docs/images/{technique}_leak.svg")
     write_between(ROOT / f"docs/techniques/{technique}_leak.md", BEGIN, END, tables(leaks, variants, len(phases), technique))
 
 
@@ -86,7 +87,7 @@ def number(share):
     return f"{percent:.3g}" if percent >= 0.001 else "0" if percent == 0 else "<0.001"
 
 
-def plot(leaks, variants, style, path):
+def plot(leaks, variants, style, dashes, path):
     import matplotlib
 
     matplotlib.use("Agg")
@@ -103,7 +104,6 @@ def plot(leaks, variants, style, path):
         axes.set(title=f"lamp on the {lamp}", xlabel="wall's thickness, cells", yscale="log")
         axes.grid(alpha=0.3)
     panels[0].set_ylabel("light in the sealed room / light in the lit one")
-    dashes = {"title": "dashed: damping", "title_fontsize": 7} if path.stem == "lpv_leak" else {}
-    panels[0].legend(fontsize=7, **dashes)
+    panels[0].legend(fontsize=7, title=f"dashed: {dashes}", title_fontsize=7)
     figure.tight_layout()
     figure.savefig(path, metadata={"Date": None})

@@ -23,4 +23,4 @@ def style(settings):
 
 
 if __name__ == "__main__":
-    measure(__doc__, "lpv", VARIANTS, PHASES, style)
+    measure(__doc__, "lpv", VARIANTS, PHASES, style, "damping")

@@ -8,7 +8,7 @@ class Rows:
 
     def __init__(self, settings, rows, published, has=lambda scene, row: True):
         self.settings, self.rows, self.published, self.has = settings, rows, published, has
-        self.ours = {}
+        self.ours, self.errors = {}, {}
 
     def of(self, scene):
         return [row for row in self.rows if row in self.published[scene, SCENES[scene]["views"][0]] and self.has(scene, row)]
@@ -30,6 +30,7 @@ class Rows:
                     continue
                 found = self.settings[scene, view].figures(self.settings[scene, view].row(*self.rows[row]))
                 self.ours[scene, view, row] = found["score"]
+                self.errors[scene, view, row] = found["relMSE"]
                 cells.append(f"{theirs:.2f} | {found['score']:.2f} | {found['relMSE']:.3g} | {percent(found['bias'])}")
             mean = sum(self.published[scene, v][row] for v in views) / len(views)
             own = f"{sum(self.ours[scene, v, row] for v in views) / len(views):.2f}" if row in measured else ""
@@ -51,7 +52,8 @@ class Rows:
             made.append((name, [f"{m[0]}: {r}" for m in chosen for r in m[1]], sum((m[2] for m in chosen), []), sum((m[3] for m in chosen), [])))
         return made
 
-    def correlations(self):
+    def correlations(self, by_error=False):
+        """by_error: beside them of the source's scores and our relMSE, view by view."""
         from scipy.stats import kendalltau, spearmanr
 
         lines = ["### The ordering", "", "| | rows | Spearman | Kendall | pairs the other way round |", "| --- | ---: | ---: | ---: | ---: |"]
@@ -59,6 +61,13 @@ class Rows:
             pairs = list(turned(rows, theirs, found))
             total = len(rows) * (len(rows) - 1) // 2
             lines.append(f"| {name} | {len(rows)} | {spearmanr(theirs, found)[0]:+.2f} | {kendalltau(theirs, found)[0]:+.2f} | {len(pairs)} of {total} |")
+        if by_error:
+            lines += ["", "Its scores against our relMSE, least first:", "", "| | rows | Spearman | Kendall |", "| --- | ---: | ---: | ---: |"]
+            for scene, s in SCENES.items():
+                for view in s["views"]:
+                    rows = [row for row in self.rows if (scene, view, row) in self.errors]
+                    theirs, found = [self.published[scene, view][r] for r in rows], [-self.errors[scene, view, r] for r in rows]
+                    lines.append(f"| {s['title']}, {view} | {len(rows)} | {spearmanr(theirs, found)[0]:+.2f} | {kendalltau(theirs, found)[0]:+.2f} |")
         return lines + [""]
 
     def pairs_against(self, least=0.0):
