@@ -59,7 +59,7 @@ TEST_CASE("a thin wall shows each side its own light where voxels know what face
 }
 
 TEST_CASE("light on a sheet's back leaves by no other side, nor out of what stands in its voxels",
-          "[voxel_light]") {
+          "[voxel_light][large]") {
     VoxelLightRig rig(16, 32, LW_VOXEL_MODE_ANISOTROPIC, true);
     rig.aware = true;
     // A sheet that faces down x, lit from above; in one voxel a sixteenth of it faces up, in another a
@@ -110,7 +110,7 @@ TEST_CASE("SH2 keeps the flux of a wall, and shines to its own side", "[voxel_li
     CHECK(c1[1] == Approx(0.0).margin(0.005));
 }
 
-TEST_CASE("light too weak for the inverse of its brightness stays dark, and comes from nowhere", "[voxel_light]") {
+TEST_CASE("light too weak for the inverse of its brightness stays dark, and comes from nowhere", "[voxel_light][large]") {
     const LWVoxelMode mode = GENERATE(LW_VOXEL_MODE_SH2, LW_VOXEL_MODE_ANISOTROPIC);
     VoxelLightRig rig(GENERATE(1u, 16u), 32, mode, mode == LW_VOXEL_MODE_ANISOTROPIC);
     rig.aware = true;
