@@ -155,7 +155,7 @@ TEST_CASE("words lose less than half a percent of the mean irradiance, at contra
     CHECK(worst < 0.005 * mean);
 }
 
-TEST_CASE("light of any brightness makes the same words in other units", "[voxel_light]") {
+TEST_CASE("light of any brightness makes the same words in other units", "[voxel_light][large]") {
     VoxelLightRig rig(16, 32, LW_VOXEL_MODE_ISOTROPIC, false);
     LitRoom scene(90);
     rig.setTriangles(scene.triangles);
