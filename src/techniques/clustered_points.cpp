@@ -4,6 +4,19 @@
 
 namespace lightwell {
 
+ClusterVisibility visibilityOf(LWVisibility visibility) {
+    switch (visibility) {
+        case LW_VISIBILITY_NONE:
+            return ClusterVisibility::none;
+        case LW_VISIBILITY_SOFT:
+            return ClusterVisibility::soft;
+        case LW_VISIBILITY_VOXEL:
+            return ClusterVisibility::voxel;
+        default:
+            return ClusterVisibility::hard;
+    }
+}
+
 ClusteredPoints::ClusteredPoints(Device& device, ClusterVisibility visibility)
     : device_(device), light_(device), cull_(device, 1), gather_(device, 1, 1, visibility), harmonics_(device, visibility) {}
 

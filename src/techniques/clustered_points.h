@@ -10,6 +10,9 @@
 
 namespace lightwell {
 
+// What stands between clusters and what they light, as the API names it.
+ClusterVisibility visibilityOf(LWVisibility visibility);
+
 class ClusteredPoints final : private PointGather {
 public:
     ClusteredPoints(Device& device, ClusterVisibility visibility);

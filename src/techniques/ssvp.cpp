@@ -57,7 +57,7 @@ public:
           sampling_(device, samplingOptions(desc)),
           maps_(device, occluderOptions(desc), stagesOf(desc)),
           passes_(device, desc.interleave),
-          gather_(device, desc.interleave, groupsOf(desc), visibilityOf(desc)) {
+          gather_(device, desc.interleave, groupsOf(desc), visibilityOf(desc.visibility)) {
         for (std::size_t i = 0; i < stagesOf(desc); ++i) stages_.emplace_back(device, desc, i);
         if (interleavedOptions(desc).half) bilateral_.emplace(device);
         if (desc.history) history_.emplace(device, interleavedOptions(desc).history);
@@ -124,7 +124,7 @@ public:
 
     void renderPoints(Executor& executor, const Points& points) override {
         checkPoints(device_, points);
-        if (!points_) points_.emplace(device_, visibilityOf(desc_));
+        if (!points_) points_.emplace(device_, visibilityOf(desc_.visibility));
         const std::optional<VoxelSights> sights = sightsRead();
         points_->render(executor, points, lists_, mapsRead(sights));
     }

@@ -56,19 +56,6 @@ OccluderOptions occluderOptions(const LWSsvpDesc& desc) {
     return options;
 }
 
-ClusterVisibility visibilityOf(const LWSsvpDesc& desc) {
-    switch (desc.visibility) {
-        case LW_VISIBILITY_NONE:
-            return ClusterVisibility::none;
-        case LW_VISIBILITY_SOFT:
-            return ClusterVisibility::soft;
-        case LW_VISIBILITY_VOXEL:
-            return ClusterVisibility::voxel;
-        default:
-            return ClusterVisibility::hard;
-    }
-}
-
 // As many groups as the interleave's window has pixels, at most.
 std::uint32_t groupsOf(const LWSsvpDesc& desc) {
     return std::min(desc.clusterGroups, desc.interleave * desc.interleave);

@@ -23,7 +23,6 @@ SecondBounceOptions nextOptions(const LWSsvpDesc& desc, std::size_t stage);
 InterleavedOptions interleavedOptions(const LWSsvpDesc& desc);
 CompensationOptions compensationOptions(const LWSsvpDesc& desc);  // of one that compensates
 OccluderOptions occluderOptions(const LWSsvpDesc& desc);
-ClusterVisibility visibilityOf(const LWSsvpDesc& desc);
 SsvpPlanOptions planOptions(const LWSsvpDesc& desc);  // of one with an error target
 std::uint32_t groupsOf(const LWSsvpDesc& desc);
 // Bounces whose VPLs are shadowed, and those whose VPLs have clusters.

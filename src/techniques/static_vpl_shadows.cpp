@@ -31,17 +31,6 @@ OccluderOptions occluderOptions(const LWStaticVplDesc& desc) {
     return options;
 }
 
-ClusterVisibility visibilityOf(const LWStaticVplDesc& desc) {
-    switch (desc.visibility) {
-        case LW_VISIBILITY_SOFT:
-            return ClusterVisibility::soft;
-        case LW_VISIBILITY_VOXEL:
-            return ClusterVisibility::voxel;
-        default:
-            return ClusterVisibility::hard;
-    }
-}
-
 std::uint32_t groupsOf(const LWStaticVplDesc& desc) {
     return std::min(kGroups, desc.interleave * desc.interleave);
 }
@@ -62,7 +51,7 @@ std::vector<std::uint32_t> countsOf(std::uint32_t count, std::uint32_t shadowed)
 }
 
 ClusteredGather gatherOf(Device& device, const LWStaticVplDesc& desc) {
-    return ClusteredGather(device, desc.interleave, groupsOf(desc), visibilityOf(desc));
+    return ClusteredGather(device, desc.interleave, groupsOf(desc), visibilityOf(desc.visibility));
 }
 
 }  // namespace
@@ -155,7 +144,7 @@ void StaticVplShadows::recordGather(Executor& executor, int list, const Planes& 
 void StaticVplShadows::renderPoints(Executor& executor, int list, const Points& points) {
     const std::optional<VoxelSights> sights = voxels_ ? std::optional(voxels_->sights()) : std::nullopt;
     auto& light = points_[std::size_t(list)];
-    if (!light) light.emplace(device_, visibilityOf(desc_));
+    if (!light) light.emplace(device_, visibilityOf(desc_.visibility));
     light->render(executor, points, lists_[std::size_t(list)], mapsRead(sights ? &*sights : nullptr));
 }
 

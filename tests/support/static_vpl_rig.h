@@ -219,6 +219,13 @@ inline LWStaticVplDesc staticDesc() {
     return desc;
 }
 
+// Nothing is culled.
+inline LWStaticVplDesc keepAll() {
+    LWStaticVplDesc desc = staticDesc();
+    desc.cullRelative = 0.0f;
+    return desc;
+}
+
 // A bounded VPL's irradiance at a surface (conventions.md), double precision.
 inline double twinLight(const StaticRig::Vpl& vpl, const glm::dvec3& x, const glm::dvec3& n,
                         int channel = 0) {

@@ -9,16 +9,6 @@
 
 using namespace lightwell::test;
 
-namespace {
-
-LWStaticVplDesc keepAll() {
-    LWStaticVplDesc desc = staticDesc();
-    desc.cullRelative = 0.0f;
-    return desc;
-}
-
-}  // namespace
-
 TEST_CASE("lights and second bounce lie between their VPLs, however far apart and bright these are",
           "[static_vpl]") {
     LWStaticVplDesc desc = keepAll();

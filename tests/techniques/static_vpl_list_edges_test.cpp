@@ -6,16 +6,6 @@
 
 using namespace lightwell::test;
 
-namespace {
-
-LWStaticVplDesc keepAll() {
-    LWStaticVplDesc desc = staticDesc();
-    desc.cullRelative = 0.0f;
-    return desc;
-}
-
-}  // namespace
-
 TEST_CASE("lights have place and axis whatever their flux", "[static_vpl]") {
     LWStaticVplDesc desc = keepAll();
     desc.lights = 2;

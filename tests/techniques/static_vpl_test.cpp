@@ -10,12 +10,6 @@ namespace {
 // Sums of a few dozen products in float, and the profile's arc cosine.
 constexpr double kRounding = 2e-5;
 
-LWStaticVplDesc keepAll() {
-    LWStaticVplDesc desc = staticDesc();
-    desc.cullRelative = 0.0f;
-    return desc;
-}
-
 std::vector<float> lampProfile(std::size_t count) {  // bright ahead, a ring, nothing behind
     std::vector<float> profile;
     for (std::size_t i = 0; i < count; ++i) {
