@@ -499,6 +499,13 @@ typedef enum LWOccluders {
                                      frame anew; what neither shows blocks nothing */
 } LWOccluders;
 
+/** Which of the VPLs a pixel of technique "ssvp" gathers. */
+typedef enum LWVplGather {
+    LW_VPL_GATHER_INTERLEAVED = 0, /**< the share that is its own in an n x n window of pixels, or all */
+    LW_VPL_GATHER_RESAMPLED = 1    /**< a few, drawn in proportion to the light that they would bring it with nothing in between, and shared
+                                        with its neighbours */
+} LWVplGather;
+
 /** Technique "ssvp": VPLs in clusters, each cluster's visibility in a paraboloid map of what stands around it
  *  (LWOccluders), a second bounce drawn from the maps. */
 typedef struct LWSsvpDesc {
@@ -532,6 +539,9 @@ typedef struct LWSsvpDesc {
                                   that VPLs of some size lack; 0: none. Above 0 the G-buffer needs `directRadiance`, of the
                                   lights that have RSMs, and `camera` */
     uint32_t voxels;         /**< as LWRsmDesc's */
+    LWVplGather gather;      /**< which VPLs a pixel gathers */
+    uint32_t candidates;     /**< of gather RESAMPLED: VPLs that a pixel draws to choose from; 1 .. 64 */
+    uint32_t survivors;      /**< of gather RESAMPLED: VPLs that it keeps of them, each with its own visibility; 1 .. 8 */
 } LWSsvpDesc;
 
 LW_API void lwDefaultSsvp(LWSsvpDesc* desc);
@@ -783,6 +793,25 @@ typedef struct LWStaticVplDesc {
 
 LW_API void lwDefaultStaticVpl(LWStaticVplDesc* desc);
 
+/** The name of the technique that chooses others; "auto" for lwCreateTechnique. */
+#define LW_TECHNIQUE_AUTO "auto"
+
+/** Technique "auto": in each frame the technique and parameters that lwPlan finds best for what the frame brings, kept until
+ *  another is clearly better or the budget is broken; changes are cross-faded. Stats say which, and why. */
+typedef struct LWAutoDesc {
+    uint32_t structSize;
+    float budgetMs;          /**< of a frame: lwUpdate and all of its lwRender, on the device's clock (the host's, where the device has none
+                                  for it); 0: no limit */
+    float errorTarget;       /**< relMSE against all bounces: no dearer than what is predicted to reach it; 0: the least error that the
+                                  budget buys */
+    uint32_t views;          /**< that a frame renders: 2 for stereo */
+    uint32_t fade;           /**< frames over which a change of technique is spread; 0: at once */
+    uint32_t patience;       /**< frames for which something better must have been better; what breaks the budget goes sooner */
+    float gain;              /**< how much better: the predicted error of the new one is less than the old one's divided by 1 plus this */
+} LWAutoDesc;
+
+LW_API void lwDefaultAuto(LWAutoDesc* desc);
+
 /* A technique's parameters, described for tools: the command line's --set and every chart read them
  * here, so a new technique needs no other registration. */
 typedef enum LWParameterKind {
@@ -848,6 +877,11 @@ LW_API LWStatus lwCreateAo(LWDevice device, const LWAoDesc* desc, LWTechnique* t
 LW_API LWStatus lwCreateLpv(LWDevice device, const LWLpvDesc* desc, LWTechnique* technique);
 LW_API LWStatus lwCreateConeTracing(LWDevice device, const LWConeTracingDesc* desc, LWTechnique* technique);
 LW_API LWStatus lwCreateStaticVpl(LWDevice device, const LWStaticVplDesc* desc, LWTechnique* technique);
+LW_API LWStatus lwCreateAuto(LWDevice device, const LWAutoDesc* desc, LWTechnique* technique);
+/** Creates a technique by name from text: "vpls=256 interleave=4", as LWSetting and LWPlan have it; what it does not name has its
+ *  default. Of a technique that joins others: "first=horizon second=ssvp second.vpls=256", which makes those too.
+ *  Errors: as lwCreateTechnique; INVALID_ARGUMENT names the key and what is valid. */
+LW_API LWStatus lwCreateTechniqueFromText(LWDevice device, const char* name, const char* settings, LWTechnique* technique);
 LW_API LWStatus lwRetainTechnique(LWTechnique technique);
 LW_API LWStatus lwReleaseTechnique(LWTechnique technique);
 
@@ -900,6 +934,50 @@ typedef struct LWListedLight {
  *  same way, and all flux is kept. Waits for the update, and copies once. `lights`: room for `capacity` of them, LWStaticVplDesc::lights
  *  always being enough. LWTechniqueInfo::lightList says who can. Errors: INVALID_*, UNSUPPORTED, NOT_UPDATED, OUT_OF_MEMORY. */
 LW_API LWStatus lwReadLightList(LWTechnique technique, LWListedLight* lights, uint32_t capacity, uint32_t* count);
+
+/* ------------------------------------------------------------------------------------- planning */
+
+typedef struct LWPlanDesc {
+    uint32_t structSize;
+    float budgetMs;    /**< of a frame: lwUpdate and all of its lwRender, from the host's images to its output; 0: no limit */
+    float errorTarget; /**< relMSE against all bounces (docs/accuracy.md); the cheapest that is predicted to reach it, else the most
+                            accurate within the budget. 0: the most accurate within the budget */
+    uint32_t views;    /**< that a frame renders; 0: 1 */
+} LWPlanDesc;
+
+/** What lwPlan measures of a frame in order to predict errors; where it has nothing to measure it by, a figure is NaN. */
+typedef struct LWPlanProbes {
+    float indirectShare;     /**< of the picture's light, roughly: that of a gather without visibility from a few points */
+    float fluxOnScreen;      /**< share of the RSMs' flux from surfaces that the view shows */
+    float fluxConcentration; /**< 1: all flux in a point; towards 0: spread evenly over the RSMs' texels */
+    float depthComplexity;   /**< share of neighbouring pixels that do not lie on one surface */
+    float extent;            /**< of what the view shows, relative to the extent of what the RSMs show */
+    float albedo;            /**< mean of what the view shows, in [0,1]: the worth of another bounce */
+    float facing;            /**< share of pairs of a pixel and a lit texel that face each other */
+    float hidden;            /**< share of those pairs between which the view shows something */
+} LWPlanProbes;
+
+/** What to run, and what to expect of it. */
+typedef struct LWPlan {
+    uint32_t structSize;
+    uint32_t withinBudget;       /**< 0: nothing that the frame allows is predicted to be; this is the quickest */
+    uint32_t reachesError;       /**< 0: nothing within the budget is predicted to reach the target (1 where there is none) */
+    float predictedMs;
+    float predictedError;        /**< relMSE against all bounces */
+    float confidence;            /**< 0 .. 1: the chance that the true error is within a factor of two of the predicted one, from how
+                                      far predictions of scenes that the model did not know were off */
+    char technique[32];
+    char parameters[256];        /**< for lwCreateTechniqueFromText */
+    char reason[256];            /**< one sentence */
+    LWPlanProbes probes;
+} LWPlan;
+
+/** Picks technique and parameters for what this frame brings and what may be spent: what is possible by the inputs given; how long it
+ *  takes by a model calibrated on this device (in less than two seconds at the first call, then kept in the device's cache); how wrong it
+ *  is by a model fitted to `lightwell chart`'s results and probes of the frame. docs/planner.md says how, and how good it is.
+ *  `view`, `gbuffer`: of the view that is to be lit, as for lwRender. Waits for the probes: a few milliseconds. Changes nothing.
+ *  Errors: INVALID_*, as lwUpdate and lwRender, and where no technique can light such a frame; OUT_OF_MEMORY. */
+LW_API LWStatus lwPlan(LWView view, const LWFrame* frame, const LWGBuffer* gbuffer, const LWPlanDesc* desc, LWPlan* plan);
 
 /* ------------------------------------------------------------------------------ checking inputs */
 
