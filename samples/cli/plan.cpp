@@ -19,6 +19,9 @@ struct PlanOptions {
     std::string budget, error, device;
     int rsmSize = 512, cascades = 1, views = 1, width = 0;
     bool asJson = false, listsAll = false, hasGeometry = true;
+    CLI::Option *budgetGiven = nullptr, *errorGiven = nullptr;
+    bool hasBudget() const { return budgetGiven->count() > 0; }
+    bool hasError() const { return errorGiven->count() > 0; }
 };
 
 // A probe as JSON has it: no number is null.
@@ -37,8 +40,8 @@ nlohmann::ordered_json planJson(const LWPlan& plan) {
 
 LWPlanDesc describe(const PlanOptions& options) {
     auto desc = lightwell::make<LWPlanDesc>();
-    if (!options.budget.empty()) desc.budgetMs = parsePositive("--budget-ms", options.budget);
-    if (!options.error.empty()) desc.errorTarget = parsePositive("--error", options.error);
+    if (options.hasBudget()) desc.budgetMs = parsePositive("--budget-ms", options.budget);
+    if (options.hasError()) desc.errorTarget = parsePositive("--error", options.error);
     desc.views = std::uint32_t(options.views);
     return desc;
 }
@@ -77,7 +80,8 @@ struct PlannedFrame {
 
 void print(const PlanOptions& options, const std::string& scene, const std::string& camera, const Size& size,
            const lightwell::Device& device, const LWPlan& plan, const std::vector<LWPlan>& all) {
-    const bool isChoice = !options.budget.empty() || !options.error.empty();
+    const bool isChoice = options.hasBudget() || options.hasError();
+    const LWPlanDesc desc = describe(options);
     if (!options.asJson) {
         if (isChoice) printText(plan);
         if (!isChoice || options.listsAll) printTable(all);
@@ -88,8 +92,8 @@ void print(const PlanOptions& options, const std::string& scene, const std::stri
     document["scene"] = scene;
     document["camera"] = camera;
     document["size"] = {size.width, size.height};
-    document["budget_ms"] = options.budget.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(parsePositive("--budget-ms", options.budget));
-    document["error_target"] = options.error.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(parsePositive("--error", options.error));
+    document["budget_ms"] = options.hasBudget() ? nlohmann::ordered_json(desc.budgetMs) : nlohmann::ordered_json();
+    document["error_target"] = options.hasError() ? nlohmann::ordered_json(desc.errorTarget) : nlohmann::ordered_json();
     document["probes"] = probesJson(plan.probes);
     document["device"] = deviceJson(device.info());
     if (!isChoice || options.listsAll) {
@@ -129,8 +133,8 @@ void addPlan(CLI::App& app) {
     CLI::App* command = app.add_subcommand("plan", "Which technique, with which parameters, for a budget or an error");
     auto options = std::make_shared<PlanOptions>();
     options->view.declare(*command);
-    command->add_option("--budget-ms", options->budget, "Milliseconds that a frame may take; with --error: at most");
-    command->add_option("--error", options->error, "relMSE against all bounces to reach, as cheaply as can be");
+    options->budgetGiven = command->add_option("--budget-ms", options->budget, "Milliseconds that a frame may take; with --error: at most");
+    options->errorGiven = command->add_option("--error", options->error, "relMSE against all bounces to reach, as cheaply as can be");
     command->add_option("--views", options->views, "Views that a frame renders: 2 for stereo")->check(CLI::Range(1, 64))->capture_default_str();
     command->add_option("--rsm-size", options->rsmSize, "Texels along each side of an RSM")->check(CLI::Range(1, kMaxSize))->capture_default_str();
     command->add_option("--cascades", options->cascades, "Nested RSMs of a sun")->check(CLI::Range(1, 8))->capture_default_str();

@@ -98,7 +98,7 @@ void FrameProbes::record(Executor& executor, const ProbedView& view, const RsmIn
     chunkCount_ = rsms.spans.empty() && vplCount == 0 ? 0 : LW_PROBE_CHUNKS;
     if (chunkCount_) recordTexels(executor, view, rsms, vpls, vplCount);
     else executor.fill("frame_probes.counts", emitters_, 0, 0, emitters_.bytes());
-    executor.run("frame_probes.pixels", pixels_, {LW_PROBE_COLUMNS / pixels_.width(), LW_PROBE_ROWS}, {1, 1}, view.position, view.normal,
+    executor.run("frame_probes.pixels", pixels_, rowGrid(device_, LW_PROBE_COLUMNS, LW_PROBE_ROWS), rowGroup(device_), view.position, view.normal,
                  view.albedo ? view.albedo : view.normal, view.directRadiance ? view.directRadiance : view.normal,
                  cl_int(view.width), cl_int(view.height), cl_int(has_), view.camera, emitters_, pixelPlanes_);
     executor.run("frame_probes.rows", rows_, {LW_PROBE_ROWS, 1}, {1, 1}, pixelPlanes_, rowSums_);
