@@ -36,15 +36,29 @@ std::uint64_t estimateText(const TechniqueText& text, const LWViewDesc& view, co
     return total;
 }
 
+// What the device cannot hold is not chosen, or not faded.
+template <class Estimate>
+std::uint64_t ifSupported(Estimate estimate) {
+    try {
+        return estimate();
+    } catch (const Error& error) {
+        if (error.status() != LW_ERROR_UNSUPPORTED) throw;
+        return 0;
+    }
+}
+
 // The two largest candidates, and what lies around them.
-std::uint64_t estimateBytes(const void*, const LWViewDesc& view, const FrameShape& shape) {
+std::uint64_t estimateBytes(const void* desc, const LWViewDesc& view, const FrameShape& shape) {
     std::uint64_t most = 0, next = 0;
     for (const Candidate& candidate : candidates()) {
-        const std::uint64_t bytes = estimateText(parseTechnique(candidate.technique, candidate.settings), view, shape);
+        const std::uint64_t bytes =
+            ifSupported([&] { return estimateText(parseTechnique(candidate.technique, candidate.settings), view, shape); });
         next = std::max(next, std::min(most, bytes));
         most = std::max(most, bytes);
     }
-    return most + next + AutoView::estimateBytes(view, shape.uploads) + FrameProbing::estimateBytes(view, shape);
+    const bool fades = static_cast<const LWAutoDesc*>(desc)->fade > 1;
+    return most + next + FrameProbing::estimateBytes(view, shape) +
+           (fades ? ifSupported([&] { return AutoView::estimateBytes(view, shape.uploads); }) : 0);
 }
 
 }  // namespace

@@ -17,6 +17,7 @@ namespace {
 constexpr std::uint64_t kProbeEvery = 32;
 // Candidates that are tried in one frame at most: each that fails may have taken memory and time.
 constexpr int kMostTries = 8;
+constexpr std::size_t kNobody = ~std::size_t(0);
 
 // What decides which techniques are possible, as a word.
 std::uint32_t inputsOf(const FrameTraits& traits) {
@@ -175,6 +176,16 @@ void Auto::noteFailure(std::size_t candidate, const Error& error) {
     device_.log(LW_LOG_WARNING, "auto: " + nameOf(candidate) + " is left out for a while, as it failed: " + error.what());
 }
 
+// All settings of a technique that refuses a frame's inputs would.
+void Auto::leaveOut(std::vector<Prediction>& possible, std::size_t candidate, LWStatus status) const {
+    const std::string technique = planner_.candidates[candidate].technique;
+    const auto isOut = [&](const Prediction& one) {
+        return one.candidate == candidate ||
+               (status == LW_ERROR_INVALID_ARGUMENT && planner_.candidates[one.candidate].technique == technique);
+    };
+    possible.erase(std::remove_if(possible.begin(), possible.end(), isOut), possible.end());
+}
+
 // The first of the candidates, best first, that takes the frame. Those before it are barred; where none does, none is, since then the
 // frame is to blame.
 SteeringStep Auto::choose(Executor& executor, const LWFrame& frame, const FrameTraits& traits) {
@@ -184,7 +195,7 @@ SteeringStep Auto::choose(Executor& executor, const LWFrame& frame, const FrameT
         fail(LW_ERROR_INVALID_ARGUMENT, "frame, gbuffer: expected what a technique can make light of, got none of: ", missingFor(traits));
     hasOther_ = false;
     inputs_ = inputs;
-    const std::optional<std::size_t> ran = children_.running() ? std::optional(children_.running()->candidate()) : std::nullopt;
+    const std::size_t ran = children_.running() ? children_.running()->candidate() : kNobody;
     std::vector<std::pair<std::size_t, Error>> failures;
     for (int tries = 0; tries < kMostTries; ++tries) {
         const bool mayLeave = desc_.fade < 2 || keeps_ || !hasCamera(seen_);
@@ -205,11 +216,7 @@ SteeringStep Auto::choose(Executor& executor, const LWFrame& frame, const FrameT
             if (!isItsOwn(error.status()) || (isKnown && error.status() == LW_ERROR_INVALID_ARGUMENT)) throw;
             failures.emplace_back(candidate, error);
             if (ran == candidate && error.status() != LW_ERROR_INVALID_ARGUMENT) children_.fallBack();  // half made
-            // All settings of a technique ask for the same inputs.
-            const std::string technique = planner_.candidates[candidate].technique;
-            possible.erase(std::remove_if(possible.begin(), possible.end(), [&](const Prediction& one) {
-                return one.candidate == candidate || (error.status() == LW_ERROR_INVALID_ARGUMENT && planner_.candidates[one.candidate].technique == technique);
-            }), possible.end());
+            leaveOut(possible, candidate, error.status());
         }
     }
     if (children_.running()) steering_.resume(children_.running()->candidate());

@@ -59,6 +59,7 @@ private:
     std::unique_ptr<AutoChild> obtain(std::size_t candidate);
     void updateWith(Executor& executor, const LWFrame& frame, const SteeringStep& step, std::uint32_t inputs);
     SteeringStep choose(Executor& executor, const LWFrame& frame, const FrameTraits& traits);
+    void leaveOut(std::vector<Prediction>& possible, std::size_t candidate, LWStatus status) const;
     void updateOther(Executor& executor, const LWFrame& frame, std::uint32_t inputs);
     void startFrame(const LWFrame& frame, const SteeringStep& step, bool forgets);
     void renderChild(Executor& executor, const std::shared_ptr<View>& view, const LWGBuffer& gbuffer, const LWOutput& output);
