@@ -13,8 +13,9 @@
 namespace lightwell {
 namespace {
 
-// Prewarmed is what may be chosen: dearer *and* worse than another by this much on each side is not.
-constexpr double kDominated = 1.5;
+// Prewarmed is what may be chosen of what is predicted to take up to so many budgets: this machine may be as much quicker than the tables
+// say, or less loaded later. More: prewarming takes longer for what is seldom chosen.
+constexpr double kBudgetsWarmed = 2.0;
 
 LWPlanProbes unknownProbes() {
     constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
@@ -75,18 +76,22 @@ Auto::Auto(Device& device, const LWAutoDesc& desc, AutoPlanner planner)
       continuity_(device),
       probes_(unknownProbes()) {}
 
-// All that may be chosen for what is known of the host's frames, one after the other: programs stay with the device.
+// What may be chosen for what is known of the host's frames, one after the other: programs stay with the device.
 void Auto::prewarm(Executor& executor, const std::shared_ptr<View>& view) {
     FrameTraits traits = traitsOf(LWFrame{}, seen_, hasSeen_ ? pixels_ : double(view ? view->width * view->height : kAutoPixels), desc_.views);
     traits.hasRsms = true;
     if (!hasSeen_) traits.hasDirectRadiance = traits.hasAlbedo = traits.hasCamera = traits.hasMotion = traits.hasVpls = true;
     if (updates_ == 0) traits.triangles = traits.staticVpls = 1;
     const std::vector<Prediction> possible = planner_.predict(traits, probes_);
+    int warmed = 0;
     for (const Prediction& one : possible) {
+        // Dearer and worse than another is not chosen, as far as the frame is known.
         const bool isDominated = std::any_of(possible.begin(), possible.end(), [&](const Prediction& other) {
-            return kDominated * other.milliseconds < one.milliseconds && kDominated * other.error < one.error;
+            return other.milliseconds < one.milliseconds && other.error <= one.error;
         });
-        if (isDominated) continue;
+        const bool isTooDear = desc_.budgetMs > 0.0f && one.milliseconds > kBudgetsWarmed * double(desc_.budgetMs) && warmed > 0;
+        if (isDominated || isTooDear) continue;
+        ++warmed;
         const Candidate& candidate = planner_.candidates[one.candidate];
         try {
             makeTechnique(device_, candidate.technique, candidate.settings)->prewarm(executor, view);

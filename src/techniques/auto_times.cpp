@@ -40,7 +40,7 @@ double AutoTimes::sum(const std::vector<CallSpan>& spans, std::int64_t doneBefor
 
 std::optional<AutoTimes::Frame> AutoTimes::take() {
     const auto isDone = [](const CallSpan& span) { return span.isDone(); };
-    while (pending_.size() > 1) {
+    while (!pending_.empty()) {
         Pending& oldest = pending_.front();
         if (!std::all_of(oldest.wholes.begin(), oldest.wholes.end(), isDone) ||
             !std::all_of(oldest.parts.begin(), oldest.parts.end(), isDone))

@@ -19,7 +19,7 @@ public:
         double part, whole;   // ms: of the candidate, and with all around it; NaN: not to be told
     };
 
-    // A frame begins, the one before is whole.
+    // A frame begins.
     void startFrame(std::size_t candidate, double predicted);
     // It is not to be told: another candidate had a part in it, or a call broke off.
     void discard();
@@ -28,7 +28,7 @@ public:
     void begin(Executor& executor, bool part);
     void end(Executor& executor, bool part);
 
-    // The oldest whole frame that the device has done since the last call. Waits for nothing.
+    // The oldest frame that the device has done, and that has not been taken: between two frames. Waits for nothing.
     std::optional<Frame> take();
 
 private:
