@@ -290,7 +290,7 @@ TEST_CASE("probes depend on no unit, no strength of light and no resolution", "[
     }
 }
 
-TEST_CASE("probes have the same bits in every run", "[frame_probes]") {
+TEST_CASE("probes have the same bits in every run", "[frame_probes][large]") {
     Probing probing(16);
     Setup setup;
     std::tie(setup.width, setup.height) = testSize({320, 180});
@@ -305,7 +305,7 @@ TEST_CASE("probes have the same bits in every run", "[frame_probes]") {
     }
 }
 
-TEST_CASE("probes of figures known by construction", "[frame_probes]") {
+TEST_CASE("probes of figures known by construction", "[frame_probes][large]") {
     Probing probing(GENERATE(1u, 16u));
     // A ceiling at 2 m, seen from below all over, over an evenly lit floor.
     Setup setup;
@@ -369,7 +369,7 @@ TEST_CASE("probes of figures known by construction", "[frame_probes]") {
     }
 }
 
-TEST_CASE("a screen between floor and ceiling hides them from each other, as far as the view shows it", "[frame_probes]") {
+TEST_CASE("a screen between floor and ceiling hides them from each other, as far as the view shows it", "[frame_probes][large]") {
     Probing probing(16);
     Setup setup;
     setup.scene.quads.clear();
@@ -386,7 +386,7 @@ TEST_CASE("a screen between floor and ceiling hides them from each other, as far
     CHECK(hidden.fluxOnScreen < open.fluxOnScreen);
 }
 
-TEST_CASE("probes are NaN where nothing is given to measure them by", "[frame_probes]") {
+TEST_CASE("probes are NaN where nothing is given to measure them by", "[frame_probes][large]") {
     Probing probing(16);
     Setup setup;
     setup.width = 32, setup.height = 18;
@@ -462,7 +462,7 @@ TEST_CASE("the host's own VPLs are emitters like texels", "[frame_probes]") {
 }
 
 // `frame_probes_test "[timing]"`: the time of each pass at full size, for docs/planner.md.
-TEST_CASE("the time that probes take", "[frame_probes][.timing]") {
+TEST_CASE("the time that probes take", "[frame_probes][large][.timing]") {
     Probing probing(16);
     Setup setup;
     setup.width = 1280, setup.height = 720, setup.texels = 512;
