@@ -260,6 +260,11 @@ TEST_CASE("a device's rates are measured once, and kept on disk", "[planner][lar
     CHECK(std::memcmp(&knownRoofline(second), &measured, sizeof measured) == 0);
     CHECK(second.programs().built() + second.programs().loaded() == 0);
     CHECK(log.lines.empty());
+    // Whoever measures on purpose replaces them, for devices to come as well.
+    const LWRoofline renewed = renewRoofline(second);
+    CHECK(std::memcmp(&knownRoofline(second), &renewed, sizeof renewed) == 0);
+    Device third(desc);
+    CHECK(std::memcmp(&knownRoofline(third), &renewed, sizeof renewed) == 0);
     // Another width is another device.
     desc.width = 1;
     Device narrow(desc);
