@@ -185,7 +185,7 @@ LW_API LWStatus lwGetDeviceInfo(LWDevice device, LWDeviceInfo* info);
 LW_API LWStatus lwCountDevices(uint32_t* count);
 LW_API LWStatus lwDescribeDevice(uint32_t index, LWDeviceInfo* info);
 
-/** Measures the device's peak rates. Blocks for less than two seconds. */
+/** Measures the device's peak rates, and has lwPlan know them from now on. Blocks for less than two seconds. */
 LW_API LWStatus lwProbeDevice(LWDevice device, LWRoofline* roofline);
 
 /** Waits until everything enqueued on the device before this call has finished, and reports errors of its
