@@ -200,6 +200,8 @@ TEST_CASE("the choice is the most accurate within the budget, or the cheapest th
     CHECK_FALSE(missed.reachesError);
     CHECK_THAT(missed.reason, Contains("none reaches 0.06"));
     CHECK(choose(made({{2.0, 0.8}}), 0.0, 0.0).reason.find("would") == std::string::npos);
+    CHECK_THAT(chosen(3e38, 0.0).reason, Contains("within 3e+38 ms"));
+    CHECK_THAT(chosen(12345.0, 0.0).reason, Contains("within 12345 ms"));
     CHECK_THROWS_AS(choose({}, 1.0, 0.0), Error);
     // A sentence of whatever the table holds fits into LWPlan.
     for (const double budget : {0.0, 1e-3, 5.0, 33.333333})
