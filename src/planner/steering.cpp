@@ -17,6 +17,8 @@ constexpr int kOverInWindow = 3;
 constexpr std::uint32_t kSettle = 2;
 // Frames whose median is what a candidate takes now. Longer: follows a change later. Shorter: follows noise.
 constexpr std::size_t kRecent = 5;
+// ... and from which on noise is told from it. Fewer: what was not known yet is taken for noise.
+constexpr std::size_t kFewRecent = 3;
 // Frames from which a candidate's own part is learnt; later changes are the device's load, which all share. Longer: a change of load
 // meanwhile is taken for the candidate's own. Shorter: its own part is as uncertain as a few frames are.
 constexpr std::uint32_t kLearning = 5;
@@ -112,7 +114,8 @@ void Steering::ran(std::size_t candidate, double predictedMilliseconds, double m
     overRow_ = isOver ? overRow_ + 1 : 0;
     over_.push_back(isOver);
     if (over_.size() > kOverWindow) over_.pop_front();
-    if (!known.recent.empty()) keepLast(residuals_, ratio - (load_ + known.bias), kResiduals);
+    // From what this stint has shown: what the load is taken to be may yet be far off.
+    if (known.recent.size() >= kFewRecent) keepLast(residuals_, ratio - median(known.recent), kResiduals);
     if (overRow_ == kOverRow && !known.recent.empty()) {
         // A jump, not noise: the last frames alone say where to, and their distance from what was says nothing of the spread.
         const double last = known.recent.back();
