@@ -71,7 +71,8 @@ void CrossFade::record(Executor& executor, const FadeFrame& frame, const LWCamer
     const FadedView::Drawn& drawn = view.drawn_[1 - next];
     cl_int mode = LW_HISTORY_NONE;
     LwReprojection where = reprojection(own, now.width, now.height, now);
-    if (drawn.camera && drawn.hasIrradiance == hasIrradiance && drawn.hasValidity == hasValidity) {
+    // With nothing of the last picture in it there is no need to look that up.
+    if (share < 1.0f && drawn.camera && drawn.hasIrradiance == hasIrradiance && drawn.hasValidity == hasValidity) {
         const bool isStill = drawn.width == now.width && drawn.height == now.height &&
                              std::memcmp(&drawn.matrices, &camera, sizeof camera) == 0;
         // Motion vectors lead one frame back: across more, and within one, a view goes by its cameras.

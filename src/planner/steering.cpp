@@ -37,9 +37,9 @@ constexpr double kUntried = 0.15, kCurious = 8.0;
 constexpr double kEnter = 0.95;
 // First bar in patiences, and the longest. Shorter: what breaks the budget comes back as often. Longer: good ones are missed for as long.
 constexpr std::uint64_t kBar = 4, kLongestBar = 128;
-// What falls of the most that fading took goes in each frame. Slower: a fade that was dear once keeps candidates out. Faster: forgotten
-// before the next.
-constexpr double kBesideFalls = 0.998;
+// Share of a frame in the mean of what lies beside candidates (fades, probes), for which room is left. Larger: a single fade sends a
+// candidate away. Smaller: many fades after each other are not made room for.
+constexpr double kBesideShare = 1.0 / 64.0;
 
 // Of two in the middle their mean.
 double median(std::deque<double> values) {
@@ -108,9 +108,10 @@ void Steering::ran(std::size_t candidate, double predictedMilliseconds, double m
         --known.toSettle;
         return;
     }
-    beside_ = std::max(kBesideFalls * beside_, frameMilliseconds - milliseconds);
+    beside_ += kBesideShare * (std::max(frameMilliseconds - milliseconds, 0.0) - beside_);
     const double ratio = std::log(milliseconds / predictedMilliseconds);
-    const bool isOver = options_.budgetMilliseconds > 0.0 && frameMilliseconds > options_.budgetMilliseconds;
+    // What a fade takes is no fault of the candidate's.
+    const bool isOver = options_.budgetMilliseconds > 0.0 && milliseconds > options_.budgetMilliseconds;
     overRow_ = isOver ? overRow_ + 1 : 0;
     over_.push_back(isOver);
     if (over_.size() > kOverWindow) over_.pop_front();
@@ -131,8 +132,8 @@ bool Steering::breaksBudget() const {
 }
 
 bool Steering::mayLeave() const {
-    return running_ && (overRow_ > 0 || std::count(over_.begin(), over_.end(), true) + 1 >= kOverInWindow ||
-                        better_ + 2 > options_.patience);
+    const bool isOver = overRow_ > 0 || std::count(over_.begin(), over_.end(), true) + 1 >= kOverInWindow;
+    return running_ && ((isOver && canLeave_) || (better_ > 0 && better_ + 2 > options_.patience) || options_.patience == 0);
 }
 
 bool Steering::fits(const Expected& one) const {
@@ -203,6 +204,7 @@ void Steering::resume(std::size_t candidate) {
     startedAt_ = frame_;
     over_.clear();
     overRow_ = better_ = 0;
+    canLeave_ = true;
     Known& known = known_[candidate];
     known.toSettle = kSettle;
     known.recent.clear();
@@ -231,11 +233,12 @@ void Steering::fail(std::size_t candidate) {
 const Steering::Expected* Steering::leaveFor(const Expected& running, const std::vector<Expected>& expected, SteeringCause& cause) {
     const bool isOver = breaksBudget();
     const Expected* other = best(expected, running_);
+    canLeave_ = other && (fits(*other) || other->median < running.median);
     if (isOver || (options_.budgetMilliseconds > 0.0 && running.median > options_.budgetMilliseconds)) {
         better_ = 0;
         cause = isOver ? SteeringCause::kOverBudget : SteeringCause::kTooDear;
         // Where nothing fits the quickest runs, and stays.
-        return other && (fits(*other) || other->median < running.median) ? other : nullptr;
+        return canLeave_ ? other : nullptr;
     }
     const bool isWorthIt = other && fits(*other) && isBetter(*other, running);
     better_ = isWorthIt ? better_ + 1 : 0;

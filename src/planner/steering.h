@@ -105,9 +105,10 @@ private:
     double load_ = 0.0;  // logarithm
     bool isAnchored_ = false;         // some candidate has told the load
     std::deque<double> residuals_;    // logarithms of measured over expected, of all that ran
-    double beside_ = 0.0;             // ms of a frame that are not its candidate's: fading, probing
+    double beside_ = 0.0;             // ms of a frame that are not its candidate's, in the mean: fading, probing
     std::deque<bool> over_;           // of this stint's last frames: over the budget
     std::uint32_t overRow_ = 0, better_ = 0;
+    bool canLeave_ = true;  // there is another that fits, or is quicker
 };
 
 }  // namespace lightwell

@@ -105,8 +105,8 @@ TEST_CASE("two that agree: nothing changes, to the bit", "[cross_fade]") {
         const Shown shown = fade.render(frame, 1.0f / float(k));
         CHECK(shown.irradiance == first.irradiance);
         CHECK(shown.validity == first.validity);
+        if (k > 1) CHECK(fade.fresh() == 0);
     }
-    CHECK(fade.fresh() == 0);
 }
 
 TEST_CASE("two constants: an even ramp over exactly as many frames as were asked for", "[cross_fade]") {
