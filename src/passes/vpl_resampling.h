@@ -52,6 +52,7 @@ public:
                       const VplDraws& memory, const ClusterMaps& maps, const Planes& irradiance, const Buffer& counts);
 
     const VplResamplingOptions& options() const { return options_; }
+    std::uint32_t key() const { return draws_.key; }  // of the last recordBlocks' random numbers
     std::uint64_t bytes() const { return blocks_.bytes() + sums_.bytes(); }
     static std::uint64_t estimateBytes(std::uint32_t slots);  // of the list: blocks and sums
 
