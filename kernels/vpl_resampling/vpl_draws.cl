@@ -5,8 +5,12 @@
 // form factor between the boxes around both, and within the block VPLs by their flux. All draws of a tile are one systematic
 // sample of this distribution, in the order of the list: its pixels take them in turns, so that a window of n x n
 // pixels holds the whole sample, and a pixel's own draws lie in few clusters.
+#ifndef LW_INTERLEAVE
+#define LW_INTERLEAVE 1  // of no importance here
+#endif
 #include "resampling_numbers.h"
 #include "shared/spread_number.h"
+#include "shared/vpl_light.h"
 #include "shared/vpl_resampling_types.h"
 #include "shared/vpl_tiles.h"
 #include "shared/wide.h"
@@ -15,9 +19,8 @@
 // pixel could have probability 0.
 #define LW_BOUND_MARGIN 4e-6f
 
-// One work-item = one block: its boxes, and sums[slot] = luminance of the flux of its slots up to this one.
-__kernel void vpl_resampling_blocks(__global const float* vpls, lw_vpl_draws draws, __global lw_vpl_block* blocks,
-                                    __global float* sums) {
+// One work-item = one block: its boxes, and the most luminance of flux in a slot.
+__kernel void vpl_resampling_blocks(__global const float* vpls, lw_vpl_draws draws, __global lw_vpl_block* blocks) {
     const int block = (int)get_global_id(0);
     if (block >= draws.blocks) return;
     const int end = min((block + 1) * draws.length, draws.slots);
@@ -36,8 +39,7 @@ __kernel void vpl_resampling_blocks(__global const float* vpls, lw_vpl_draws dra
                 high[a] = fmax(high[a], v);
             }
         }
-        sum += flux;
-        sums[slot] = sum;
+        sum = fmax(sum, flux);
     }
     float middle[6], half2[2] = {0.0f, 0.0f};
     for (int a = 0; a < 6; ++a) {
@@ -95,88 +97,109 @@ LW_FN real form_bound(lw_tile_box box, lw_vpl_block block) {
     return form / (wide2 * wide2);
 }
 
-// One work-item = LW_WIDTH adjacent tiles: weights[block] = what the blocks up to this one weigh for the tile. bounds:
-// as interleaved_gather_bounds left them.
-__kernel void vpl_resampling_weigh(__global const float* bounds, lw_vpl_tiles tiles, lw_vpl_draws draws,
-                                   __global const lw_vpl_block* blocks, __global float* weights) {
-    const int tile = (int)get_global_id(0) * LW_WIDTH;
-    if (tile >= lw_tile_stride(tiles)) return;
+// Lanes of tiles that there are.
+LW_FN void store_some(real v, __global float* sums, int tile, int count, int slots, int slot) {
+    float lanes[LW_WIDTH];
+    store(v, lanes, 0);
+    for (int lane = 0; lane < LW_WIDTH && tile + lane < count; ++lane) sums[(tile + lane) * slots + slot] = lanes[lane];
+}
+
+// Pixels that speak for their tile.
+#define LW_SPEAKERS 4
+// Share of the bound in a VPL's weight, beside what it brings the tile's speakers: raised, tiles draw by blocks' flux alone; at 0
+// light that falls between the speakers alone is drawn never.
+#define LW_BOUND_SHARE 0.1f
+
+// Row of speaker k in a tile's LW_TILE_ROWS; all of them together as in a stratified pattern.
+LW_FN int speaker_row(int k) { return (k * 2 + (k & 1) * 2 + 1) & (LW_TILE_ROWS - 1); }
+
+LW_FN lw_surface load_speaker(__global const float* position, int4 positionLayout, __global const float* normal,
+                              int4 normalLayout, int width, int height, lw_vpl_tiles tiles, lanei row, lanei column, int k) {
+    const lanei x = min(column * tiles.tileWidth + tiles.tileWidth * (2 * k + 1) / (2 * LW_SPEAKERS), (lanei)(width - 1));
+    const lanei y = min(row * LW_TILE_ROWS + speaker_row(k), (lanei)(height - 1));
+    const lanei p = positionLayout.x + y * positionLayout.y + x, n = normalLayout.x + y * normalLayout.y + x;
+    const int pz = positionLayout.z, nz = normalLayout.z;
+    return make_surface(gather(position, p), gather(position, p + pz), gather(position, p + 2 * pz), gather(normal, n),
+                        gather(normal, n + nz), gather(normal, n + 2 * nz));
+}
+
+// One work-item = LW_WIDTH adjacent tiles: sums[tile][slot] = what the VPLs up to this one weigh for the tile: by what each
+// brings the tile's speakers, and by a bound for its block. bounds: as interleaved_gather_bounds left them.
+__kernel void vpl_resampling_weigh(__global const float* position, int4 positionLayout, __global const float* normal,
+                                   int4 normalLayout, int width, int height, __global const float* bounds, lw_vpl_tiles tiles,
+                                   lw_vpl_draws draws, __global const lw_vpl_block* blocks, __global const float* vpls,
+                                   __global float* sums) {
+    const int tile = (int)get_global_id(0) * LW_WIDTH, count = tiles.columns * tiles.rows;
+    if (tile >= count) return;
     const lw_tile_box box = load_box(bounds, tiles, tile);
+    const lanei own = min(tile + lanei_iota(), (lanei)(count - 1)), row = own / tiles.columns, column = own - row * tiles.columns;
+    lw_surface speakers[LW_SPEAKERS];
+    LW_UNROLL for (int k = 0; k < LW_SPEAKERS; ++k)
+        speakers[k] = turned_away(load_speaker(position, positionLayout, normal, normalLayout, width, height, tiles, row, column, k));
     float flux = 0.0f;
     for (int b = 0; b < draws.blocks; ++b) flux = fmax(flux, blocks[b].flux.x);
     const float scale = flux > 0.0f ? 1.0f / flux : 0.0f;
     real sum = (real)0.0f;
     for (int b = 0; b < draws.blocks; ++b) {
-        const lw_vpl_block block = blocks[b];
-        sum = fma_(form_bound(box, block), block.flux.x * scale, sum);
-        store(sum, weights, b * lw_tile_stride(tiles) + tile);
+        const real bound = form_bound(box, blocks[b]) * LW_BOUND_SHARE;
+        const int end = min((b + 1) * draws.length, draws.slots);
+        for (int slot = b * draws.length; slot < end; ++slot) {
+            __global const float* const vpl = vpls + 12 * slot;
+            __global const float* const both[2] = {vpl, vpl};
+            const float share = luminance(vpl[8], vpl[9], vpl[10]) * scale;
+            real brings = (real)0.0f;
+            LW_UNROLL for (int k = 0; k < LW_SPEAKERS; ++k) {
+                real w[2];
+                weigh_two_vpls(w, speakers[k], both);
+                brings += w[0];
+            }
+            sum = fma_(fma_(brings, 1.0f / LW_SPEAKERS, bound), share, sum);
+            if (tile + LW_WIDTH <= count) scatter(sum, sums, own * draws.slots + slot);
+            else store_some(sum, sums, tile, count, draws.slots, slot);
+        }
     }
 }
 
-// The first slot of a block where the sums exceed `target`, and what the slot adds to them.
-LW_FN lanei slot_above(__global const float* sums, lw_vpl_draws draws, lanei block, real target, real* added) {
-    const lanei first = block * draws.length, count = min((lanei)draws.length, (lanei)draws.slots - first);
+// The first slot where the sums exceed u.
+LW_FN lanei slot_above(__global const float* sums, int slots, real u) {
     lanei below = (lanei)0;
     int step = 1;
-    while (step < draws.length) step *= 2;
+    while (step < slots) step *= 2;
     for (; step > 0; step /= 2) {
         const lanei next = below + step;
-        const mask inside = next < count;
-        const real sum = gather(sums, first + selecti_((lanei)0, next - 1, inside));
-        below = selecti_(below, next, and_(inside, sum <= target));
+        const mask inside = next < (lanei)slots;
+        const real sum = gather(sums, selecti_((lanei)0, next - 1, inside));
+        below = selecti_(below, next, and_(inside, sum <= u));
     }
-    const real before = select_((real)0.0f, gather(sums, first + max(below - 1, (lanei)0)), below > 0);
-    *added = gather(sums, first + below) - before;
-    return first + below;
-}
-
-// LW_WIDTH consecutive draws of a tile, at `u` of its weights' sum. *block: where to look from; moved on.
-LW_FN void draw_slots(real u, float first, float last, __global const float* weights, int stride, lw_vpl_draws draws,
-                      __global const float* sums, int* block, lanei* slot, real* share) {
-    while (*block < draws.blocks - 1 && weights[*block * stride] <= first) ++*block;
-    lanei at = (lanei)*block;
-    for (int b = *block; b < draws.blocks - 1 && weights[b * stride] <= last; ++b)
-        at += selecti_((lanei)0, (lanei)1, weights[b * stride] <= u);
-    const real high = gather(weights, at * stride);
-    const real low = select_((real)0.0f, gather(weights, max(at - 1, (lanei)0) * stride), at > 0);
-    const lanei end = min((at + 1) * draws.length, (lanei)draws.slots) - 1;
-    const real flux = gather(sums, end), width = high - low;
-    const mask some = and_(width > 0.0f, flux > 0.0f);
-    const real within = fmax(fmin((u - low) / select_((real)1.0f, width, some), 0.99999994f), 0.0f);
-    real added;
-    *slot = slot_above(sums, draws, at, within * flux, &added);
-    const mask drawn = and_(some, added > 0.0f);
-    // 1 / probability, over the weights' sum.
-    *share = select_((real)0.0f, flux / (select_((real)1.0f, added, drawn) * select_((real)1.0f, width, drawn)), drawn);
+    return below;
 }
 
 // One work-item = one tile: list[subset][i] is candidate i of the pixels of that subset, in the order of slots.
-__kernel void vpl_resampling_draw(lw_vpl_tiles tiles, lw_vpl_draws draws, int n, __global const float* weights,
-                                  __global const float* sums, __global lw_vpl_draw* list) {
-    const int tile = (int)get_global_id(0), stride = lw_tile_stride(tiles);
+__kernel void vpl_resampling_draw(lw_vpl_tiles tiles, lw_vpl_draws draws, int n, __global const float* sums,
+                                  __global lw_vpl_draw* list) {
+    const int tile = (int)get_global_id(0);
     if (tile >= tiles.columns * tiles.rows) return;
-    weights += tile;
+    sums += tile * draws.slots;
     const int subsets = n * n, count = subsets * draws.candidates, run = subsets / draws.groups;
     list += tile * count;
-    const float total = weights[(draws.blocks - 1) * stride], step = total / (float)count;
+    const float total = sums[draws.slots - 1], step = total / (float)count;
     const uint number = scalar_hash((uint)tile, draws.key), turn = number & (uint)(subsets - 1);
     const float shift = unit_float(scalar_hash(number, draws.key));
-    int block = 0;
     for (int t = 0; t < count; t += LW_WIDTH) {
-        lanei slot;
-        real share;
         const real u = (lane_iota() + ((float)t + shift)) * step;
-        draw_slots(u, ((float)t + shift) * step, ((float)(LW_WIDTH - 1) + ((float)t + shift)) * step, weights, stride, draws, sums,
-                   &block, &slot, &share);
+        const lanei slot = slot_above(sums, draws.slots, u);
+        const real high = gather(sums, slot), low = select_((real)0.0f, gather(sums, max(slot - 1, (lanei)0)), slot > 0);
+        const mask drawn = high > low;
+        const real weight = select_((real)0.0f, step / select_((real)1.0f, high - low, drawn), drawn);
         int slots[LW_WIDTH];
-        float shares[LW_WIDTH];
+        float weights[LW_WIDTH];
         store(slot, slots, 0);
-        store(share * step, shares, 0);
+        store(weight, weights, 0);
         for (int lane = 0; lane < LW_WIDTH && t + lane < count; ++lane) {
             // Draw t of a group's run of draws goes to the run's subsets in turns.
             const int group = (t + lane) / (run * draws.candidates), within = (t + lane) - group * run * draws.candidates;
             const int place = within / run, numbered = ((within - place * run) * draws.groups + group) ^ (int)turn;
-            const lw_vpl_draw draw = {slots[lane], shares[lane]};
+            const lw_vpl_draw draw = {slots[lane], weights[lane]};
             list[numbered * draws.candidates + place] = draw;
         }
     }

@@ -1,5 +1,6 @@
 #include "passes/vpl_resampling.h"
 
+#include <algorithm>
 #include <limits>
 #include <string>
 
@@ -33,6 +34,10 @@ std::uint64_t drawsOf(const VplResamplingOptions& options, const lw_vpl_tiles& t
     return std::uint64_t(tiles.columns) * std::uint64_t(tiles.rows) * options.interleave * options.interleave * options.candidates;
 }
 
+std::uint64_t sumBytes(const lw_vpl_tiles& tiles, std::uint32_t slots) {
+    return std::uint64_t(tiles.columns) * std::uint64_t(tiles.rows) * slots * sizeof(float);
+}
+
 // A number for the random ones (Murmur's finaliser); neither seed nor turn alone gives another's.
 cl_uint keyOf(std::uint32_t seed, std::uint32_t turn) {
     cl_uint x = seed * 0x9e3779b9u + turn * 0x7feb352du + 0x68bc21ebu;
@@ -43,16 +48,16 @@ cl_uint keyOf(std::uint32_t seed, std::uint32_t turn) {
 
 }  // namespace
 
-void VplDraws::reserve(Device& device, const VplResamplingOptions& options, std::uint32_t width, std::uint32_t height) {
+void VplDraws::reserve(Device& device, const VplResamplingOptions& options, std::uint32_t slots, std::uint32_t width, std::uint32_t height) {
     const lw_vpl_tiles tiles = tilesOf(options, width, height);
     bounds_.reserve(device, std::size_t(planeBytes(tiles) * kBoundsPlanes), "boxes of tiles");
-    weights_.reserve(device, std::size_t(planeBytes(tiles) * LW_VPL_BLOCKS), "tiles' weights of VPLs");
+    sums_.reserve(device, std::size_t(sumBytes(tiles, slots)), "tiles' weights of VPLs");
     list_.reserve(device, std::size_t(drawsOf(options, tiles) * sizeof(lw_vpl_draw)), "VPLs drawn by tiles");
 }
 
-std::uint64_t VplDraws::estimateBytes(const VplResamplingOptions& options, std::uint32_t width, std::uint32_t height) {
+std::uint64_t VplDraws::estimateBytes(const VplResamplingOptions& options, std::uint32_t slots, std::uint32_t width, std::uint32_t height) {
     const lw_vpl_tiles tiles = tilesOf(options, width, height);
-    return planeBytes(tiles) * (kBoundsPlanes + LW_VPL_BLOCKS) + drawsOf(options, tiles) * sizeof(lw_vpl_draw);
+    return planeBytes(tiles) * kBoundsPlanes + sumBytes(tiles, slots) + drawsOf(options, tiles) * sizeof(lw_vpl_draw);
 }
 
 VplResampling::VplResampling(Device& device, const VplResamplingOptions& options)
@@ -64,14 +69,11 @@ VplResampling::VplResampling(Device& device, const VplResamplingOptions& options
       draw_(device.programs().kernel(kDraws, "vpl_resampling_draw")),
       gather_(device.programs().kernel("vpl_resampling/vpl_resampling", "vpl_resampling_gather", definesOf(options))) {}
 
-std::uint64_t VplResampling::estimateBytes(std::uint32_t slots) {
-    return LW_VPL_BLOCKS * sizeof(lw_vpl_block) + std::uint64_t(slots) * sizeof(float);
-}
+std::uint64_t VplResampling::estimateBytes() { return LW_VPL_BLOCKS * sizeof(lw_vpl_block); }
 
 void VplResampling::recordBlocks(Executor& executor, const Buffer& vpls, std::uint32_t slots, std::uint32_t seed,
                                  std::uint32_t turn) {
     blocks_.reserve(device_, LW_VPL_BLOCKS * sizeof(lw_vpl_block), "blocks of VPLs");
-    sums_.reserve(device_, slots * sizeof(float), "sums of VPLs' flux");
     draws_.slots = cl_int(slots);
     draws_.length = cl_int((slots + LW_VPL_BLOCKS - 1) / LW_VPL_BLOCKS);
     draws_.blocks = (draws_.slots + draws_.length - 1) / draws_.length;
@@ -79,20 +81,22 @@ void VplResampling::recordBlocks(Executor& executor, const Buffer& vpls, std::ui
     draws_.survivors = cl_int(options_.survivors);
     draws_.groups = cl_int(options_.groups);
     draws_.key = keyOf(seed, turn);
-    executor.run("vpl_resampling.blocks", cut_, {LW_VPL_BLOCKS, 1}, {8, 1}, vpls, draws_, blocks_, sums_);
+    executor.run("vpl_resampling.blocks", cut_, {LW_VPL_BLOCKS, 1}, {8, 1}, vpls, draws_, blocks_);
 }
 
-void VplResampling::recordDraw(Executor& executor, const Planes& position, const Planes& normal, const VplDraws& memory) {
+void VplResampling::recordDraw(Executor& executor, const Planes& position, const Planes& normal, const Buffer& vpls,
+                               const VplDraws& memory) {
     const lw_vpl_tiles tiles = tilesOf(options_, position.width, position.height);
-    if (drawsOf(options_, tiles) * 2 > std::uint64_t(std::numeric_limits<std::int32_t>::max()))
-        fail(LW_ERROR_UNSUPPORTED, "candidates: ", options_.candidates, " for each of ", position.width, "x", position.height,
+    if (std::max(drawsOf(options_, tiles) * 2, sumBytes(tiles, std::uint32_t(draws_.slots)) / sizeof(float)) > std::uint64_t(std::numeric_limits<std::int32_t>::max()))
+        fail(LW_ERROR_UNSUPPORTED, "candidates: ", options_.candidates, " of ", draws_.slots, " VPLs for each of ", position.width, "x", position.height,
              " pixels exceed the 32-bit indices of the kernels");
     executor.run("vpl_resampling.bounds", bounds_, {std::size_t(tiles.columns), std::size_t(tiles.rows)}, groupOf(bounds_), position,
                  normal, cl_int(position.width), cl_int(position.height), tiles, memory.bounds());
     executor.run("vpl_resampling.weigh", weigh_, {std::size_t(lw_tile_stride(tiles)) / weigh_.width(), 1}, groupOf(weigh_),
-                 memory.bounds(), tiles, draws_, blocks_, memory.weights());
+                 position, normal, cl_int(position.width), cl_int(position.height), memory.bounds(), tiles, draws_, blocks_, vpls,
+                 memory.sums());
     executor.run("vpl_resampling.draw", draw_, {std::size_t(tiles.columns) * std::size_t(tiles.rows), 1}, groupOf(draw_), tiles, draws_,
-                 cl_int(options_.interleave), memory.weights(), sums_, memory.list());
+                 cl_int(options_.interleave), memory.sums(), memory.list());
 }
 
 void VplResampling::recordGather(Executor& executor, const Planes& position, const Planes& normal, const Buffer& vpls,

@@ -25,16 +25,16 @@ struct VplResamplingOptions {
 class VplDraws {
 public:
     // Makes room for images up to this size; allocates only where it has grown.
-    void reserve(Device& device, const VplResamplingOptions& options, std::uint32_t width, std::uint32_t height);
-    static std::uint64_t estimateBytes(const VplResamplingOptions& options, std::uint32_t width, std::uint32_t height);
+    void reserve(Device& device, const VplResamplingOptions& options, std::uint32_t slots, std::uint32_t width, std::uint32_t height);
+    static std::uint64_t estimateBytes(const VplResamplingOptions& options, std::uint32_t slots, std::uint32_t width, std::uint32_t height);
 
     const Buffer& bounds() const { return bounds_; }    // 12 planes of tiles, as interleaved_gather_bounds leaves them
-    const Buffer& weights() const { return weights_; }  // a plane of tiles for each block
+    const Buffer& sums() const { return sums_; }      // of the weights of the list's slots, by tile
     const Buffer& list() const { return list_; }        // lw_vpl_draw by tile, subset and candidate
-    std::uint64_t bytes() const { return bounds_.bytes() + weights_.bytes() + list_.bytes(); }
+    std::uint64_t bytes() const { return bounds_.bytes() + sums_.bytes() + list_.bytes(); }
 
 private:
-    Buffer bounds_, weights_, list_;
+    Buffer bounds_, sums_, list_;
 };
 
 class VplResampling {
@@ -45,7 +45,7 @@ public:
     // stays as it is until the last gather. Other numbers are drawn for another seed or turn.
     void recordBlocks(Executor& executor, const Buffer& vpls, std::uint32_t slots, std::uint32_t seed, std::uint32_t turn);
     // Passes "vpl_resampling.bounds", ".weigh" and ".draw": candidates for the pixels of this image. `memory` has room.
-    void recordDraw(Executor& executor, const Planes& position, const Planes& normal, const VplDraws& memory);
+    void recordDraw(Executor& executor, const Planes& position, const Planes& normal, const Buffer& vpls, const VplDraws& memory);
     // Pass "vpl_resampling.gather", of candidates as recordDraw left them for this image. irradiance, counts: as
     // ClusteredGather::recordGather.
     void recordGather(Executor& executor, const Planes& position, const Planes& normal, const Buffer& vpls,
@@ -53,15 +53,15 @@ public:
 
     const VplResamplingOptions& options() const { return options_; }
     std::uint32_t key() const { return draws_.key; }  // of the last recordBlocks' random numbers
-    std::uint64_t bytes() const { return blocks_.bytes() + sums_.bytes(); }
-    static std::uint64_t estimateBytes(std::uint32_t slots);  // of the list: blocks and sums
+    std::uint64_t bytes() const { return blocks_.bytes(); }
+    static std::uint64_t estimateBytes();
 
 private:
     Device& device_;
     VplResamplingOptions options_;
     Kernel &bounds_, &cut_, &weigh_, &draw_, &gather_;
     lw_vpl_draws draws_{};
-    Buffer blocks_, sums_;
+    Buffer blocks_;
 };
 
 }  // namespace lightwell

@@ -123,7 +123,7 @@ public:
         state.render(executor, *view, gbuffer, output, {passes_, bilateral_ ? &*bilateral_ : nullptr, history()},
                      [&](const Planes& position, const Planes& normal, const Planes& irradiance) {
                          if (draws) {
-                             resampling_->recordDraw(executor, position, normal, *draws);
+                             resampling_->recordDraw(executor, position, normal, gather_.vpls(), *draws);
                              resampling_->recordGather(executor, position, normal, gather_.vpls(), *draws, maps, irradiance, state.counts());
                          } else {
                              const Buffer& masks = state.cull(executor, passes_, position, normal, gather_.vpls(), gather_.order());
@@ -171,12 +171,11 @@ private:
         sampling_.record(executor, rsms_, frame.vpls, frame.vplCount, &plan);
     }
     VplDraws& drawsOf(const std::shared_ptr<View>& view) {
-        return draws_.get(view, [&] {
-            const InterleavedOptions image = interleavedOptions(desc_);
-            auto draws = std::make_unique<VplDraws>();
-            draws->reserve(device_, resamplingOptions(desc_), image.gathered(view->maxWidth), image.gathered(view->maxHeight));
-            return draws;
-        });
+        const InterleavedOptions image = interleavedOptions(desc_);
+        VplDraws& draws = draws_.get(view, [] { return std::make_unique<VplDraws>(); });
+        draws.reserve(device_, resamplingOptions(desc_), std::uint32_t(gather_.order().capacity), image.gathered(view->maxWidth),
+                      image.gathered(view->maxHeight));
+        return draws;
     }
     // The VPLs that the maps of a stage show lit.
     VplList recordNext(Executor& executor, std::size_t index) {

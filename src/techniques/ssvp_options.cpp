@@ -117,8 +117,9 @@ std::uint64_t estimateSsvpBytes(const void* desc, const LWViewDesc& view, const 
     const lw_subset_order list = ClusteredGather::orderOf(counts, dealtOf(ssvp));
     const InterleavedOptions image = interleavedOptions(ssvp);
     const std::uint64_t drawn = !resamples(ssvp) ? 0
-                                                 : VplResampling::estimateBytes(std::uint32_t(list.capacity)) +
-                                                       VplDraws::estimateBytes(resamplingOptions(ssvp), image.gathered(view.maxWidth),
+                                                 : VplResampling::estimateBytes() +
+                                                       VplDraws::estimateBytes(resamplingOptions(ssvp), std::uint32_t(list.capacity),
+                                                                               image.gathered(view.maxWidth),
                                                                                image.gathered(view.maxHeight));
     return total + RsmInput::estimateBytes(shape) +
            VplSampling::estimateBytes(samplingOptions(ssvp), shape) +
