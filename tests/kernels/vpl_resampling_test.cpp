@@ -7,6 +7,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "passes/interleaved_gather.h"
 #include "passes/vpl_list.h"
 #include "support/paraboloid_rig.h"
 #include "support/vpl_slots.h"
@@ -57,7 +58,7 @@ struct Drawn {
           out(on.makePlanes(places.width, places.height, 3)),
           none(on.upload(std::vector<float>(64, 0.0f))),
           slots(std::uint32_t(vpls.size())) {
-        memory.reserve(on.device(), options, places.width, places.height);
+        memory.reserve(on.device(), options, slots, places.width, places.height);
     }
     Frame frame(std::uint32_t turn, const ClusterMaps* maps = nullptr) {
         const std::uint32_t w = position.width, h = position.height;
@@ -65,7 +66,7 @@ struct Drawn {
         const ClusterMaps unread{none, none, none, none, 8, 64};
         const Guarded counts = rig.upload(std::vector<cl_int>{0, 0, 0});
         pass.recordBlocks(rig.executor(), list, slots, 3, turn);
-        pass.recordDraw(rig.executor(), surfaces[0], surfaces[1], memory);
+        pass.recordDraw(rig.executor(), surfaces[0], surfaces[1], list, memory);
         pass.recordGather(rig.executor(), surfaces[0], surfaces[1], list, memory, maps ? *maps : unread, light, counts);
         rig.device().finish();
         Frame result;
@@ -153,7 +154,7 @@ Vec twin(const Drawn& drawn, const Frame& frame, const std::vector<lw_vpl>& list
     for (std::uint32_t k = 0; s.valid && k < o.survivors; ++k) {
         const std::uint32_t from = o.candidates * k / o.survivors, to = o.candidates * (k + 1) / o.survivors;
         const auto brings = [&](std::uint32_t i) {
-            return reference::vplIrradiance(list[std::size_t(own[i].slot)], s) * (own[i].weight * n * n);
+            return reference::vplIrradiance(list[std::size_t(own[i].slot)], s) * (double(own[i].weight) * n * n);
         };
         const auto luminance = [](Vec v) { return 0.2126 * v.x + 0.7152 * v.y + 0.0722 * v.z; };
         double whole = 0.0, passed = 0.0;
