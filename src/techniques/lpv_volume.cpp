@@ -16,9 +16,23 @@ const LWLpvDesc& checkedPyramid(const LWLpvDesc& desc) {
     return desc;
 }
 
+// The light of one bounce in one grid, all of it in every frame, is what LpvRest knows.
+void checkRests(const LWLpvDesc& desc) {
+    if (!desc.rests) return;
+    const auto refuse = [](const char* name, const char* expected) {
+        fail(LW_ERROR_INVALID_ARGUMENT, "desc.", name, ": expected ", expected, " with rests=1, got another");
+    };
+    if (desc.transport == LW_LPV_TRANSPORT_COARSE_TO_FINE) refuse("transport", "propagate or sweep");
+    if (desc.cascades > 1) refuse("cascades", "1");
+    if (desc.transport == LW_LPV_TRANSPORT_SWEEP && desc.bounces > 1) refuse("bounces", "1");
+    if (desc.transport == LW_LPV_TRANSPORT_SWEEP && desc.frames > 1) refuse("frames", "1");
+    if (desc.transport == LW_LPV_TRANSPORT_PROPAGATE && desc.autoError > 0.0f) refuse("autoError", "0");
+}
+
 }  // namespace
 
 std::unique_ptr<LpvVolume> makeLpvVolume(Device& device, const LWLpvDesc& desc, int hidden) {
+    checkRests(desc);
     const bool sweeps = desc.transport == LW_LPV_TRANSPORT_SWEEP;
     if (desc.transport == LW_LPV_TRANSPORT_COARSE_TO_FINE) return std::make_unique<LpvPyramidVolume>(device, checkedPyramid(desc));
     if (desc.cascades > 1 && sweeps) return std::make_unique<LpvSweepCascades>(device, desc, hidden);
