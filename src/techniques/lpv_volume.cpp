@@ -19,14 +19,13 @@ const LWLpvDesc& checkedPyramid(const LWLpvDesc& desc) {
 // The light of one bounce in one grid, all of it in every frame, is what LpvRest knows.
 void checkRests(const LWLpvDesc& desc) {
     if (!desc.rests) return;
-    const auto refuse = [](const char* name, const char* expected) {
-        fail(LW_ERROR_INVALID_ARGUMENT, "desc.", name, ": expected ", expected, " with rests=1, got another");
-    };
-    if (desc.transport == LW_LPV_TRANSPORT_COARSE_TO_FINE) refuse("transport", "propagate or sweep");
-    if (desc.cascades > 1) refuse("cascades", "1");
-    if (desc.transport == LW_LPV_TRANSPORT_SWEEP && desc.bounces > 1) refuse("bounces", "1");
-    if (desc.transport == LW_LPV_TRANSPORT_SWEEP && desc.frames > 1) refuse("frames", "1");
-    if (desc.transport == LW_LPV_TRANSPORT_PROPAGATE && desc.autoError > 0.0f) refuse("autoError", "0");
+    if (desc.transport == LW_LPV_TRANSPORT_COARSE_TO_FINE)
+        fail(LW_ERROR_INVALID_ARGUMENT, "desc.transport: expected propagate or sweep with rests=1, got coarse_to_fine");
+    if (desc.cascades > 1) fail(LW_ERROR_INVALID_ARGUMENT, "desc.cascades: expected 1 with rests=1, got ", desc.cascades);
+    const bool sweeps = desc.transport == LW_LPV_TRANSPORT_SWEEP;
+    if (sweeps && desc.bounces > 1) fail(LW_ERROR_INVALID_ARGUMENT, "desc.bounces: expected 1 with rests=1, got ", desc.bounces);
+    if (sweeps && desc.frames > 1) fail(LW_ERROR_INVALID_ARGUMENT, "desc.frames: expected 1 with rests=1, got ", desc.frames);
+    if (!sweeps && desc.autoError > 0.0f) fail(LW_ERROR_INVALID_ARGUMENT, "desc.autoError: expected 0 with rests=1, got ", desc.autoError);
 }
 
 }  // namespace
