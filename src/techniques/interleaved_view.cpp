@@ -63,7 +63,7 @@ void InterleavedView::render(Executor& executor, const View& view, const LWGBuff
     const Planes irradiance = irradiance_.begin(executor, view, output.irradiance, 3, "output.irradiance");
     const Planes validity = validity_.begin(executor, view, output.validity, 1, "output.validity");
     if (irradiance) light(executor, passes, gbuffer.camera, irradiance, validity, gather, gatherAll);
-    if (validity && !(irradiance && filtersLast())) passes.gather.recordValidity(executor, gbuffer_.position, gbuffer_.normal, validity);
+    if (validity && !(irradiance && lastMakesValidity())) passes.gather.recordValidity(executor, gbuffer_.position, gbuffer_.normal, validity);
     irradiance_.end(executor);
     validity_.end(executor);
 }
@@ -89,7 +89,7 @@ void InterleavedView::light(Executor& executor, const Passes& passes, const LWCa
         lit = half ? filtered_.planes(position.width, position.height) : made;
         passes.gather.recordFilter(executor, position, normal, gathered, lit, filtersLast() ? validity : Planes{});
     }
-    if (half) upsample(executor, passes, position, normal, lit, made, gatherAll);
+    if (half) upsample(executor, passes, position, normal, lit, made, validity, gatherAll);
     if (history_)
         passes.history->record(executor, {gbuffer_.position, gbuffer_.normal, gbuffer_.motion, made, irradiance, {}, {}}, camera, *history_);
     lastGathered_ = gathered;
@@ -98,12 +98,12 @@ void InterleavedView::light(Executor& executor, const Passes& passes, const LWCa
 
 // position, normal, lit: at half resolution.
 void InterleavedView::upsample(Executor& executor, const Passes& passes, const Planes& position, const Planes& normal, const Planes& lit,
-                               const Planes& made, const Gather& gatherAll) {
+                               const Planes& made, const Planes& validity, const Gather& gatherAll) {
     const Planes &fullPosition = gbuffer_.position, &fullNormal = gbuffer_.normal;
     if (!repaired_) return passes.bilateral->recordUpsample(executor, fullPosition, fullNormal, position, normal, lit, made, counts_);
     const std::uint32_t w = made.width, h = made.height;
     passes.bilateral->recordUpsampleMarked(executor, fullPosition, fullNormal, position, normal, lit, made, options_.repairs,
-                                           repaired_->marks(w, h), counts_);
+                                           repaired_->marks(w, h), validity, counts_);
     passes.repair->recordCollect(executor, fullPosition, fullNormal, *repaired_);
     gatherAll(repaired_->position(w, h), repaired_->normal(w, h), repaired_->light(w, h));
     passes.repair->recordPut(executor, *repaired_, made);

@@ -81,9 +81,10 @@ private:
     void light(Executor& executor, const Passes& passes, const LWCamera& camera, const Planes& irradiance, const Planes& validity,
                const Gather& gather, const Gather& gatherAll);
     void upsample(Executor& executor, const Passes& passes, const Planes& position, const Planes& normal, const Planes& lit,
-                  const Planes& made, const Gather& gatherAll);
-    // The filter makes validity, too, of what it has read.
+                  const Planes& made, const Planes& validity, const Gather& gatherAll);
+    // What comes last makes validity, too, of what it has read: the filter, or an up-sampling that marks.
     bool filtersLast() const { return options_.filters() && !options_.half; }
+    bool lastMakesValidity() const { return filtersLast() || repaired_; }
 
     Device& device_;
     InterleavedOptions options_;

@@ -114,7 +114,7 @@ TEST_CASE("up-sampling marks steep light and lost pixels, and makes the same lig
 
     const Guarded p = rig.uploadPlanes(position.planes, w, h, 3, 1.0f), n = rig.uploadPlanes(normal.planes, w, h, 3, 1.0f);
     const Guarded hp = rig.makePlanes(hw, hh, 3), hn = rig.makePlanes(hw, hh, 3), l = rig.uploadPlanes(light.planes, hw, hh, 3, 1.0f);
-    const Guarded plain = rig.makePlanes(w, h, 3), marked = rig.makePlanes(w, h, 3), marks = rig.makePlanes(w, h, 1);
+    const Guarded plain = rig.makePlanes(w, h, 3), marked = rig.makePlanes(w, h, 3), marks = rig.makePlanes(w, h, 1), validity = rig.makePlanes(w, h, 1);
     const Guarded counts = rig.upload(std::vector<cl_int>{0, 0}), markedCounts = rig.upload(std::vector<cl_int>{0, 0});
     const auto full = [&](const Guarded& buffer, std::uint32_t planes) { return rig.planes(buffer, w, h, planes); };
     const auto half = [&](const Guarded& buffer) { return rig.planes(buffer, hw, hh, 3); };
@@ -123,11 +123,12 @@ TEST_CASE("up-sampling marks steep light and lost pixels, and makes the same lig
     without.recordUpsample(rig.executor(), full(p, 3), full(n, 3), half(hp), half(hn), half(l), full(plain, 3), counts);
     const float share = GENERATE(0.25f, 1.5f);
     with.recordUpsampleMarked(rig.executor(), full(p, 3), full(n, 3), half(hp), half(hn), half(l), full(marked, 3), share, full(marks, 1),
-                              markedCounts);
+                              full(validity, 1), markedCounts);
     rig.device().finish();
     CHECK(bitDifference(rig.downloadPlanes(full(marked, 3)), rig.downloadPlanes(full(plain, 3))) == "");
     CHECK(rig.download<cl_int>(markedCounts) == rig.download<cl_int>(counts));
 
+    CHECK(bitDifference(rig.downloadPlanes(full(validity, 1)), std::vector<float>(std::size_t(w) * h, 1.0f)) == "");
     const std::vector<float> found = rig.downloadPlanes(full(marks, 1));
     for (std::uint32_t y = 0; y < h; ++y)
         for (std::uint32_t x = 0; x < w; ++x) {
