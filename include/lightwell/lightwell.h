@@ -473,6 +473,9 @@ typedef struct LWRsmDesc {
                                   time and in its neighbourhood; 0: as far as it likes */
     LWRsmVisibility visibility;
     uint32_t voxels;         /**< of visibility VOXEL: a side of the grid, fitted to the scene; 32, 64, 128, 256 */
+    float autoResolution;    /**< above 0: gathered as HALF, whatever `resolution` says; then pixels around which the light found there
+                                  differs by more than this share of it, or has no sample on their surface, are gathered by
+                                  themselves, of all VPLs: at most a 32nd of the pixels. 0: never; 0 .. 10 */
 } LWRsmDesc;
 
 LW_API void lwDefaultRsm(LWRsmDesc* desc);
@@ -542,6 +545,7 @@ typedef struct LWSsvpDesc {
     LWVplGather gather;      /**< which VPLs a pixel gathers */
     uint32_t candidates;     /**< of gather RESAMPLED: VPLs that a pixel draws to choose from; 1 .. 64 */
     uint32_t survivors;      /**< of gather RESAMPLED: VPLs that it keeps of them, each with its own visibility; 1 .. 8 */
+    float autoResolution;    /**< as LWRsmDesc's; neither with `compensation` nor with gather RESAMPLED */
 } LWSsvpDesc;
 
 LW_API void lwDefaultSsvp(LWSsvpDesc* desc);
@@ -679,6 +683,8 @@ typedef struct LWLpvDesc {
                               the finer ones lie around LWFrame::focus, else in the middle, at whole cells of their own */
     float autoError;     /**< of propagation, above 0: `steps` is the most, and light that is still on its way is dropped once it
                               is less than this share of all; 0: always all steps; 0 .. 1 */
+    uint32_t rests;      /**< 1: light that is as it was in the frame before is not carried again, with the same result; of one grid
+                              in one frame. 0: always */
 } LWLpvDesc;
 
 LW_API void lwDefaultLpv(LWLpvDesc* desc);

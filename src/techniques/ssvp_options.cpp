@@ -36,8 +36,9 @@ SecondBounceOptions nextOptions(const LWSsvpDesc& desc, std::size_t stage) {
 }
 
 InterleavedOptions interleavedOptions(const LWSsvpDesc& desc) {
-    return {desc.interleave, desc.filter != 0, desc.resolution == LW_RESOLUTION_HALF, {desc.history, desc.historyClamp, 0},
-            desc.compensation > 0, !resamples(desc)};
+    const bool repairs = desc.autoResolution > 0.0f;
+    return {desc.interleave, desc.filter != 0, repairs || desc.resolution == LW_RESOLUTION_HALF, {desc.history, desc.historyClamp, 0},
+            desc.compensation > 0, !resamples(desc), desc.autoResolution};
 }
 
 CompensationOptions compensationOptions(const LWSsvpDesc& desc) {
@@ -121,14 +122,16 @@ std::uint64_t estimateSsvpBytes(const void* desc, const LWViewDesc& view, const 
                                                        VplDraws::estimateBytes(resamplingOptions(ssvp), std::uint32_t(list.capacity),
                                                                                image.gathered(view.maxWidth),
                                                                                image.gathered(view.maxHeight));
+    const bool repairs = ssvp.autoResolution > 0.0f;
+    const std::size_t shadowedLists = std::max<std::size_t>(shadowedOf(ssvp), 1);
+    if (repairs) total += ClusteredGather::estimateBytes(counts, shadowedLists, 1);
     return total + RsmInput::estimateBytes(shape) +
            VplSampling::estimateBytes(samplingOptions(ssvp), shape) +
            OccluderMaps::estimateBytes(occluderOptions(ssvp), clusterCounts, shape) +
-           ClusteredGather::estimateBytes(counts, std::max<std::size_t>(shadowedOf(ssvp), 1),
-                                          dealtOf(ssvp)) +
+           ClusteredGather::estimateBytes(counts, shadowedLists, dealtOf(ssvp)) +
            drawn +
-           InterleavedView::estimateBytes(interleavedOptions(ssvp), view, shape.uploads,
-                                          list);
+           InterleavedView::estimateBytes(image, view, shape.uploads, list,
+                                          repairs ? ClusteredGather::orderOf(counts, 1) : lw_subset_order{});
 }
 
 }  // namespace lightwell

@@ -89,7 +89,10 @@ std::vector<LWParameter> makeTable() {
         uint("candidates", "of gather=resampled: VPLs that a pixel draws to choose from: less grain, time", offsetof(LWSsvpDesc, candidates), 1,
              LW_MOST_CANDIDATES, 16),
         uint("survivors", "of gather=resampled: VPLs that a pixel keeps, whose visibility it looks up: less grain, time", offsetof(LWSsvpDesc, survivors), 1,
-             LW_MOST_SURVIVORS, 4)};
+             LW_MOST_SURVIVORS, 4),
+        parameter("auto_resolution", "gathered at half resolution, but for pixels around which light found there differs by more than this share, or that it "
+                                     "lacks: time falls as it is raised; 0: as `resolution` says",
+                  LW_PARAMETER_FLOAT, offsetof(LWSsvpDesc, autoResolution), 0, 10, 0)};
 }
 
 }  // namespace
