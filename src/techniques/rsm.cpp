@@ -34,9 +34,13 @@ VplSamplingOptions samplingOptions(const LWRsmDesc& desc) {
 constexpr std::uint32_t kPrewarmVpls = 1024;
 
 InterleavedOptions interleavedOptions(const LWRsmDesc& desc) {
-    const bool repairs = desc.autoResolution > 0.0f;
-    return {desc.interleave, desc.filter != 0, repairs || desc.resolution == LW_RESOLUTION_HALF, {desc.history, desc.historyClamp, 0}, false,
-            desc.autoResolution};
+    InterleavedOptions options;
+    options.interleave = desc.interleave;
+    options.filter = desc.filter != 0;
+    options.half = desc.autoResolution > 0.0f || desc.resolution == LW_RESOLUTION_HALF;
+    options.history = {desc.history, desc.historyClamp, 0};
+    options.repairs = desc.autoResolution;
+    return options;
 }
 
 // What the host gave and this technique does not read: said in the stats, so that nobody waits for its light.

@@ -36,9 +36,15 @@ SecondBounceOptions nextOptions(const LWSsvpDesc& desc, std::size_t stage) {
 }
 
 InterleavedOptions interleavedOptions(const LWSsvpDesc& desc) {
-    const bool repairs = desc.autoResolution > 0.0f;
-    return {desc.interleave, desc.filter != 0, repairs || desc.resolution == LW_RESOLUTION_HALF, {desc.history, desc.historyClamp, 0},
-            desc.compensation > 0, !resamples(desc), desc.autoResolution};
+    InterleavedOptions options;
+    options.interleave = desc.interleave;
+    options.filter = desc.filter != 0;
+    options.half = desc.autoResolution > 0.0f || desc.resolution == LW_RESOLUTION_HALF;
+    options.history = {desc.history, desc.historyClamp, 0};
+    options.compensated = desc.compensation > 0;
+    options.culls = !resamples(desc);
+    options.repairs = desc.autoResolution;
+    return options;
 }
 
 CompensationOptions compensationOptions(const LWSsvpDesc& desc) {
