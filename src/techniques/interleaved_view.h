@@ -24,7 +24,6 @@ struct InterleavedOptions {
     bool half = false;   // gathers every second pixel and row
     TemporalHistoryOptions history;  // of what comes of these; none with 0 frames
     bool compensated = false;  // by BoundingCompensation; needs the G-buffer's direct radiance and camera
-    bool culls = true;  // `gather` asks which VPLs the tiles can skip
 
     bool keeps() const { return history.frames > 0; }
     bool filters() const { return filter && interleave > 1; }

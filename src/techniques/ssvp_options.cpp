@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "inputs/rsm_input.h"
-#include "techniques/clustered_points.h"
 
 namespace lightwell {
 
@@ -37,7 +36,7 @@ SecondBounceOptions nextOptions(const LWSsvpDesc& desc, std::size_t stage) {
 
 InterleavedOptions interleavedOptions(const LWSsvpDesc& desc) {
     return {desc.interleave, desc.filter != 0, desc.resolution == LW_RESOLUTION_HALF, {desc.history, desc.historyClamp, 0},
-            desc.compensation > 0, !resamples(desc)};
+            desc.compensation > 0};
 }
 
 CompensationOptions compensationOptions(const LWSsvpDesc& desc) {
@@ -55,16 +54,6 @@ OccluderOptions occluderOptions(const LWSsvpDesc& desc) {
     const bool looks = desc.visibility == LW_VISIBILITY_HARD || desc.visibility == LW_VISIBILITY_SOFT;
     options.drawn = looks ? stagesOf(desc) : desc.bounces - 1;
     return options;
-}
-
-bool resamples(const LWSsvpDesc& desc) { return desc.gather == LW_VPL_GATHER_RESAMPLED; }
-
-// What pixels draw from is one list.
-std::uint32_t dealtOf(const LWSsvpDesc& desc) { return resamples(desc) ? 1 : desc.interleave; }
-
-VplResamplingOptions resamplingOptions(const LWSsvpDesc& desc) {
-    return {desc.interleave, groupsOf(desc), desc.candidates, std::min(desc.survivors, desc.candidates),
-            visibilityOf(desc.visibility)};
 }
 
 // As many groups as the interleave's window has pixels, at most.
@@ -114,21 +103,13 @@ std::uint64_t estimateSsvpBytes(const void* desc, const LWViewDesc& view, const 
         total += SsvpPlan::estimateBytes(planOptions(ssvp), shape.texels ? shape.rows : 0);
     if (ssvp.visibility == LW_VISIBILITY_VOXEL) total += VoxelShadows::estimateBytes(ssvp.voxels, shadowing, OccluderMaps::voxelSurfels(occluderOptions(ssvp), shape), shape);
     if (ssvp.compensation > 0) total += BoundingCompensation::estimateBytes(compensationOptions(ssvp));
-    const lw_subset_order list = ClusteredGather::orderOf(counts, dealtOf(ssvp));
-    const InterleavedOptions image = interleavedOptions(ssvp);
-    const std::uint64_t drawn = !resamples(ssvp) ? 0
-                                                 : VplResampling::estimateBytes() +
-                                                       VplDraws::estimateBytes(resamplingOptions(ssvp), std::uint32_t(list.capacity),
-                                                                               image.gathered(view.maxWidth),
-                                                                               image.gathered(view.maxHeight));
     return total + RsmInput::estimateBytes(shape) +
            VplSampling::estimateBytes(samplingOptions(ssvp), shape) +
            OccluderMaps::estimateBytes(occluderOptions(ssvp), clusterCounts, shape) +
            ClusteredGather::estimateBytes(counts, std::max<std::size_t>(shadowedOf(ssvp), 1),
-                                          dealtOf(ssvp)) +
-           drawn +
+                                          ssvp.interleave) +
            InterleavedView::estimateBytes(interleavedOptions(ssvp), view, shape.uploads,
-                                          list);
+                                          ClusteredGather::orderOf(counts, ssvp.interleave));
 }
 
 }  // namespace lightwell
