@@ -118,7 +118,7 @@ def label(kind):
 
 
 def chart_of(options):
-    """(milliseconds, errors) by scene and point."""
+    """(milliseconds of processor time, errors) by scene and point."""
     results = json.loads((options.work / "resampling_chart/results.json").read_text(encoding="utf-8"))
     found = {}
     for result in results["points"]:
@@ -127,7 +127,7 @@ def chart_of(options):
             defaults = {"clusters": 8, "vpls": 256, "cluster_groups": 4, "gather": "interleaved", "candidates": 16, "survivors": 4}
             wanted_values = {**defaults, **{k: type(defaults[k])(v) for k, v in (setting.split("=") for setting in settings_of(*point))}}
             if all(of[key] == value for key, value in wanted_values.items()):
-                found[result["scene"], point] = (result["device_ms"]["median"], result["errors"]["own"])
+                found[result["scene"], point] = (result["processor_ms"]["median"], result["errors"]["own"])
     return found
 
 
@@ -143,8 +143,8 @@ def write_page(options):
 
 def chart_table(chart):
     noise = ", ".join(f"{chart[scene, charted()[0]][1]['noise']:.1g}" for scene in CHART_SCENES)
-    lines = [f"`lightwell chart`, {CHART_SIZE}, first cameras, a pixel of each 6 x 6 against two bounces by path tracing (noise of the truths, relMSE: {noise}); milliseconds of a "
-             "frame at rest, device time. *Resampled*: candidates / survivors. Bold: less relMSE than all interleaved rows of the scene that take no longer.", "",
+    lines = [f"`lightwell chart`, {CHART_SIZE}, first cameras, a pixel of each 6 x 6 against two bounces by path tracing (noise of the truths, relMSE: {noise}); milliseconds of "
+             "processor time of a frame at rest, of all threads together, which other load lengthens little: on two cores twice the frame's. *Resampled*: candidates / survivors. Bold: less relMSE than all interleaved rows of the scene that take no longer.", "",
              "| clusters, VPLs, gather | " + " | ".join(f"{scene}: ms | relMSE | nRMSE" for scene in CHART_SCENES) + " |",
              "| --- | " + " | ".join(["---: | ---: | ---:"] * len(CHART_SCENES)) + " |"]
     wins = 0
@@ -194,7 +194,7 @@ def plot(chart):
             axis.loglog([ms for ms, _ in found], [error["relMSE"] for _, error in found], mark, color="tab:blue" if "/" not in kind else "tab:red",
                         label=label(kind))
         axis.set_title(scene)
-        axis.set_xlabel("ms")
+        axis.set_xlabel("processor ms")
     axes[0].set_ylabel("relMSE")
     axes[0].legend(fontsize=6)
     figure.tight_layout()
