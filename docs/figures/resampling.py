@@ -191,7 +191,7 @@ def plot(chart):
     for axis, scene in zip(axes, CHART_SCENES):
         for kind, mark in marks.items():
             found = [chart[scene, p] for p in charted() if p[2] == kind]
-            axis.loglog([ms for ms, _ in found], [error["relMSE"] for _, error in found], mark, color="tab:blue" if "/" not in kind else "tab:red",
+            axis.semilogy([ms for ms, _ in found], [error["relMSE"] for _, error in found], mark, color="tab:blue" if "/" not in kind else "tab:red",
                         label=label(kind))
         axis.set_title(scene)
         axis.set_xlabel("processor ms")
