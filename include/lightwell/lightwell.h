@@ -502,13 +502,6 @@ typedef enum LWOccluders {
                                      frame anew; what neither shows blocks nothing */
 } LWOccluders;
 
-/** Which of the VPLs a pixel of technique "ssvp" gathers. */
-typedef enum LWVplGather {
-    LW_VPL_GATHER_INTERLEAVED = 0, /**< the share that is its own in an n x n window of pixels, or all */
-    LW_VPL_GATHER_RESAMPLED = 1    /**< a few, drawn in proportion to the light that they would bring it with nothing in between, and shared
-                                        with its neighbours */
-} LWVplGather;
-
 /** Technique "ssvp": VPLs in clusters, each cluster's visibility in a paraboloid map of what stands around it
  *  (LWOccluders), a second bounce drawn from the maps. */
 typedef struct LWSsvpDesc {
@@ -542,10 +535,7 @@ typedef struct LWSsvpDesc {
                                   that VPLs of some size lack; 0: none. Above 0 the G-buffer needs `directRadiance`, of the
                                   lights that have RSMs, and `camera` */
     uint32_t voxels;         /**< as LWRsmDesc's */
-    LWVplGather gather;      /**< which VPLs a pixel gathers */
-    uint32_t candidates;     /**< of gather RESAMPLED: VPLs that a pixel draws to choose from; 1 .. 64 */
-    uint32_t survivors;      /**< of gather RESAMPLED: VPLs that it keeps of them, each with its own visibility; 1 .. 8 */
-    float autoResolution;    /**< as LWRsmDesc's; neither with `compensation` nor with gather RESAMPLED */
+    float autoResolution;    /**< as LWRsmDesc's; not with `compensation` */
 } LWSsvpDesc;
 
 LW_API void lwDefaultSsvp(LWSsvpDesc* desc);

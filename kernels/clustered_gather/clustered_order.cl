@@ -5,7 +5,6 @@
 // list is cut into `groups` runs of equal length, and each subset of pixels takes its VPLs from one run. A window
 // of n x n pixels still holds every VPL once; its mean, which is what the filter makes of it, is the same.
 #include "shared/cluster_types.h"
-#include "shared/spread_number.h"
 #include "shared/subset_order.h"
 #include "shared/vpl_list.h"
 #include "shared/wide.h"
@@ -27,6 +26,17 @@ __kernel void clustered_gather_sort(__global const int* assignment, int count, i
     for (int k = 0; k < count; ++k)
         if (all ? assignment[k] >= 0 : assignment[k] == cluster) sorted[place++] = k;
     if (all || cluster == clusterCount - 1) sorted[count] = place;
+}
+
+// A number for each of the n x n subsets whose low bits differ most between neighbouring pixels: of every two side
+// by side the lowest, of every 2 x 2 the two lowest, and so on. So the groups, which take the low bits, lie as close
+// together as they can, and what an edge leaves of a window holds many of them.
+LW_FN int spread_number(int subset, int n) {
+    const int row = subset / n, column = subset % n;
+    int number = 0;
+    for (int bit = 0; (1 << bit) < n; ++bit)
+        number |= (((row ^ column) >> bit & 1) << (2 * bit)) | ((row >> bit & 1) << (2 * bit + 1));
+    return number;
 }
 
 // A list fills slots.y of a subset's slots from slots.x on.

@@ -158,7 +158,7 @@ void InterleavedView::report(Device& device, Report& report, lw_subset_order ord
     irradiance_.report(report);
     validity_.report(report);
     if (!lastGathered_) return;
-    if (options_.culls) report.choose("tiles", VplTiles::skips(order) ? kSkips : kSkipsNone);
+    report.choose("tiles", VplTiles::skips(order) ? kSkips : kSkipsNone);
     report.read(device, "rejected_pixels", counts_, 0);
     report.read(device, "upsample_fallbacks", counts_, sizeof(cl_int));
     report.read(device, "saturated_pixels", counts_, 2 * sizeof(cl_int));
@@ -211,7 +211,7 @@ std::uint64_t InterleavedView::estimateBytes(const InterleavedOptions& options, 
            OutputTarget::estimateBytes(view, 3, uploads) +
            OutputTarget::estimateBytes(view, 1, uploads) + kCountBytes +
            images * 3 * paddedWidth(width) * height * sizeof(float) +
-           (options.culls ? VplTiles::estimateBytes(width, height, order, options.interleave) : 0);
+           VplTiles::estimateBytes(width, height, order, options.interleave);
 }
 
 }  // namespace lightwell

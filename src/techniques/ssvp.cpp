@@ -65,8 +65,6 @@ public:
         for (std::size_t i = 0; i < stagesOf(desc); ++i) stages_.emplace_back(device, desc, i);
         if (repairs() && desc.compensation > 0)
             fail(LW_ERROR_INVALID_ARGUMENT, "desc.autoResolution: expected 0 with desc.compensation above 0, got ", desc.autoResolution);
-        if (repairs() && desc.gather == LW_VPL_GATHER_RESAMPLED)
-            fail(LW_ERROR_INVALID_ARGUMENT, "desc.autoResolution: expected 0 with desc.gather RESAMPLED, got ", desc.autoResolution);
         if (interleavedOptions(desc).half) bilateral_.emplace(device, 3, repairs());
         if (repairs()) {
             repair_.emplace(device);
@@ -111,9 +109,9 @@ public:
         }
         if (shadows_) recordShadows(executor, frame, restart);
         gather_.recordOrder(executor, lists);
+        if (gatherAll_) gatherAll_->recordOrder(executor, lists);
         if (resampling_)
             resampling_->recordBlocks(executor, gather_.vpls(), std::uint32_t(gather_.order().capacity), desc_.seed, turns_);
-        if (gatherAll_) gatherAll_->recordOrder(executor, lists);
         lists_ = std::move(lists);
 
         choices_ = inputChoices(maps_, desc_, frame);

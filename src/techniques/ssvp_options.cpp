@@ -36,15 +36,9 @@ SecondBounceOptions nextOptions(const LWSsvpDesc& desc, std::size_t stage) {
 }
 
 InterleavedOptions interleavedOptions(const LWSsvpDesc& desc) {
-    InterleavedOptions options;
-    options.interleave = desc.interleave;
-    options.filter = desc.filter != 0;
-    options.half = desc.autoResolution > 0.0f || desc.resolution == LW_RESOLUTION_HALF;
-    options.history = {desc.history, desc.historyClamp, 0};
-    options.compensated = desc.compensation > 0;
-    options.culls = !resamples(desc);
-    options.repairs = desc.autoResolution;
-    return options;
+    const bool repairs = desc.autoResolution > 0.0f;
+    return {desc.interleave, desc.filter != 0, repairs || desc.resolution == LW_RESOLUTION_HALF, {desc.history, desc.historyClamp, 0},
+            desc.compensation > 0, !resamples(desc), desc.autoResolution};
 }
 
 CompensationOptions compensationOptions(const LWSsvpDesc& desc) {
@@ -134,10 +128,8 @@ std::uint64_t estimateSsvpBytes(const void* desc, const LWViewDesc& view, const 
     return total + RsmInput::estimateBytes(shape) +
            VplSampling::estimateBytes(samplingOptions(ssvp), shape) +
            OccluderMaps::estimateBytes(occluderOptions(ssvp), clusterCounts, shape) +
-           ClusteredGather::estimateBytes(counts, shadowedLists, dealtOf(ssvp)) +
-           drawn +
-           InterleavedView::estimateBytes(image, view, shape.uploads, list,
-                                          repairs ? ClusteredGather::orderOf(counts, 1) : lw_subset_order{});
+           ClusteredGather::estimateBytes(counts, shadowedLists, dealtOf(ssvp)) + drawn +
+           InterleavedView::estimateBytes(image, view, shape.uploads, list, repairs ? ClusteredGather::orderOf(counts, 1) : lw_subset_order{});
 }
 
 }  // namespace lightwell

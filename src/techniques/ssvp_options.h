@@ -10,7 +10,6 @@
 #include "passes/kmeans.h"
 #include "passes/second_bounce.h"
 #include "passes/ssvp_plan.h"
-#include "passes/vpl_resampling.h"
 #include "passes/vpl_sampling.h"
 #include "techniques/interleaved_view.h"
 #include "techniques/occluder_maps.h"
@@ -25,9 +24,6 @@ InterleavedOptions interleavedOptions(const LWSsvpDesc& desc);
 CompensationOptions compensationOptions(const LWSsvpDesc& desc);  // of one that compensates
 OccluderOptions occluderOptions(const LWSsvpDesc& desc);
 SsvpPlanOptions planOptions(const LWSsvpDesc& desc);  // of one with an error target
-VplResamplingOptions resamplingOptions(const LWSsvpDesc& desc);  // of one that resamples
-bool resamples(const LWSsvpDesc& desc);
-std::uint32_t dealtOf(const LWSsvpDesc& desc);  // n of the n x n subsets that the list of VPLs is dealt out to
 std::uint32_t groupsOf(const LWSsvpDesc& desc);
 // Bounces whose VPLs are shadowed, and those whose VPLs have clusters.
 std::size_t shadowedOf(const LWSsvpDesc& desc);
