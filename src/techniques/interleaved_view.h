@@ -25,7 +25,6 @@ struct InterleavedOptions {
     bool half = false;   // gathers every second pixel and row
     TemporalHistoryOptions history;  // of what comes of these; none with 0 frames
     bool compensated = false;  // by BoundingCompensation; needs the G-buffer's direct radiance and camera
-    bool culls = true;  // `gather` asks which VPLs the tiles can skip
     float repairs = 0.0f;  // above 0, with `half`: the share by which light may differ around pixels that are not gathered by themselves
 
     bool keeps() const { return history.frames > 0; }

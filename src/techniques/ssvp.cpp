@@ -13,7 +13,6 @@
 #include "passes/kmeans.h"
 #include "passes/second_bounce.h"
 #include "passes/ssvp_plan.h"
-#include "passes/vpl_resampling.h"
 #include "passes/vpl_sampling.h"
 #include "techniques/clustered_points.h"
 #include "techniques/interleaved_view.h"
@@ -48,8 +47,6 @@ std::vector<LWChoice> inputChoices(const OccluderMaps& maps, const LWSsvpDesc& d
         choices.push_back({"frame.lights", "some have no RSM: technique ssvp makes no indirect light of those"});
     if (groupsOf(desc) < desc.clusterGroups)
         choices.push_back({"ssvp.clusterGroups", "as many as the interleave's window has pixels, which are fewer"});
-    if (resamples(desc) && desc.survivors > desc.candidates)
-        choices.push_back({"ssvp.survivors", "as many as candidates, which are fewer"});
     return choices;
 }
 
@@ -61,7 +58,7 @@ public:
           sampling_(device, samplingOptions(desc)),
           maps_(device, occluderOptions(desc), stagesOf(desc)),
           passes_(device, desc.interleave),
-          gather_(device, dealtOf(desc), resamples(desc) ? 1 : groupsOf(desc), visibilityOf(desc.visibility)) {
+          gather_(device, desc.interleave, groupsOf(desc), visibilityOf(desc.visibility)) {
         for (std::size_t i = 0; i < stagesOf(desc); ++i) stages_.emplace_back(device, desc, i);
         if (repairs() && desc.compensation > 0)
             fail(LW_ERROR_INVALID_ARGUMENT, "desc.autoResolution: expected 0 with desc.compensation above 0, got ", desc.autoResolution);
@@ -74,7 +71,6 @@ public:
         if (desc.history) history_.emplace(device, interleavedOptions(desc).history);
         if (desc.autoError > 0.0f) plan_.emplace(device, planOptions(desc));
         if (desc.visibility == LW_VISIBILITY_VOXEL) shadows_.emplace(device, desc.voxels);
-        if (resamples(desc)) resampling_.emplace(device, resamplingOptions(desc));
         if (desc.compensation > 0) compensation_.emplace(device, compensationOptions(desc));
     }
 
@@ -87,8 +83,7 @@ public:
         if (lost) maps_.forget();
         maps_.import(executor, frame, rsms_);
         if (plan_) plan_->begin(executor, restart);
-        turns_ = restart || !history_ ? 0 : turns_ + 1;
-        if (history_) sampling_.turn(turns_);
+        if (history_) sampling_.turn(restart ? turns_ = 0 : ++turns_);
         recordVpls(executor, frame);
         if (compensation_)
             compensation_->recordScale(executor, sampling_.vpls(), sampling_.order(), sampling_.vplCount() - frame.vplCount);
@@ -110,13 +105,10 @@ public:
         if (shadows_) recordShadows(executor, frame, restart);
         gather_.recordOrder(executor, lists);
         if (gatherAll_) gatherAll_->recordOrder(executor, lists);
-        if (resampling_)
-            resampling_->recordBlocks(executor, gather_.vpls(), std::uint32_t(gather_.order().capacity), desc_.seed, turns_);
         lists_ = std::move(lists);
 
         choices_ = inputChoices(maps_, desc_, frame);
         states_.purge();
-        draws_.purge();
         states_.each([&](InterleavedView& state) { state.startFrame(restart); });
         if (points_) points_->startFrame();
     }
@@ -126,20 +118,14 @@ public:
         checkLightOutputs(device_, *view, output, "ssvp");
         InterleavedView& state = states_.get(
             view, [&] { return std::make_unique<InterleavedView>(device_, interleavedOptions(desc_), *view); });
-        VplDraws* draws = resampling_ ? &drawsOf(view) : nullptr;
         const std::optional<VoxelSights> sights = sightsRead();
         const ClusterMaps maps = mapsRead(sights);
         state.render(executor, *view, gbuffer, output, {passes_, bilateral_ ? &*bilateral_ : nullptr, history(), repair_ ? &*repair_ : nullptr},
                      [&](const Planes& position, const Planes& normal, const Planes& irradiance) {
-                         if (draws) {
-                             resampling_->recordDraw(executor, position, normal, gather_.vpls(), *draws);
-                             resampling_->recordGather(executor, position, normal, gather_.vpls(), *draws, maps, irradiance, state.counts());
-                         } else {
-                             const Buffer& masks = state.cull(executor, passes_, position, normal, gather_.vpls(), gather_.order());
-                             const lw_vpl_tiles tiles =
-                                 VplTiles::layout(position.width, position.height, gather_.order(), desc_.interleave);
-                             gather_.recordGather(executor, position, normal, masks, tiles, maps, irradiance, state.counts());
-                         }
+                         const Buffer& masks = state.cull(executor, passes_, position, normal, gather_.vpls(), gather_.order());
+                         const lw_vpl_tiles tiles =
+                             VplTiles::layout(position.width, position.height, gather_.order(), desc_.interleave);
+                         gather_.recordGather(executor, position, normal, masks, tiles, maps, irradiance, state.counts());
                          if (compensation_)
                              state.compensate(executor, *compensation_, gbuffer.camera, position, normal, irradiance);
                      },
@@ -184,13 +170,6 @@ private:
                                plan_->recordVpls(executor, rsms_, texelSums, rowTotals);
                            }};
         sampling_.record(executor, rsms_, frame.vpls, frame.vplCount, &plan);
-    }
-    VplDraws& drawsOf(const std::shared_ptr<View>& view) {
-        const InterleavedOptions image = interleavedOptions(desc_);
-        VplDraws& draws = draws_.get(view, [] { return std::make_unique<VplDraws>(); });
-        draws.reserve(device_, resamplingOptions(desc_), std::uint32_t(gather_.order().capacity), image.gathered(view->maxWidth),
-                      image.gathered(view->maxHeight));
-        return draws;
     }
     // The VPLs that the maps of a stage show lit.
     VplList recordNext(Executor& executor, std::size_t index) {
@@ -250,9 +229,7 @@ private:
     std::optional<TemporalHistory> history_;
     std::optional<VoxelShadows> shadows_;  // with visibility through voxels only
     std::optional<BoundingCompensation> compensation_;
-    std::optional<VplResampling> resampling_;  // with that gather only
     PerView<InterleavedView> states_;
-    PerView<VplDraws> draws_;
     std::optional<ClusteredPoints> points_;  // from the first lwRenderPoints on
     std::vector<LWChoice> choices_;  // of the last update
 };
@@ -324,8 +301,7 @@ std::uint64_t SsvpTechnique::bytes() const {
                           (points_ ? points_->bytes() : 0);
     for (const Stage& stage : stages_) total += stage.clusters.bytes() + stage.next.bytes();
     states_.each([&](const InterleavedView& state) { total += state.bytes(); });
-    draws_.each([&](const VplDraws& draws) { total += draws.bytes(); });
-    return total + (resampling_ ? resampling_->bytes() : 0);
+    return total;
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "inputs/rsm_input.h"
-#include "techniques/clustered_points.h"
 
 namespace lightwell {
 
@@ -36,9 +35,14 @@ SecondBounceOptions nextOptions(const LWSsvpDesc& desc, std::size_t stage) {
 }
 
 InterleavedOptions interleavedOptions(const LWSsvpDesc& desc) {
-    const bool repairs = desc.autoResolution > 0.0f;
-    return {desc.interleave, desc.filter != 0, repairs || desc.resolution == LW_RESOLUTION_HALF, {desc.history, desc.historyClamp, 0},
-            desc.compensation > 0, !resamples(desc), desc.autoResolution};
+    InterleavedOptions options;
+    options.interleave = desc.interleave;
+    options.filter = desc.filter != 0;
+    options.half = desc.autoResolution > 0.0f || desc.resolution == LW_RESOLUTION_HALF;
+    options.history = {desc.history, desc.historyClamp, 0};
+    options.compensated = desc.compensation > 0;
+    options.repairs = desc.autoResolution;
+    return options;
 }
 
 CompensationOptions compensationOptions(const LWSsvpDesc& desc) {
@@ -56,16 +60,6 @@ OccluderOptions occluderOptions(const LWSsvpDesc& desc) {
     const bool looks = desc.visibility == LW_VISIBILITY_HARD || desc.visibility == LW_VISIBILITY_SOFT;
     options.drawn = looks ? stagesOf(desc) : desc.bounces - 1;
     return options;
-}
-
-bool resamples(const LWSsvpDesc& desc) { return desc.gather == LW_VPL_GATHER_RESAMPLED; }
-
-// What pixels draw from is one list.
-std::uint32_t dealtOf(const LWSsvpDesc& desc) { return resamples(desc) ? 1 : desc.interleave; }
-
-VplResamplingOptions resamplingOptions(const LWSsvpDesc& desc) {
-    return {desc.interleave, groupsOf(desc), desc.candidates, std::min(desc.survivors, desc.candidates),
-            visibilityOf(desc.visibility)};
 }
 
 // As many groups as the interleave's window has pixels, at most.
@@ -115,21 +109,16 @@ std::uint64_t estimateSsvpBytes(const void* desc, const LWViewDesc& view, const 
         total += SsvpPlan::estimateBytes(planOptions(ssvp), shape.texels ? shape.rows : 0);
     if (ssvp.visibility == LW_VISIBILITY_VOXEL) total += VoxelShadows::estimateBytes(ssvp.voxels, shadowing, OccluderMaps::voxelSurfels(occluderOptions(ssvp), shape), shape);
     if (ssvp.compensation > 0) total += BoundingCompensation::estimateBytes(compensationOptions(ssvp));
-    const lw_subset_order list = ClusteredGather::orderOf(counts, dealtOf(ssvp));
-    const InterleavedOptions image = interleavedOptions(ssvp);
-    const std::uint64_t drawn = !resamples(ssvp) ? 0
-                                                 : VplResampling::estimateBytes() +
-                                                       VplDraws::estimateBytes(resamplingOptions(ssvp), std::uint32_t(list.capacity),
-                                                                               image.gathered(view.maxWidth),
-                                                                               image.gathered(view.maxHeight));
     const bool repairs = ssvp.autoResolution > 0.0f;
     const std::size_t shadowedLists = std::max<std::size_t>(shadowedOf(ssvp), 1);
     if (repairs) total += ClusteredGather::estimateBytes(counts, shadowedLists, 1);
     return total + RsmInput::estimateBytes(shape) +
            VplSampling::estimateBytes(samplingOptions(ssvp), shape) +
            OccluderMaps::estimateBytes(occluderOptions(ssvp), clusterCounts, shape) +
-           ClusteredGather::estimateBytes(counts, shadowedLists, dealtOf(ssvp)) + drawn +
-           InterleavedView::estimateBytes(image, view, shape.uploads, list, repairs ? ClusteredGather::orderOf(counts, 1) : lw_subset_order{});
+           ClusteredGather::estimateBytes(counts, shadowedLists, ssvp.interleave) +
+           InterleavedView::estimateBytes(interleavedOptions(ssvp), view, shape.uploads,
+                                          ClusteredGather::orderOf(counts, ssvp.interleave),
+                                          repairs ? ClusteredGather::orderOf(counts, 1) : lw_subset_order{});
 }
 
 }  // namespace lightwell

@@ -3,7 +3,6 @@
 
 #include <cstddef>
 
-#include "shared/vpl_resampling_types.h"
 #include "techniques/history_parameters.h"
 #include "techniques/parameter_table.h"
 
@@ -14,7 +13,6 @@ constexpr const char* kSamplingNames[] = {"flux", "uniform", nullptr};
 constexpr const char* kResolutionNames[] = {"full", "half", nullptr};
 constexpr const char* kVisibilityNames[] = {"none", "hard", "soft", "voxel", nullptr};
 constexpr const char* kOccludersNames[] = {"auto", "triangles", "surfels", "screen", nullptr};
-constexpr const char* kGatherNames[] = {"interleaved", "resampled", nullptr};
 constexpr const char* kDirectionsNames[] = {"cosine", "disc", "square", nullptr};
 constexpr double kInterleaveValues[] = {1, 2, 4, 8};
 constexpr double kGroupValues[] = {1, 2, 4, 8, 16, 32, 64};
@@ -84,12 +82,6 @@ std::vector<LWParameter> makeTable() {
         allowing(uint("voxels", "a side of the grid that visibility=voxel looks through: finer occluders; memory and drawing time with its cube",
                       offsetof(LWSsvpDesc, voxels), 32, 256, 64),
                  kVoxelsValues),
-        oneOf("gather", "VPLs that a pixel gathers: its share in the interleave's window, or a few drawn by the light that they would bring: look-ups stay few with many clusters, grain",
-              offsetof(LWSsvpDesc, gather), kGatherNames, 1, LW_VPL_GATHER_INTERLEAVED),
-        uint("candidates", "of gather=resampled: VPLs that a pixel draws to choose from: less grain, time", offsetof(LWSsvpDesc, candidates), 1,
-             LW_MOST_CANDIDATES, 16),
-        uint("survivors", "of gather=resampled: VPLs that a pixel keeps, whose visibility it looks up: less grain, time", offsetof(LWSsvpDesc, survivors), 1,
-             LW_MOST_SURVIVORS, 4),
         parameter("auto_resolution", "gathered at half resolution, but for pixels around which light found there differs by more than this share, or that it "
                                      "lacks: time falls as it is raised; 0: as `resolution` says",
                   LW_PARAMETER_FLOAT, offsetof(LWSsvpDesc, autoResolution), 0, 10, 0)};
@@ -131,7 +123,4 @@ extern "C" void lwDefaultSsvp(LWSsvpDesc* desc) {
     desc->resolution = LW_RESOLUTION_FULL;
     desc->historyClamp = lightwell::TemporalHistoryOptions{}.clamp;
     desc->voxels = 64;
-    desc->gather = LW_VPL_GATHER_INTERLEAVED;
-    desc->candidates = 16;
-    desc->survivors = 4;
 }
