@@ -693,8 +693,10 @@ typedef enum LWConeResolution {
     LW_CONE_RESOLUTION_FULL = 0,
     LW_CONE_RESOLUTION_HALF = 1,       /**< on every second pixel and row, then up-sampled */
     LW_CONE_RESOLUTION_QUARTER = 2,    /**< on every fourth pixel and row, then up-sampled */
-    LW_CONE_RESOLUTION_INTERLEAVED = 3 /**< on all, a share of the cones each, then a filter over the pixels that have all:
-                                            3 x 3 for 9 cones */
+    LW_CONE_RESOLUTION_INTERLEAVED = 3, /**< on all, a share of the cones each, then a filter over the pixels that have all:
+                                             3 x 3 for 9 cones */
+    LW_CONE_RESOLUTION_HALF_INTERLEAVED = 4 /**< on every second pixel and row, a share of the cones each, filtered, then
+                                                 up-sampled */
 } LWConeResolution;
 
 /** What ambient occlusion from voxels dims of the light of technique "cone_tracing". */

@@ -14,7 +14,7 @@ constexpr const char* kModes[] = {"isotropic", "anisotropic", "sh2", nullptr};
 constexpr double kModeSweep[] = {LW_VOXEL_MODE_ISOTROPIC, LW_VOXEL_MODE_ANISOTROPIC, LW_VOXEL_MODE_SH2};
 constexpr double kConeValues[] = {6, 9, 16, 64, 256};
 constexpr double kConeSweep[] = {9, 16, 64};
-constexpr const char* kResolutions[] = {"full", "half", "quarter", "interleaved", nullptr};
+constexpr const char* kResolutions[] = {"full", "half", "quarter", "interleaved", "half_interleaved", nullptr};
 constexpr double kResolutionSweep[] = {LW_CONE_RESOLUTION_HALF, LW_CONE_RESOLUTION_INTERLEAVED};
 constexpr const char* kSources[] = {"auto", "triangles", "surfels", "screen", nullptr};
 constexpr double kBounceValues[] = {0, 1};
@@ -82,8 +82,8 @@ std::vector<LWParameter> ofCones() {
               kConeSweep),
         swept(choosing(parameter("resolution",
                                  "pixels that cones start at: all, one of 4, one of 16, up-sampled after; interleaved: all, with one cone "
-                                 "each of those around it, filtered after",
-                                 LW_PARAMETER_ENUM, offsetof(LWConeTracingDesc, resolution), 0, 3, LW_CONE_RESOLUTION_INTERLEAVED),
+                                 "each of those around it, filtered after; half_interleaved: both",
+                                 LW_PARAMETER_ENUM, offsetof(LWConeTracingDesc, resolution), 0, 4, LW_CONE_RESOLUTION_INTERLEAVED),
                        kResolutions),
               kResolutionSweep),
         parameter("nudge",

@@ -42,7 +42,8 @@ void render(LWDevice device, LWTechnique technique, const TestView& view, const 
 
 TEST_CASE("cones: all outputs at once are each as alone, and as wide as they are known to be", "[cone_tracing][long]") {
     TestDevice device(16);
-    const auto resolution = GENERATE(LW_CONE_RESOLUTION_FULL, LW_CONE_RESOLUTION_QUARTER, LW_CONE_RESOLUTION_INTERLEAVED);
+    const auto resolution = GENERATE(LW_CONE_RESOLUTION_FULL, LW_CONE_RESOLUTION_QUARTER, LW_CONE_RESOLUTION_INTERLEAVED,
+                                     LW_CONE_RESOLUTION_HALF_INTERLEAVED);
     const ConeBox box(2.0, false, 1.0, 0.5, 64);
     const DrawnView drawn(box.walls, kInside, kWidth, kHeight);
     LWConeTracingDesc desc = coneDesc(32, LW_VOXEL_MODE_ANISOTROPIC, resolution);
