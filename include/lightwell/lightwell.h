@@ -699,6 +699,12 @@ typedef enum LWConeResolution {
                                                  up-sampled */
 } LWConeResolution;
 
+/** Between how many voxels the samples of technique "cone_tracing" are interpolated. */
+typedef enum LWConeInterpolation {
+    LW_CONE_INTERPOLATION_TRILINEAR = 0,  /**< eight */
+    LW_CONE_INTERPOLATION_TETRAHEDRAL = 1 /**< the four of the tetrahedron that a sample lies in: less time, a little more error */
+} LWConeInterpolation;
+
 /** What ambient occlusion from voxels dims of the light of technique "cone_tracing". */
 typedef enum LWConeOcclusion {
     LW_CONE_OCCLUSION_OFF = 0, /**< nothing: the light has come past the voxels already */
@@ -735,6 +741,7 @@ typedef struct LWConeTracingDesc {
     uint32_t shadowLight;    /**< index in LWFrame::lights of the one whose `shadow` is asked for */
     float shadowAngle;       /**< full angle of its cone, in radians; above 0 .. 1.5: the angle that the light's source fills */
     float refractiveIndex;   /**< of what `refractedRadiance` is seen through, to that around it; 1 .. 4 */
+    LWConeInterpolation interpolation;
 } LWConeTracingDesc;
 
 LW_API void lwDefaultConeTracing(LWConeTracingDesc* desc);

@@ -51,6 +51,7 @@ ConeGatherOptions coneOptions(const LWConeTracingDesc& desc) {
     options.apertureOffset = desc.apertureOffset != 0;
     options.near = desc.occlusion == LW_CONE_OCCLUSION_NEAR;
     options.occlusionDistance = double(desc.occlusionDistance);
+    options.tetrahedral = desc.interpolation == LW_CONE_INTERPOLATION_TETRAHEDRAL;
     return options;
 }
 
