@@ -83,7 +83,9 @@ TEST_CASE("cones compile nothing after lwPrewarm, and take no more memory than w
     // Each set of options is a program of its own, which takes seconds to compile: two that have all kernels between them.
     const bool isFirst = GENERATE(true, false);
     LWConeTracingDesc desc = coneDesc(32, isFirst ? LW_VOXEL_MODE_ANISOTROPIC : LW_VOXEL_MODE_SH2,
-                                      isFirst ? LW_CONE_RESOLUTION_INTERLEAVED : LW_CONE_RESOLUTION_HALF);
+                                      isFirst ? LW_CONE_RESOLUTION_INTERLEAVED
+                                              : GENERATE(LW_CONE_RESOLUTION_HALF, LW_CONE_RESOLUTION_HALF_INTERLEAVED));
+    desc.interpolation = isFirst ? LW_CONE_INTERPOLATION_TRILINEAR : LW_CONE_INTERPOLATION_TETRAHEDRAL;
     desc.bounces = desc.mode == LW_VOXEL_MODE_SH2 ? 1 : 0;
     desc.cascades = desc.mode == LW_VOXEL_MODE_SH2 ? 2 : 1;
     desc.occlusion = desc.bounces ? LW_CONE_OCCLUSION_ALL : LW_CONE_OCCLUSION_NEAR;
@@ -242,7 +244,8 @@ TEST_CASE("cones: what a frame does not bring is refused, and what is not used i
     for (const auto& spoil : std::vector<std::function<void(LWConeTracingDesc&)>>{
              [](LWConeTracingDesc& d) { d.size = 48; }, [](LWConeTracingDesc& d) { d.cones = 8; }, [](LWConeTracingDesc& d) { d.cascades = 5; },
              [](LWConeTracingDesc& d) { d.nudge = NAN; }, [](LWConeTracingDesc& d) { d.step = 0.01f; },
-             [](LWConeTracingDesc& d) { d.refractiveIndex = 0.5f; }, [](LWConeTracingDesc& d) { d.bounces = 2; }}) {
+             [](LWConeTracingDesc& d) { d.refractiveIndex = 0.5f; }, [](LWConeTracingDesc& d) { d.bounces = 2; },
+             [](LWConeTracingDesc& d) { d.interpolation = LWConeInterpolation(2); }, [](LWConeTracingDesc& d) { d.resolution = LWConeResolution(5); }}) {
         LWConeTracingDesc bad = coneDesc(32);
         spoil(bad);
         CAPTURE(bad.size, bad.cones, bad.cascades, bad.nudge, bad.step, bad.refractiveIndex, bad.bounces);
