@@ -699,9 +699,17 @@ typedef enum LWConeResolution {
     LW_CONE_RESOLUTION_FULL = 0,
     LW_CONE_RESOLUTION_HALF = 1,       /**< on every second pixel and row, then up-sampled */
     LW_CONE_RESOLUTION_QUARTER = 2,    /**< on every fourth pixel and row, then up-sampled */
-    LW_CONE_RESOLUTION_INTERLEAVED = 3 /**< on all, a share of the cones each, then a filter over the pixels that have all:
-                                            3 x 3 for 9 cones */
+    LW_CONE_RESOLUTION_INTERLEAVED = 3, /**< on all, a share of the cones each, then a filter over the pixels that have all:
+                                             3 x 3 for 9 cones */
+    LW_CONE_RESOLUTION_HALF_INTERLEAVED = 4 /**< on every second pixel and row, a share of the cones each, filtered, then
+                                                 up-sampled */
 } LWConeResolution;
+
+/** Between how many voxels the samples of technique "cone_tracing" are interpolated. */
+typedef enum LWConeInterpolation {
+    LW_CONE_INTERPOLATION_TRILINEAR = 0,  /**< eight */
+    LW_CONE_INTERPOLATION_TETRAHEDRAL = 1 /**< the four of the tetrahedron that a sample lies in: less time, a little more error */
+} LWConeInterpolation;
 
 /** What ambient occlusion from voxels dims of the light of technique "cone_tracing". */
 typedef enum LWConeOcclusion {
@@ -739,6 +747,7 @@ typedef struct LWConeTracingDesc {
     uint32_t shadowLight;    /**< index in LWFrame::lights of the one whose `shadow` is asked for */
     float shadowAngle;       /**< full angle of its cone, in radians; above 0 .. 1.5: the angle that the light's source fills */
     float refractiveIndex;   /**< of what `refractedRadiance` is seen through, to that around it; 1 .. 4 */
+    LWConeInterpolation interpolation;
 } LWConeTracingDesc;
 
 LW_API void lwDefaultConeTracing(LWConeTracingDesc* desc);
