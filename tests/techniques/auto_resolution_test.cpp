@@ -124,10 +124,14 @@ TEST_CASE("auto_resolution: pixels have half resolution's light or all VPLs', an
     checkTowardsExact(device, rsmDesc(0.3f));
 }
 
-TEST_CASE("auto_resolution with visibility of maps and voxels, and of lost pixels alone", "[auto_resolution]") {
+TEST_CASE("auto_resolution with visibility of maps, and of lost pixels alone", "[auto_resolution]") {
     TestDevice device(16);
     checkTowardsExact(device, rsmDesc(3.0f));
     checkTowardsExact(device, ssvpDesc(0.3f));
+}
+
+TEST_CASE("auto_resolution with visibility of voxels", "[auto_resolution][long]") {
+    TestDevice device(16);
     LWRsmDesc voxels = rsmDesc(0.3f);
     voxels.visibility = LW_RSM_VISIBILITY_VOXEL;
     voxels.voxels = 32;
