@@ -23,7 +23,7 @@ SCENES = ["cornell", "basic", "rooms", "sibenik", "sponza_dabrovic", "sponza_cry
 # only what differs from the defaults, in the order of the parameters.
 PAIRS = [("rsm", "", "auto_resolution=0.5"),
          ("rsm", "", "resolution=half"),
-         ("ssvp", "", "auto_resolution=0.5"),
+         ("ssvp", "", "auto_resolution=2"),
          ("ssvp", "", "auto_error=0.1"),
          ("screen_space", "", "auto_error=0.2"),
          ("lpv", "", "rests=on"),
@@ -58,7 +58,7 @@ def measured(results):
     header = results.header
     time = "processor" if "processor" in results.times else "median"
     lines = [f"Measured {header['written'][:10]} at {header['size'][0]}x{header['size'][1]} on {results.device_text()}, "
-             f"{header['versions']['threads']} threads; medians of {header['frames']} frames at rest, {len(results.views)} views. ms is "
+             f"{header['versions']['threads']} threads; medians of {results.points[0]['frames']} frames at rest, {len(results.views)} views. ms is "
              + ("processor time of all threads divided by their number" if time == "processor" else "the host's clock")
              + f"; load average {low:.1f} to {high:.1f}.", ""]
     rows = [(pair, pair_rows(results, pair, time)) for pair in PAIRS]

@@ -1,6 +1,7 @@
 // Half resolution and back: a G-buffer of every second column and row, and joint bilateral up-sampling
 // (Kopf et al. 2007) of what was computed on it: 3x3 half-resolution samples around a pixel, a tent in
 // the distance of pixels, nothing across a depth or normal edge.
+// Over 300 lines: up-sampling that marks pixels is the same loops, compiled in.
 #ifndef LW_CHANNELS
 #define LW_CHANNELS 3  // of the light: 1 a scalar, 3 irradiance, 5 irradiance and two scalars
 #endif

@@ -18,7 +18,7 @@ LWLpvDesc descOf(LWLpvTransport transport, bool rests) {
     desc.size = 16;
     desc.steps = 7;
     desc.transport = transport;
-    desc.directions = 96;
+    desc.directions = 24;
     desc.rests = rests ? 1 : 0;
     return desc;
 }
