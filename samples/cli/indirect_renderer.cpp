@@ -61,6 +61,19 @@ std::unique_ptr<IndirectRenderer> makeRenderer(const Parameters& parameters, con
     return std::make_unique<LibraryRenderer>(*device, parameters, inputs);
 }
 
+namespace {
+
+std::string techniqueOf(const FrameSample& frame) {
+    std::string technique, parameters;
+    for (const auto& [name, what] : frame.choices) {
+        if (name == "auto.technique") technique = what;
+        if (name == "auto.parameters") parameters = what;
+    }
+    return technique + (parameters.empty() ? "" : " ") + parameters;
+}
+
+}  // namespace
+
 FrameFigures measure(IndirectRenderer& renderer, const RenderInputs& inputs, int warmUpCount,
                      int count) {
     return measure(
@@ -77,6 +90,7 @@ FrameFigures measure(IndirectRenderer& renderer, const FrameInputs& inputsOf, in
         FrameSample frame = renderer.renderFrame(inputsOf(warmUpCount + i), warmUpCount == 0 && i == 0);
         figures.frameTotals.push_back(frame.totalMilliseconds);
         figures.frameWalls.push_back(frame.wallMilliseconds);
+        figures.frameTechniques.push_back(techniqueOf(frame));
         addPasses(passes, frame);
         figures.deviceBytes = frame.deviceBytes;
         figures.hostCopyBytes = frame.hostCopyBytes;

@@ -92,6 +92,8 @@ struct FrameFigures {
     std::vector<PassTime> passes;
     double totalMilliseconds = -1.0, wallMilliseconds = -1.0;
     std::vector<double> frameTotals, frameWalls;  // of each measured frame, in order
+    // ... of technique auto: "technique parameters" that it ran, else "".
+    std::vector<std::string> frameTechniques;
     std::uint64_t deviceBytes = 0, hostCopyBytes = 0, estimatedBytes = 0;
     std::vector<std::pair<std::string, std::uint64_t>> counts;  // of the last frame
     std::vector<std::pair<std::string, std::string>> choices;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 namespace cli {
@@ -27,6 +28,17 @@ Json parametersJson(const RenderReport& report) {
     for (const auto& [name, value] : report.parameters)
         std::visit([&, key = name](const auto& held) { object[key] = held; }, value);
     return object;
+}
+
+// Of each measured frame, in order: times, and what technique auto ran.
+void addFrames(Json& json, const FrameFigures& figures) {
+    Json totals = Json::array(), techniques = Json::array();
+    for (const double total : figures.frameTotals) totals.push_back(milliseconds(total));
+    json["frame_ms"] = totals;
+    const auto isNone = [](const std::string& technique) { return technique.empty(); };
+    if (std::all_of(figures.frameTechniques.begin(), figures.frameTechniques.end(), isNone)) return;
+    for (const std::string& technique : figures.frameTechniques) techniques.push_back(technique);
+    json["frame_techniques"] = techniques;
 }
 
 Json passesJson(const FrameFigures& figures) {
@@ -95,6 +107,7 @@ std::string toJson(const RenderReport& report) {
     json["passes"] = passesJson(figures);
     json["total_ms"] = milliseconds(figures.totalMilliseconds);
     json["wall_ms"] = milliseconds(figures.wallMilliseconds);
+    addFrames(json, figures);
     json["bytes"] = {{"device", figures.deviceBytes},
                      {"estimated", figures.estimatedBytes},
                      {"host_copies", figures.hostCopyBytes}};

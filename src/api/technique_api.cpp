@@ -179,6 +179,10 @@ LWStatus lwCreateStaticVpl(LWDevice device, const LWStaticVplDesc* desc, LWTechn
     return createTechnique("lwCreateStaticVpl", device, "static_vpl", desc, technique);
 }
 
+LWStatus lwCreateAuto(LWDevice device, const LWAutoDesc* desc, LWTechnique* technique) {
+    return createTechnique("lwCreateAuto", device, LW_TECHNIQUE_AUTO, desc, technique);
+}
+
 LWStatus lwRetainTechnique(LWTechnique technique) {
     return enter("lwRetainTechnique",
                  [&](Call&) { retainHandle(HandleKind::kTechnique, technique, "technique"); });

@@ -32,6 +32,8 @@ public:
     double totalMilliseconds() const;
     std::unique_ptr<Profile> snapshot() const;  // what it holds now, for a report after a wait
     std::size_t heldEntries() const { return entries_.size(); }
+    // The events of an entry that it holds and of its last one, each with a reference for the caller; null where there is none.
+    void retainEnds(std::size_t firstEntry, cl_event& first, cl_event& last) const;
 
 private:
     struct Entry {
@@ -59,6 +61,7 @@ public:
     Executor(Device& device, Profile& profile) : device_(device), profile_(profile) {}
 
     Device& device() { return device_; }
+    const Profile& profile() const { return profile_; }
 
     // Enqueues `kernel` over `global` work-items, rounded up to `local` (the kernel must leave surplus
     // items idle). `pass` is a string literal "<pass>.<verb>". Arguments in the kernel's order: cl_mem,

@@ -88,6 +88,14 @@ std::unique_ptr<Profile> Profile::snapshot() const {
     return copy;
 }
 
+void Profile::retainEnds(std::size_t firstEntry, cl_event& first, cl_event& last) const {
+    const auto retained = [](cl_event event) { return event && clRetainEvent(event) == CL_SUCCESS ? event : nullptr; };
+    first = last = nullptr;
+    if (firstEntry >= entries_.size()) return;
+    first = retained(entries_[firstEntry].event);
+    last = retained(entries_.back().event);
+}
+
 std::vector<LWPassTime> Profile::passes() const {
     return sums().passes;
 }

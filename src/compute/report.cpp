@@ -46,6 +46,8 @@ void Report::choose(const char* name, const char* reason) {
     choices.push_back({name, reason});
 }
 
+void Report::chooseText(const char* name, std::string reason) { choose(name, keep(std::move(reason))); }
+
 const char* Report::keep(std::string name) {
     names_.push_back(std::move(name));
     return names_.back().c_str();

@@ -16,7 +16,7 @@ namespace lightwell {
 
 // Filled in two steps, so that nobody waits under a lock: a technique notes what it knows and has the rest
 // read without waiting; after the wait, resolve() puts in what was read. Names and reasons are string literals,
-// but for those of a part's report, whose names the report keeps.
+// but for chooseText's and those of a part's report, which the report keeps.
 class Report {
 public:
     Report() = default;
@@ -36,6 +36,8 @@ public:
                     const char* const* reasons, std::uint32_t reasonCount);
     // Adds a choice, unless the same was made before (for another view).
     void choose(const char* name, const char* reason);
+    // ... whose reason is made for this report, which keeps it.
+    void chooseText(const char* name, std::string reason);
     // Takes over another's, each name as "part.name": of a technique that is part of another.
     void add(const std::string& part, Report other);
     // After the queue has got past the reads.

@@ -123,6 +123,14 @@ const LWPlanProbes* FrameProbes::take() {
     return &taken_;
 }
 
+std::uint64_t FrameProbes::estimateBytes(std::uint64_t maps, std::uint64_t vplCount) {
+    const std::uint64_t texels = (std::max<std::uint64_t>(maps, LW_PROBE_TEXELS) + vplCount + 15) / 16 * 16;
+    return std::max<std::uint64_t>(maps, 1) * sizeof(LwProbeMap) + std::max<std::uint64_t>(vplCount, 1) * sizeof(lw_vpl) +
+           texels * (LW_PROBE_TEXEL_PLANES * sizeof(float) + sizeof(cl_int)) + LW_PROBE_CHUNKS * sizeof(LwProbeChunk) +
+           LW_PROBE_EMITTERS * sizeof(lw_vpl) + std::uint64_t(LW_PROBE_PIXEL_PLANES) * LW_PROBE_PIXELS * sizeof(float) +
+           (LW_PROBE_ROWS + 1) * sizeof(LwFrameProbes);
+}
+
 std::uint64_t FrameProbes::bytes() const {
     std::uint64_t total = 0;
     for (const Buffer* buffer : {&maps_, &authored_, &texelPlanes_, &places_, &chunkSums_, &emitters_, &pixelPlanes_, &rowSums_, &probes_})

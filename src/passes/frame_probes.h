@@ -39,6 +39,8 @@ public:
     const Buffer& sums() const { return probes_; }        // LwFrameProbes
     const Buffer& emitters() const { return emitters_; }  // lw_vpl, LW_PROBE_EMITTERS of them
     std::uint64_t bytes() const;
+    // The most that bytes() becomes with so many RSMs, or fewer, and VPLs of the host's.
+    static std::uint64_t estimateBytes(std::uint64_t maps, std::uint64_t vplCount);
 
 private:
     void recordTexels(Executor& executor, const ProbedView& view, const RsmInput& rsms, const LWVpl* vpls, std::uint32_t vplCount);

@@ -6,6 +6,7 @@
 
 #include "compute/device.h"
 #include "compute/error.h"
+#include "passes/reprojection.h"
 
 namespace lightwell {
 namespace {
@@ -22,45 +23,12 @@ Range itemsOver(const Planes& image, const Kernel& kernel) {
 // Irradiance with its recent mean, noise and trend, each scalar with its own, position, a word of normal and age.
 std::uint32_t planesOf(const TemporalHistoryOptions& options) { return 6 + 4 * options.scalars + 4; }
 
-// All planes of a row lie side by side, a cache line apart: planes of a whole picture often lie a multiple of 4096 bytes apart
-// (1280 x 720 does), and thirty of them then contend for the same few places of the first-level cache.
-std::uint64_t planeStride(std::uint32_t width) { return paddedWidth(width) + 16u; }
-
 std::uint64_t imageFloats(const TemporalHistoryOptions& options, std::uint32_t maxWidth, std::uint32_t maxHeight) {
-    const std::uint64_t floats = planeStride(maxWidth) * maxHeight * planesOf(options);
+    const std::uint64_t floats = historyPlaneStride(maxWidth) * maxHeight * planesOf(options);
     if (floats > std::uint64_t(std::numeric_limits<std::int32_t>::max()))
         fail(LW_ERROR_UNSUPPORTED, "history: a view of ", maxWidth, " x ", maxHeight,
              " pixels exceeds the 32-bit indices of the kernels; expected history=0 or a smaller view");
     return floats;
-}
-
-// `row` of a matrix over X, as one over X - origin.
-glm::dvec4 relativeTo(const glm::dvec3& origin, const glm::dvec4& row) {
-    return {glm::dvec3(row), glm::dot(glm::dvec3(row), origin) + row.w};
-}
-
-lw_float4 rounded(const glm::dvec4& v) { return float4(v.x, v.y, v.z, v.w); }
-lw_float4 rounded(const glm::dvec3& v) { return float4(v.x, v.y, v.z, 0.0); }
-
-// From this frame's pixels to the places of their surfaces in a history of width x height that `camera` drew.
-LwReprojection reprojection(const Camera& camera, std::uint32_t width, std::uint32_t height, const Planes& now) {
-    const glm::dmat4 m = glm::transpose(camera.worldToClip());  // its columns are the rows
-    const glm::dvec4 x = (m[0] + m[3]) * (0.5 * width), y = (m[3] - m[1]) * (0.5 * height);
-    // As the kernel takes it off: far from the world's origin the eye would be off by parts of a pixel, all of one picture alike.
-    const glm::dvec3 origin(glm::vec3(camera.eye()));
-    LwReprojection result{};
-    result.x = rounded(relativeTo(origin, x));
-    result.y = rounded(relativeTo(origin, y));
-    result.w = rounded(relativeTo(origin, m[3]));
-    result.depth = camera.perspective() ? rounded(camera.axis()) : float4(0.0, 0.0, 0.0, 1.0);
-    result.acrossX = rounded(camera.rays().perI);
-    result.acrossY = rounded(camera.rays().perJ);
-    result.origin = rounded(glm::dvec4(origin, camera.footprint(1.0)));
-    result.scaleX = float(double(width) / now.width);
-    result.scaleY = float(double(height) / now.height);
-    result.width = cl_int(width);
-    result.height = cl_int(height);
-    return result;
 }
 
 }  // namespace
@@ -74,7 +42,7 @@ ViewHistory::ViewHistory(Device& device, const TemporalHistoryOptions& options, 
 Planes ViewHistory::planes(std::size_t which, std::uint32_t width, std::uint32_t height) const {
     Planes planes;
     planes.memory = images_[which].get();
-    planes.planeStride = std::int64_t(planeStride(width));
+    planes.planeStride = std::int64_t(historyPlaneStride(width));
     planes.rowStride = planes.planeStride * planes_;
     planes.width = width;
     planes.height = height;

@@ -1,5 +1,6 @@
 // One line per technique.
 #include "techniques/ao.h"
+#include "techniques/auto.h"
 #include "techniques/cone_tracing.h"
 #include "techniques/fallback.h"
 #include "techniques/horizon.h"
@@ -23,6 +24,7 @@ const std::vector<TechniqueEntry>& techniqueEntries() {
         coneTracingEntry(),
         staticVplEntry(),
         fallbackEntry(),
+        autoEntry(),
     };
     return entries;
 }

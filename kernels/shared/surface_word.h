@@ -2,7 +2,7 @@
 #ifndef LW_SURFACE_WORD_H
 #define LW_SURFACE_WORD_H
 
-#include "shared/edge_weight.h"
+#include "edge_weight.h"
 
 // |size| with the sign of `of`; copysign() goes lane by lane in some drivers.
 LW_FN real signed_as(real size, real of) {

@@ -1,0 +1,38 @@
+#include "passes/reprojection.h"
+
+#include <glm/glm.hpp>
+
+namespace lightwell {
+namespace {
+
+// `row` of a matrix over X, as one over X - origin.
+glm::dvec4 relativeTo(const glm::dvec3& origin, const glm::dvec4& row) {
+    return {glm::dvec3(row), glm::dot(glm::dvec3(row), origin) + row.w};
+}
+
+lw_float4 rounded(const glm::dvec4& v) { return float4(v.x, v.y, v.z, v.w); }
+lw_float4 rounded(const glm::dvec3& v) { return float4(v.x, v.y, v.z, 0.0); }
+
+}  // namespace
+
+LwReprojection reprojection(const Camera& camera, std::uint32_t width, std::uint32_t height, const Planes& now) {
+    const glm::dmat4 m = glm::transpose(camera.worldToClip());  // its columns are the rows
+    const glm::dvec4 x = (m[0] + m[3]) * (0.5 * width), y = (m[3] - m[1]) * (0.5 * height);
+    // As the kernel takes it off: far from the world's origin the eye would be off by parts of a pixel, all of one picture alike.
+    const glm::dvec3 origin(glm::vec3(camera.eye()));
+    LwReprojection result{};
+    result.x = rounded(relativeTo(origin, x));
+    result.y = rounded(relativeTo(origin, y));
+    result.w = rounded(relativeTo(origin, m[3]));
+    result.depth = camera.perspective() ? rounded(camera.axis()) : float4(0.0, 0.0, 0.0, 1.0);
+    result.acrossX = rounded(camera.rays().perI);
+    result.acrossY = rounded(camera.rays().perJ);
+    result.origin = rounded(glm::dvec4(origin, camera.footprint(1.0)));
+    result.scaleX = float(double(width) / now.width);
+    result.scaleY = float(double(height) / now.height);
+    result.width = cl_int(width);
+    result.height = cl_int(height);
+    return result;
+}
+
+}  // namespace lightwell

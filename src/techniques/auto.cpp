@@ -1,0 +1,127 @@
+#include "techniques/auto.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "compute/device.h"
+#include "techniques/auto_parameters.h"
+#include "techniques/auto_technique.h"
+#include "techniques/from_text.h"
+#include "techniques/prewarm.h"
+#include "techniques/technique_entry.h"
+
+namespace lightwell {
+namespace {
+
+// Prewarmed is what may be chosen of what is predicted to take up to so many budgets: this machine may be as much quicker than the tables
+// say, or less loaded later. More: prewarming takes longer for what is seldom chosen.
+constexpr double kBudgetsWarmed = 2.0;
+
+LWPlanProbes unknownProbes() {
+    constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+    return {kNone, kNone, kNone, kNone, kNone, kNone, kNone, kNone};
+}
+
+SteeringOptions steeringOptions(const LWAutoDesc& desc) {
+    return {double(desc.budgetMs), double(desc.errorTarget), desc.patience, double(desc.gain)};
+}
+
+AutoPlanner realPlanner(Device& device) {
+    const Calibration calibration = calibrationOf(device);
+    return {candidates(), [calibration](const FrameTraits& traits, const LWPlanProbes& probes) { return predict(calibration, traits, probes); }, true};
+}
+
+std::uint64_t estimateText(const TechniqueText& text, const LWViewDesc& view, const FrameShape& shape) {
+    std::uint64_t total = text.entry->estimateBytes(text.descriptor.data(), view, shape);
+    for (const TechniqueText& part : text.parts) total += estimateText(part, view, shape);
+    return total;
+}
+
+// What the device cannot hold is not chosen, or not faded.
+template <class Estimate>
+std::uint64_t ifSupported(Estimate estimate) {
+    try {
+        return estimate();
+    } catch (const Error& error) {
+        if (error.status() != LW_ERROR_UNSUPPORTED) throw;
+        return 0;
+    }
+}
+
+// The two largest candidates, and what lies around them.
+std::uint64_t estimateBytes(const void* desc, const LWViewDesc& view, const FrameShape& shape) {
+    std::uint64_t most = 0, next = 0;
+    for (const Candidate& candidate : candidates()) {
+        const std::uint64_t bytes =
+            ifSupported([&] { return estimateText(parseTechnique(candidate.technique, candidate.settings), view, shape); });
+        next = std::max(next, std::min(most, bytes));
+        most = std::max(most, bytes);
+    }
+    const bool fades = static_cast<const LWAutoDesc*>(desc)->fade > 1;
+    return most + next + FrameProbing::estimateBytes(view, shape) +
+           (fades ? ifSupported([&] { return AutoView::estimateBytes(view, shape.uploads); }) : 0);
+}
+
+}  // namespace
+
+Auto::Auto(Device& device, const LWAutoDesc& desc) : Auto(device, desc, realPlanner(device)) {}
+
+Auto::Auto(Device& device, const LWAutoDesc& desc, AutoPlanner planner)
+    : device_(device),
+      desc_(desc),
+      planner_(std::move(planner)),
+      steering_(steeringOptions(desc)),
+      fade_(device),
+      probing_(device),
+      continuity_(device),
+      probes_(unknownProbes()) {}
+
+// What may be chosen for what is known of the host's frames, one after the other: programs stay with the device.
+void Auto::prewarm(Executor& executor, const std::shared_ptr<View>& view) {
+    FrameTraits traits = traitsOf(LWFrame{}, seen_, hasSeen_ ? pixels_ : double(view ? view->width * view->height : kAutoPixels), desc_.views);
+    traits.hasRsms = true;
+    if (!hasSeen_) traits.hasDirectRadiance = traits.hasAlbedo = traits.hasCamera = traits.hasMotion = traits.hasVpls = true;
+    if (updates_ == 0) traits.triangles = traits.staticVpls = 1;
+    const std::vector<Prediction> possible = planner_.predict(traits, probes_);
+    int warmed = 0;
+    for (const Prediction& one : possible) {
+        // Dearer and worse than another is not chosen, as far as the frame is known.
+        const bool isDominated = std::any_of(possible.begin(), possible.end(), [&](const Prediction& other) {
+            return other.milliseconds < one.milliseconds && other.error <= one.error;
+        });
+        const bool isTooDear = desc_.budgetMs > 0.0f && one.milliseconds > kBudgetsWarmed * double(desc_.budgetMs) && warmed > 0;
+        if (isDominated || isTooDear) continue;
+        ++warmed;
+        const Candidate& candidate = planner_.candidates[one.candidate];
+        try {
+            makeTechnique(device_, candidate.technique, candidate.settings)->prewarm(executor, view);
+        } catch (const Error& error) {
+            if (!isItsOwn(error.status())) throw;
+            device_.log(LW_LOG_WARNING, "auto: " + nameOf(one.candidate) + " cannot be chosen on this device: " + error.what());
+        }
+        device_.finish();
+    }
+    // What lies around them, with one that stands for all.
+    FrameTraits made;
+    made.hasRsms = made.hasDirectRadiance = made.hasCamera = true;
+    const std::vector<Prediction> simple = planner_.predict(made, probes_);
+    if (simple.empty()) return;
+    AutoPlanner one = planner_;
+    one.predict = [only = simple.front()](const FrameTraits&, const LWPlanProbes&) { return std::vector<Prediction>{only}; };
+    Auto twin(device_, desc_, std::move(one));
+    exerciseTechnique(executor, twin);
+}
+
+std::unique_ptr<Technique> makeAuto(Device& device, const LWAutoDesc& desc, AutoPlanner planner) {
+    return std::make_unique<Auto>(device, desc, std::move(planner));
+}
+
+const TechniqueEntry& autoEntry() {
+    static const std::vector<LWSetting> settings;
+    static const TechniqueEntry entry = techniqueEntry<Auto, LWAutoDesc, lwDefaultAuto>(
+        LW_TECHNIQUE_AUTO, "what the planner finds best for each frame, held to a budget, with changes cross-faded", 0, autoParameters(), settings,
+        estimateBytes);
+    return entry;
+}
+
+}  // namespace lightwell

@@ -1,0 +1,228 @@
+// Technique auto: which candidate runs in a frame, and its world part.
+#include <algorithm>
+#include <iterator>
+#include <optional>
+#include <utility>
+
+#include "compute/device.h"
+#include "inputs/rsm_input.h"
+#include "techniques/auto_technique.h"
+#include "techniques/from_text.h"
+
+namespace lightwell {
+namespace {
+
+// Updates from one reading of the probes to the next. More: the choice follows a scene later. Fewer: reading takes a part of the budget
+// in more frames.
+constexpr std::uint64_t kProbeEvery = 32;
+// Candidates that are tried in one frame at most: each that fails may have taken memory and time.
+constexpr int kMostTries = 8;
+constexpr std::size_t kNobody = ~std::size_t(0);
+
+// What decides which techniques are possible, as a word.
+std::uint32_t inputsOf(const FrameTraits& traits) {
+    const bool has[] = {traits.hasRsms,   traits.hasVpls,   traits.hasDirectRadiance,             traits.hasAlbedo,
+                        traits.hasCamera, traits.hasMotion, traits.triangles + traits.surfels > 0, traits.staticVpls > 0};
+    std::uint32_t word = 0;
+    for (std::size_t i = 0; i < std::size(has); ++i) word |= has[i] ? 1u << i : 0u;
+    return word;
+}
+
+}  // namespace
+
+void Auto::learn() {
+    while (const std::optional<AutoTimes::Frame> frame = times_.take()) {
+        if (frame->whole > 0.0) ++measured_;
+        if (desc_.budgetMs > 0.0f && frame->whole > double(desc_.budgetMs)) ++over_;
+        steering_.ran(frame->candidate, frame->predicted, frame->part, frame->whole);
+    }
+    if (const LWPlanProbes* probes = probing_.take()) {
+        if (!hasProbes_) steering_.forgetChoice();  // what runs was chosen without them
+        probes_ = *probes;
+        hasProbes_ = true;
+    }
+}
+
+// The G-buffer is that of the last frame: this one's comes after the choice.
+FrameTraits Auto::traitsNow(const LWFrame& frame) {
+    FrameTraits traits = traitsOf(frame, seen_, pixels_, desc_.views);
+    // Lamps that go out for a while ask for no other technique.
+    hasHadRsms_ |= traits.hasRsms;
+    traits.hasRsms = hasHadRsms_;
+    return traits;
+}
+
+std::vector<Prediction> Auto::predictions(const FrameTraits& traits) const {
+    std::vector<Prediction> possible = planner_.predict(traits, probes_);
+    if (!possible.empty() || hasSeen_) return possible;
+    // Nothing is possible without what the first G-buffer has yet to show: it may have all.
+    FrameTraits all = traits;
+    all.hasDirectRadiance = all.hasAlbedo = all.hasCamera = all.hasMotion = true;
+    return planner_.predict(all, probes_);
+}
+
+void Auto::noteView(const View& view, const LWGBuffer& gbuffer) {
+    // The first one shows what is possible: the choice before was blind to it.
+    if (!hasSeen_) steering_.forgetChoice();
+    hasSeen_ = true;
+    pixels_ = double(view.width) * view.height;
+    seen_ = gbuffer;
+}
+
+std::string Auto::nameOf(std::size_t candidate) const {
+    const Candidate& one = planner_.candidates[candidate];
+    return std::string(one.technique) + (*one.settings ? " " : "") + one.settings;
+}
+
+
+void Auto::update(Executor& executor, const LWFrame& frame) {
+    RsmInput::check(device_, frame);  // the host's mistakes are no technique's
+    const bool forgets = continuity_.beginLost() || frame.reset;
+    learn();
+    const FrameTraits traits = traitsNow(frame);
+    const bool wasWhole = std::exchange(isWhole_, false);
+    try {
+        const SteeringStep step = choose(executor, frame, traits);
+        startFrame(frame, step, forgets);
+    } catch (const Error& error) {
+        times_.discard();
+        // A frame that is refused as it is leaves the one before.
+        isWhole_ = wasWhole && error.status() == LW_ERROR_INVALID_ARGUMENT && children_.running();
+        throw;
+    }
+}
+
+void Auto::startFrame(const LWFrame& frame, const SteeringStep& step, bool forgets) {
+    step_ = step;
+    const bool changes = hasBefore_ && before_ != step.prediction.candidate;
+    if (changes) {
+        ++switches_;
+        device_.log(LW_LOG_INFO, "auto: " + reason());
+    }
+    if (changes || !hasBefore_) lastCause_ = step.cause;
+    before_ = step.prediction.candidate;
+    hasBefore_ = true;
+    fadeLeft_ = forgets ? 0 : changes ? desc_.fade : fadeLeft_ > 0 ? fadeLeft_ - 1 : 0;
+    // A change is told a frame ahead, so that only then the picture has to be kept; and the first choices are soon made again.
+    keeps_ = desc_.fade > 1 && (fadeLeft_ > 1 || step.isLeaving || steering_.mayLeave() || (planner_.usesProbes && !hasProbes_));
+    states_.purge();
+    states_.each([&](ViewState& state) {
+        if (state.through) state.through->startFrame(forgets);
+    });
+    if (children_.resting() && !hasOther_) children_.resting()->miss(frame.reset != 0);
+    ++updates_;
+    isWhole_ = true;
+}
+
+std::unique_ptr<AutoChild> Auto::obtain(std::size_t candidate) {
+    if (std::unique_ptr<AutoChild> child = children_.takeResting(candidate)) return child;
+    const Candidate& one = planner_.candidates[candidate];
+    try {
+        return std::make_unique<AutoChild>(candidate, makeTechnique(device_, one.technique, one.settings));
+    } catch (const Error& error) {
+        if (error.status() != LW_ERROR_OUT_OF_MEMORY || !children_.resting()) throw;
+        children_.dropResting();
+        return std::make_unique<AutoChild>(candidate, makeTechnique(device_, one.technique, one.settings));
+    }
+}
+
+// Updates the step's candidate, which then is the one that runs.
+void Auto::updateWith(Executor& executor, const LWFrame& frame, const SteeringStep& step, std::uint32_t inputs) {
+    AutoChild* running = children_.running();
+    times_.startFrame(step.prediction.candidate, step.prediction.milliseconds);
+    times_.begin(executor, false);
+    if (running && running->candidate() == step.prediction.candidate) {
+        times_.begin(executor, true);
+        running->update(executor, frame, inputs);
+        times_.end(executor, true);
+    } else {
+        std::unique_ptr<AutoChild> child = obtain(step.prediction.candidate);
+        times_.begin(executor, true);
+        child->update(executor, frame, inputs);
+        times_.end(executor, true);
+        children_.start(std::move(child));
+        // Should its first lwRender fail, the one before takes its place in the same frame.
+        if (!children_.running()->hasRendered()) updateOther(executor, frame, inputs);
+    }
+    wantsProbes_ = planner_.usesProbes && !probing_.isReading() && (!hasProbes_ || updates_ % kProbeEvery == 0);
+    if (wantsProbes_) probe([&] { probing_.beginFrame(executor, frame); });
+    times_.end(executor, false);
+}
+
+void Auto::updateOther(Executor& executor, const LWFrame& frame, std::uint32_t inputs) {
+    if (!children_.resting() || !children_.resting()->hasRendered()) return;
+    try {
+        children_.resting()->update(executor, frame, inputs);
+        hasOther_ = true;
+    } catch (const Error& error) {
+        if (!isItsOwn(error.status())) throw;
+        children_.dropResting();  // whatever it holds of this frame
+    }
+}
+
+// Without memory for probes the choice is made without them.
+void Auto::probe(const std::function<void()>& record) {
+    try {
+        record();
+    } catch (const Error& error) {
+        if (!isItsOwn(error.status())) throw;
+        wantsProbes_ = false;
+        device_.log(LW_LOG_WARNING, std::string("auto: chooses without new probes of the frame: ") + error.what());
+    }
+}
+
+void Auto::noteFailure(std::size_t candidate, const Error& error) {
+    ++failed_;
+    device_.log(LW_LOG_WARNING, "auto: " + nameOf(candidate) + " is left out for a while, as it failed: " + error.what());
+}
+
+// All settings of a technique that refuses a frame's inputs would.
+void Auto::leaveOut(std::vector<Prediction>& possible, std::size_t candidate, LWStatus status) const {
+    const std::string technique = planner_.candidates[candidate].technique;
+    const auto isOut = [&](const Prediction& one) {
+        return one.candidate == candidate ||
+               (status == LW_ERROR_INVALID_ARGUMENT && planner_.candidates[one.candidate].technique == technique);
+    };
+    possible.erase(std::remove_if(possible.begin(), possible.end(), isOut), possible.end());
+}
+
+// The first of the candidates, best first, that takes the frame. Those before it are barred; where none does, none is, since then the
+// frame is to blame.
+SteeringStep Auto::choose(Executor& executor, const LWFrame& frame, const FrameTraits& traits) {
+    const std::uint32_t inputs = inputsOf(traits);
+    std::vector<Prediction> possible = predictions(traits);
+    if (possible.empty())
+        fail(LW_ERROR_INVALID_ARGUMENT, "frame, gbuffer: expected what a technique can make light of, got none of: ", missingFor(traits));
+    hasOther_ = false;
+    inputs_ = inputs;
+    const std::size_t ran = children_.running() ? children_.running()->candidate() : kNobody;
+    std::vector<std::pair<std::size_t, Error>> failures;
+    for (int tries = 0; tries < kMostTries; ++tries) {
+        const bool mayLeave = desc_.fade < 2 || keeps_ || !hasCamera(seen_);
+        const std::optional<SteeringStep> step = possible.empty() ? std::nullopt : steering_.next(possible, mayLeave);
+        if (!step) break;
+        const std::size_t candidate = step->prediction.candidate;
+        const bool isKnown = ran == candidate && children_.running() && children_.running()->knows(inputs);
+        try {
+            updateWith(executor, frame, *step, inputs);
+            for (const auto& [failed, error] : failures) {
+                steering_.fail(failed);
+                noteFailure(failed, error);
+            }
+            return *step;
+        } catch (const Error& error) {
+            times_.discard();
+            // One that has taken such frames is believed.
+            if (!isItsOwn(error.status()) || (isKnown && error.status() == LW_ERROR_INVALID_ARGUMENT)) throw;
+            failures.emplace_back(candidate, error);
+            if (ran == candidate && error.status() != LW_ERROR_INVALID_ARGUMENT) children_.fallBack();  // half made
+            leaveOut(possible, candidate, error.status());
+        }
+    }
+    if (children_.running()) steering_.resume(children_.running()->candidate());
+    else steering_.forgetChoice();
+    if (failures.empty()) fail(LW_ERROR_UNSUPPORTED, "auto: all that the frame allows has failed before and is left out for a while; the log says why");
+    throw failures.front().second;
+}
+
+}  // namespace lightwell
