@@ -199,7 +199,7 @@ std::uint64_t estimateBytes(const void*, const LWViewDesc& view, const FrameShap
 
 // The command line makes its two techniques by these names; a host gives any two.
 const char* const kFirst[] = {"horizon", "screen_space", "rsm", nullptr};
-const char* const kSecond[] = {"ssvp", "rsm", nullptr};
+const char* const kSecond[] = {"ssvp", "rsm", "lpv", "cone_tracing", nullptr};
 // A chart joins each first technique that knows a part of the hemisphere with each second one.
 const double kFirstSweep[] = {0, 1}, kSecondSweep[] = {0, 1};
 
@@ -207,7 +207,7 @@ const LWParameter kParameters[] = {
     {"first", "technique whose light counts as far as its validity reaches", LW_PARAMETER_TECHNIQUE,
      std::uint32_t(offsetof(LWFallbackDesc, first)), 0.0, 2.0, 0.0, kFirst, nullptr, 0, kFirstSweep, 2},
     {"second", "technique that lights the rest of each pixel's hemisphere", LW_PARAMETER_TECHNIQUE,
-     std::uint32_t(offsetof(LWFallbackDesc, second)), 0.0, 1.0, 0.0, kSecond, nullptr, 0, kSecondSweep, 2},
+     std::uint32_t(offsetof(LWFallbackDesc, second)), 0.0, 3.0, 0.0, kSecond, nullptr, 0, kSecondSweep, 2},
 };
 
 }  // namespace
