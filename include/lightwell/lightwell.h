@@ -879,7 +879,7 @@ LW_API LWStatus lwCreateConeTracing(LWDevice device, const LWConeTracingDesc* de
 LW_API LWStatus lwCreateStaticVpl(LWDevice device, const LWStaticVplDesc* desc, LWTechnique* technique);
 LW_API LWStatus lwCreateAuto(LWDevice device, const LWAutoDesc* desc, LWTechnique* technique);
 /** Creates a technique by name from text: "vpls=256 interleave=4", as LWSetting and LWPlan have it; what it does not name has its
- *  default. Of a technique that joins others: "first=horizon second=ssvp second.vpls=256", which makes those too.
+ *  default (null or "": all). Of a technique that joins others: "first=horizon second=ssvp second.vpls=256", which makes those too.
  *  Errors: as lwCreateTechnique; INVALID_ARGUMENT names the key and what is valid. */
 LW_API LWStatus lwCreateTechniqueFromText(LWDevice device, const char* name, const char* settings, LWTechnique* technique);
 LW_API LWStatus lwRetainTechnique(LWTechnique technique);
@@ -978,6 +978,12 @@ typedef struct LWPlan {
  *  `view`, `gbuffer`: of the view that is to be lit, as for lwRender. Waits for the probes: a few milliseconds. Changes nothing.
  *  Errors: INVALID_*, as lwUpdate and lwRender, and where no technique can light such a frame; OUT_OF_MEMORY. */
 LW_API LWStatus lwPlan(LWView view, const LWFrame* frame, const LWGBuffer* gbuffer, const LWPlanDesc* desc, LWPlan* plan);
+
+/** What lwPlan chooses from: all that the frame allows, quickest first, each against the same budget and target, without a reason.
+ *  `plans`: room for `capacity` of them, structSize set in each; null where that is 0. `*count` gets how many there are, which may
+ *  be more. Errors: as lwPlan. */
+LW_API LWStatus lwListPlans(LWView view, const LWFrame* frame, const LWGBuffer* gbuffer, const LWPlanDesc* desc, LWPlan* plans,
+                            uint32_t capacity, uint32_t* count);
 
 /* ------------------------------------------------------------------------------ checking inputs */
 

@@ -168,6 +168,25 @@ inline std::vector<LWInputFinding> checkInputs(const View& view, const LWFrame* 
     }
 }
 
+// What to run for this frame, and what to expect of it.
+inline LWPlan plan(const View& view, const LWFrame& frame, const LWGBuffer& gbuffer, const LWPlanDesc& desc) {
+    auto result = make<LWPlan>();
+    check(lwPlan(view.get(), &frame, &gbuffer, &desc, &result), view.device());
+    return result;
+}
+
+// All that could be run, quickest first.
+inline std::vector<LWPlan> listPlans(const View& view, const LWFrame& frame, const LWGBuffer& gbuffer, const LWPlanDesc& desc) {
+    std::vector<LWPlan> plans(64, make<LWPlan>());
+    for (;;) {
+        const auto room = static_cast<std::uint32_t>(plans.size());
+        std::uint32_t count = 0;
+        check(lwListPlans(view.get(), &frame, &gbuffer, &desc, plans.data(), room, &count), view.device());
+        plans.resize(count, make<LWPlan>());
+        if (count <= room) return plans;
+    }
+}
+
 class Technique {
 public:
     // `desc`: the technique's own descriptor, or null for its defaults.
@@ -175,6 +194,12 @@ public:
         LWTechnique raw = nullptr;
         check(lwCreateTechnique(device_.get(), name, desc, &raw), device_.get());
         handle_ = decltype(handle_)(raw);
+    }
+    // From text, as lwCreateTechniqueFromText takes it: "vpls=256 interleave=4".
+    static Technique fromText(const Device& device, const char* name, const char* settings) {
+        LWTechnique raw = nullptr;
+        check(lwCreateTechniqueFromText(device.get(), name, settings, &raw), device.get());
+        return Technique(device, raw);
     }
     LWTechnique get() const noexcept { return handle_.get(); }
 
@@ -218,6 +243,8 @@ public:
     }
 
 private:
+    Technique(Device device, LWTechnique raw) : device_(std::move(device)), handle_(raw) {}
+
     Device device_;
     Handle<LWTechnique, lwRetainTechnique, lwReleaseTechnique> handle_;
 };

@@ -95,5 +95,6 @@ void addVisibility(CLI::App& app);
 void addProbes(CLI::App& app);
 void addStability(CLI::App& app);
 void addCheck(CLI::App& app);
+void addPlan(CLI::App& app);
 
 }  // namespace cli

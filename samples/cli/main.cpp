@@ -84,6 +84,7 @@ int main(int argc, char** argv) {
         cli::addStability(app);
         cli::addPlaceVpls(app);
         cli::addCheck(app);
+        cli::addPlan(app);
         return parse(app, argc, argv);
     } catch (const cli::UsageError& error) {
         printError(error.what());

@@ -66,17 +66,6 @@ void addMembers(Members& members, const TechniqueObject& part, const char* name)
 
 }  // namespace
 
-const TechniqueEntry& findTechniqueEntry(const char* name) {
-    if (!name) fail(LW_ERROR_INVALID_ARGUMENT, "name: expected a technique's name, got null");
-    std::string names;
-    for (const TechniqueEntry& entry : techniqueEntries()) {
-        if (std::strcmp(entry.info.name, name) == 0) return entry;
-        names += (names.empty() ? "" : ", ") + std::string(entry.info.name);
-    }
-    fail(LW_ERROR_INVALID_ARGUMENT, "name: expected one of ", names, ", got \"",
-         std::string(name).substr(0, 64), "\"");
-}
-
 std::vector<std::uint64_t> readDescriptor(const TechniqueEntry& entry, const void* desc) {
     const LWTechniqueInfo& info = entry.info;
     // Whole 8-byte words, so that the descriptor is aligned for any of its fields.

@@ -9,10 +9,28 @@
 #include "api/parameters.h"
 #include "api/structs.h"
 #include "compute/raw_enum.h"
+#include "techniques/from_text.h"
 
 using namespace lightwell;
 
 namespace {
+
+// With its parts; `object->entry` and `object->descriptor` are set.
+void makeTechniqueOf(TechniqueObject& object, Device& device) {
+    std::vector<std::shared_ptr<Technique>> parts;  // each keeps its handle's object alive
+    for (const auto& part : object.parts) parts.emplace_back(part, part->technique.get());
+    object.technique = object.entry->join ? object.entry->join(device, parts) : object.entry->create(device, object.descriptor.data());
+}
+
+std::shared_ptr<TechniqueObject> objectOf(const std::shared_ptr<DeviceObject>& device, const TechniqueText& text) {
+    auto object = std::make_shared<TechniqueObject>();
+    object->device = device;
+    object->entry = text.entry;
+    object->descriptor = text.descriptor;
+    for (const TechniqueText& part : text.parts) object->parts.push_back(objectOf(device, part));
+    makeTechniqueOf(*object, device->device);
+    return object;
+}
 
 LWStatus createTechnique(const char* function, LWDevice device, const char* name, const void* desc,
                          LWTechnique* technique) {
@@ -28,9 +46,7 @@ LWStatus createTechnique(const char* function, LWDevice device, const char* name
         object->entry = &entry;
         object->descriptor = descriptor;
         object->parts = partsOf(call, entry, descriptor);
-        std::vector<std::shared_ptr<Technique>> parts;  // each keeps its handle's object alive
-        for (const auto& part : object->parts) parts.emplace_back(part, part->technique.get());
-        object->technique = entry.join ? entry.join(own, parts) : entry.create(own, descriptor.data());
+        makeTechniqueOf(*object, own);
         *technique = static_cast<LWTechnique>(addHandle(HandleKind::kTechnique, std::move(object)));
     });
 }
@@ -113,6 +129,18 @@ LWStatus lwDescribeTechnique(std::uint32_t index, LWTechniqueInfo* info) {
 
 LWStatus lwCreateTechnique(LWDevice device, const char* name, const void* desc, LWTechnique* technique) {
     return createTechnique("lwCreateTechnique", device, name, desc, technique);
+}
+
+LWStatus lwCreateTechniqueFromText(LWDevice device, const char* name, const char* settings, LWTechnique* technique) {
+    return enter("lwCreateTechniqueFromText", [&](Call& call) {
+        call.device(device);
+        if (!technique)
+            fail(LW_ERROR_INVALID_ARGUMENT, "technique: expected an address for the handle, got null");
+        *technique = nullptr;
+        if (!name) fail(LW_ERROR_INVALID_ARGUMENT, "name: expected a technique's name, got null");
+        const TechniqueText text = parseTechnique(name, settings ? settings : "");
+        *technique = static_cast<LWTechnique>(addHandle(HandleKind::kTechnique, objectOf(call.owner(), text)));
+    });
 }
 
 LWStatus lwCreateRsm(LWDevice device, const LWRsmDesc* desc, LWTechnique* technique) {

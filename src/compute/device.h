@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "compute/cl.h"
@@ -70,6 +71,7 @@ public:
     const EventWatch& watched() const { return watch_; }
     std::uint64_t failures() const { return watch_.failures(); }  // of commands, noticed since creation
     void warnOfCache(const std::string& problem);  // once per device
+    std::optional<LWRoofline>& roofline() { return roofline_; }  // knownRoofline's (roofline.h)
 
 private:
     void open(const LWDeviceDesc& desc);
@@ -90,6 +92,7 @@ private:
     void* logUser_ = nullptr;
     bool warnedOfCache_ = false;
     std::string identity_;
+    std::optional<LWRoofline> roofline_;
     EventWatch watch_;
     std::unique_ptr<ProgramCache> programs_;
 };

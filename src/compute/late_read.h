@@ -30,6 +30,7 @@ public:
         clFinish(executor.device().queue());
         checkCl(failed, "clEnqueueMarkerWithWaitList");
     }
+    bool isPending() const { return done_ != nullptr; }  // a read that take() has not had yet
     // What has come since the last call; null where nothing has, or commands failed.
     const T* take() {
         if (!done_) return nullptr;

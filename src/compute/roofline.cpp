@@ -2,8 +2,12 @@
 #include "compute/roofline.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <string>
 
 #include "compute/probe_queue.h"
+#include "compute/program.h"
 
 namespace lightwell {
 namespace {
@@ -85,6 +89,13 @@ double launchSeconds(Device& device, ProbeQueue& queue, const Buffer& out) {
     return shortest(0.05, run) / launches;
 }
 
+// Whether these can be any device's.
+bool areRates(const LWRoofline& roofline) {
+    for (const double rate : {roofline.multiplyAddGflops, roofline.bandwidthGBps, roofline.launchMicroseconds})
+        if (!(rate > 0.0 && std::isfinite(rate))) return false;
+    return roofline.structSize == sizeof roofline;
+}
+
 }  // namespace
 
 LWRoofline probeRoofline(Device& device) {
@@ -104,6 +115,31 @@ LWRoofline probeRoofline(Device& device) {
     roofline.bandwidthGBps = triadRate(device, queue) * 1e-9;
     roofline.launchMicroseconds = launchSeconds(device, queue, out) * 1e6;
     return roofline;
+}
+
+StoreKey rooflineKey(const Device& device) {
+    const std::string version = std::to_string(LW_VERSION_MAJOR) + "." + std::to_string(LW_VERSION_MINOR) + "." + std::to_string(LW_VERSION_PATCH);
+    return hashKey({"roofline", version, programSource("probe/roofline"), device.identity(), std::to_string(device.computeUnits()),
+                    std::to_string(device.width()), std::to_string(sizeof(LWRoofline))});
+}
+
+const LWRoofline& knownRoofline(Device& device) {
+    if (device.roofline()) return *device.roofline();
+    const BinaryStore& store = device.programs().store();
+    const StoreKey key = rooflineKey(device);
+    BinaryStore::Bytes bytes;
+    const BinaryStore::Found found = store.read(key, bytes);
+    LWRoofline roofline{};
+    if (found == BinaryStore::Found::kYes && bytes.size() == sizeof roofline) std::memcpy(&roofline, bytes.data(), sizeof roofline);
+    if (!areRates(roofline)) {
+        if (found != BinaryStore::Found::kNo)
+            device.log(LW_LOG_WARNING, "cache: " + store.path(key) + " is damaged; the device's rates are measured again");
+        roofline = probeRoofline(device);
+        const auto* first = reinterpret_cast<const unsigned char*>(&roofline);
+        if (const auto problem = store.write(key, {first, first + sizeof roofline})) device.warnOfCache(*problem);
+    }
+    device.roofline() = roofline;
+    return *device.roofline();
 }
 
 }  // namespace lightwell

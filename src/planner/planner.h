@@ -1,10 +1,11 @@
 // The planner: which technique, with which parameters, for what a frame brings and what may be spent.
 //
-//     const FrameTraits traits = traitsOf(device, view, frame, gbuffer);     // what is possible, and how large
-//     const Probes probes = ...;                                             // frame_probes.h
-//     const Choice choice = plan(device.calibration(), traits, probes, budget);
+//     const FrameTraits traits = traitsOf(frame, gbuffer, pixels, views);     // what is possible, and how large
+//     const LWPlanProbes probes = ...;                                        // frame_probing.h
+//     const Choice choice = choose(predict(calibrationOf(device), traits, probes), budget, target);
 //
-// Pure arithmetic but for the probes: the tables are in plan_tables.h, written by docs/figures/planner.py.
+// Pure arithmetic but for probes and calibration; docs/planner.md derives it. The tables stand in plan_tables.h, written by
+// docs/figures/planner.py.
 #pragma once
 
 #include <cstdint>
@@ -28,13 +29,15 @@ struct FrameTraits {
 };
 // Checks nothing: the arguments are checked by who records or plans.
 FrameTraits traitsOf(const LWFrame& frame, const LWGBuffer& gbuffer, double pixels, std::uint32_t views);
+// Whether a camera is given: not all of its numbers are 0.
+bool hasCamera(const LWGBuffer& gbuffer);
 
 // Rates of this device against those of the one that the cost tables were measured on.
 struct Calibration {
     double computeScale = 1.0, memoryScale = 1.0, launchScale = 1.0;  // times as long as there
 };
 // Measured in less than two seconds when the device is first asked, then kept with it and in its cache directory.
-const Calibration& calibrationOf(Device& device);
+Calibration calibrationOf(Device& device);
 
 // A technique with parameters that the planner knows times and errors of.
 struct Candidate {
@@ -49,15 +52,17 @@ struct Prediction {
     double error = 0.0;         // relMSE against all bounces
     double confidence = 0.0;    // that the true error is within a factor of two
 };
-// Of all candidates that the frame allows, quickest first.
+// Of all candidates that the frame allows, quickest first; none where it allows none.
 std::vector<Prediction> predict(const Calibration& calibration, const FrameTraits& traits, const LWPlanProbes& probes);
+// What the frame lacks for the others: "RSMs, static VPLs"; "" where it allows all.
+std::string missingFor(const FrameTraits& traits);
 
 struct Choice {
     Prediction prediction;
     bool isWithinBudget = true, reachesError = true;
-    std::string reason;
+    std::string reason;  // a sentence
 };
-// `predictions`: not empty. A budget or target of 0: none.
+// `predictions`: not empty, quickest first. A budget or target of 0: none.
 Choice choose(const std::vector<Prediction>& predictions, double budgetMilliseconds, double errorTarget);
 
 }  // namespace lightwell

@@ -92,6 +92,8 @@ struct TechniqueEntry {
 };
 // The registry: one line per technique in registry.cpp.
 const std::vector<TechniqueEntry>& techniqueEntries();
+// Throws INVALID_ARGUMENT listing the valid names.
+const TechniqueEntry& findTechniqueEntry(const char* name);
 
 // Per-view state of a technique; dropped when the view is gone.
 template <class State>

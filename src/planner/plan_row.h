@@ -1,0 +1,53 @@
+// The tables that the planner reads (plan_tables.h), which docs/figures/planner.py writes from measurements.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace lightwell {
+
+// What a frame must bring for a technique with these settings to be possible, or to be what its figures say: bits.
+enum PlanNeeds : std::uint32_t {
+    kPlanNeedsRsms = 1,        // RSMs, or VPLs of the host's
+    kPlanNeedsRadiance = 2,    // LWGBuffer::directRadiance
+    kPlanNeedsCamera = 4,      // LWGBuffer::camera
+    kPlanNeedsGeometry = 8,    // triangles or surfels
+    kPlanNeedsStaticVpls = 16, // places of the host's
+    kPlanNeedsMotion = 32      // LWGBuffer::motion: of what keeps a history
+};
+
+constexpr std::size_t kPlanProbes = 8;  // in the order of LWPlanProbes' fields
+
+// A technique with settings that were measured.
+//
+//     ms = launches * (here) + computeScale * (cost[0] - launches * (there) + cost[1] * views * Mpixels + cost[2] * Mtriangles)
+//          + memoryScale * cost[3] * Mtexels
+//
+// with (here) and (there) the milliseconds of a launch on this device and on the one that was measured, scales of 1 there;
+// triangles: and surfels, texels: of all RSMs. All of `cost` are 0 or more.
+//
+//     log10 relMSE = errorMean + sum over probes of errorSlopes * z,   with a standard deviation of errorSigma
+struct PlanRow {
+    const char* technique;
+    const char* settings;  // as lwCreateTechniqueFromText takes them
+    std::uint32_t needs;
+    double launches;  // of kernels in a frame; 0: not known
+    double cost[4];   // ms, ms per million pixels, per million triangles, per million texels
+    double errorMean;
+    double errorSlopes[kPlanProbes];
+    double errorSigma;
+};
+
+// z = (log10(max(probe, floor)) - mean) / deviation, not below `lowest`, not above `highest`; 0 for a probe that is NaN.
+struct PlanProbeScale {
+    const char* name;  // LWPlanProbes' field
+    double floor, mean, deviation, lowest, highest;
+};
+
+// Of the device that the costs were measured on, as `lightwell devices --probe` has them.
+struct PlanReference {
+    const char* device;
+    double multiplyAddGflops, bandwidthGBps, launchMicroseconds;
+};
+
+}  // namespace lightwell
