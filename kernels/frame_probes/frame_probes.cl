@@ -26,7 +26,7 @@ LW_FN lw_surface surface_at(const probe_view* v, lanei x, lanei y) {
                         gather(v->normal, n), gather(v->normal, n + ns), gather(v->normal, n + 2 * ns));
 }
 
-// The luminance of three planes; what is no number of 0 or more counts as 0, more than `most` as that.
+// The luminance of three planes; what is no number of 0 or more counts as 0, more than `most` as that: sums stay finite.
 LW_FN real luminance_at(__global const float* image, int4 layout, lanei x, lanei y, float most, real* colour) {
     const lanei at = at_pixel(layout, x, y);
     LW_UNROLL for (int c = 0; c < 3; ++c) {
@@ -120,7 +120,7 @@ __kernel void frame_probes_pixels(__global const float* position, int4 positionL
 
     real rho[3] = {none, none, none}, direct[3] = {none, none, none}, reflectance = none, shown = none;
     if (has & LW_PROBE_HAS_ALBEDO) reflectance = luminance_at(albedo, albedoLayout, x, y, 1.0f, rho);
-    if (has & LW_PROBE_HAS_RADIANCE) shown = luminance_at(radiance, radianceLayout, x, y, LW_LARGEST_IRRADIANCE, direct);
+    if (has & LW_PROBE_HAS_RADIANCE) shown = luminance_at(radiance, radianceLayout, x, y, LW_LARGEST_EMISSION, direct);
     // Emitters send flux / pi, surfaces rho / pi of what arrives.
     const real indirect = PROBE_LUMINANCE(rho[0] * e.r, rho[1] * e.g, rho[2] * e.b) * (M_1_PI_F * M_1_PI_F);
 

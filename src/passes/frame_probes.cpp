@@ -27,9 +27,14 @@ float ratio(double part, double whole, bool has = true) {
     return float(has && whole > 0.0 && std::isfinite(whole) && std::isfinite(part) ? part / whole : kNone);
 }
 
-// Root mean square distance from the middle.
+// Root mean square distance from the middle; none where that is no more than what float's rounding makes of a point.
 double radiusOf(const LwProbeChunk& places) {
-    return places.count > 0.0f ? std::sqrt(double(places.spread) / double(places.count)) : kNone;
+    if (!(places.count > 0.0f)) return kNone;
+    constexpr double kRounding = 2e-6;
+    const double radius = std::sqrt(double(places.spread) / double(places.count));
+    double squared = 0.0;
+    for (const float part : places.mean) squared += double(part) * double(part);
+    return radius > kRounding * std::sqrt(squared) ? radius : 0.0;
 }
 
 }  // namespace
