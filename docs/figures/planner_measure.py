@@ -25,6 +25,9 @@ rsm vpls=64 resolution=half
 rsm resolution=half
 rsm
 rsm visibility=voxel resolution=half
+ssvp vpls=64 clusters=2 map_size=64 bounces=1 resolution=half
+ssvp vpls=128 clusters=4 map_size=64 bounces=1 resolution=half
+ssvp vpls=64 clusters=4 map_size=64 second_vpls=16 resolution=half
 ssvp clusters=4 bounces=1 resolution=half
 ssvp clusters=4 map_size=64 resolution=half
 ssvp clusters=4 resolution=half

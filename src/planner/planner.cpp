@@ -39,11 +39,11 @@ bool allows(std::uint32_t brought, const PlanRow& row) {
     return (row.needs & ~brought) == 0;
 }
 
-double millisecondsOf(const PlanRow& row, const Calibration& calibration, const FrameTraits& traits) {
+double millisecondsOf(const PlanRow& row, const Calibration& calibration, const FrameTraits& traits, double facing) {
     const double million = 1e-6;
     // What a launch takes is part of what was measured as fixed, but grows by its own rate.
     const double launching = std::min(row.launches * kPlanReference.launchMicroseconds * 1e-3, row.cost[0]);
-    const double computed = row.cost[0] - launching + row.cost[1] * traits.pixels * traits.views * million +
+    const double computed = row.cost[0] - launching + (row.cost[1] + row.cost[4] * facing) * traits.pixels * traits.views * million +
                             row.cost[2] * (traits.triangles + traits.surfels) * million;
     return calibration.launchScale * launching + calibration.computeScale * computed +
            calibration.memoryScale * row.cost[3] * traits.rsmTexels * million;
@@ -162,12 +162,13 @@ const std::vector<Candidate>& candidates() {
 std::vector<Prediction> predict(const Calibration& calibration, const FrameTraits& traits, const LWPlanProbes& probes) {
     const std::uint32_t brought = broughtBy(traits);
     const std::array<double, kPlanProbes> z = standardised(probes);
+    const double facing = std::isnan(probes.facing) ? kPlanReference.usualFacing : std::clamp(double(probes.facing), 0.0, 1.0);
     Predictions predictions;
     for (std::size_t i = 0; i < std::size(kPlanRows); ++i) {
         if (!allows(brought, kPlanRows[i])) continue;
         Prediction prediction;
         prediction.candidate = i;
-        prediction.milliseconds = millisecondsOf(kPlanRows[i], calibration, traits);
+        prediction.milliseconds = millisecondsOf(kPlanRows[i], calibration, traits, facing);
         predictError(kPlanRows[i], z, prediction);
         predictions.push_back(prediction);
     }
