@@ -48,7 +48,6 @@ ssvp vpls=1024 clusters=32 bounces=4 resolution=half
 ssvp vpls=1024 clusters=32 bounces=4 interleave=8 resolution=half
 ssvp vpls=1024 clusters=32 bounces=4 shadowed_bounces=1 resolution=half
 ssvp vpls=1024 clusters=64 resolution=half
-ssvp vpls=1024 clusters=64 interleave=8 resolution=half
 ssvp vpls=1024 clusters=64 bounces=4 resolution=half
 ssvp vpls=1024 clusters=64 bounces=4 interleave=8 resolution=half
 ssvp vpls=1024 clusters=64 bounces=4 shadowed_bounces=1 resolution=half
@@ -59,7 +58,6 @@ ssvp clusters=16 bounces=4
 ssvp clusters=32
 ssvp vpls=1024 clusters=32 bounces=4
 ssvp vpls=1024 clusters=64
-ssvp vpls=1024 clusters=64 bounces=4 interleave=8
 lpv transport=sweep size=16 directions=96 resolution=half
 lpv transport=sweep size=16 directions=96 bounces=4 resolution=half
 cone_tracing size=32 cones=6 bounces=0 resolution=quarter
@@ -180,12 +178,17 @@ def collect(work, date):
     launched = json.loads((work / "launches.json").read_text()) if (work / "launches.json").exists() else {}
     rates = json.loads((work / "rates.json").read_text()) if (work / "rates.json").exists() else []
     rate = next((r for r in rates if "multiply_add_gflops" in r), None)
+    whole = [c for c in range(len(CANDIDATES)) if all(row[c] is not None for row in errors)]
+    for c in set(range(len(CANDIDATES))) - set(whole):
+        print(f"left out, for it is not measured in every view: {CANDIDATES[c]}")
+    pick = lambda row: [row[c] for c in whole]  # noqa: E731
     result = {"date": date, "device": header["device"]["name"], "driver": header["device"]["driver"], "cpu": header["versions"]["cpu"],
               "threads": threads, "size": list(SIZE), "judged_block": BLOCK, "rsm_texels": RSM_USUAL ** 2,
               "clock_over_processor": round(beyond, 4), "rates": rate,
-              "candidates": [{"technique": parted(c)[0], "settings": parted(c)[1], "launches": launched.get(c, 0)} for c in CANDIDATES],
+              "candidates": [{"technique": parted(c)[0], "settings": parted(c)[1], "launches": launched.get(c, 0)} for c in pick(CANDIDATES)],
               "views": [{**v, "noise": noise_of(charts, v)} for v in probed],
-              "errors": errors, "ms": ms, "sizes": sizes(work, threads, beyond), "ms_per_megatexel": per_megatexel(work), "rival": rivals(work, threads, beyond)}
+              "errors": list(map(pick, errors)), "ms": list(map(pick, ms)),
+              "sizes": [{**entry, "ms": pick(entry["ms"])} for entry in sizes(work, threads, beyond)], "ms_per_megatexel": per_megatexel(work), "rival": rivals(work, threads, beyond)}
     DATA.write_text(compact(result), encoding="utf-8")
     print(DATA)
 
