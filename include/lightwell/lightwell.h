@@ -32,8 +32,8 @@
  * default", unless the field says what else.
  *
  * THREADS: calls on one device are serialised by a lock of that device and may come from any thread;
- * devices are independent of each other. lwFinish, lwGetStats, lwReadLightList and lwReadDebugView wait with the lock open
- * for what was enqueued before them, so that other threads' frames go on meanwhile; lwPrewarm, lwProbeDevice
+ * devices are independent of each other. lwFinish, lwGetStats, lwReadLightList, lwReadDebugView, lwPlan and lwListPlans wait with the
+ * lock open for what was enqueued before them, so that other threads' frames go on meanwhile; lwPrewarm, lwProbeDevice
  * and lwCheckInputs keep it to their end. A log callback must not call Lightwell (it gets LW_ERROR_REENTRANT), nor
  * throw.
  *
@@ -185,7 +185,7 @@ LW_API LWStatus lwGetDeviceInfo(LWDevice device, LWDeviceInfo* info);
 LW_API LWStatus lwCountDevices(uint32_t* count);
 LW_API LWStatus lwDescribeDevice(uint32_t index, LWDeviceInfo* info);
 
-/** Measures the device's peak rates. Blocks for less than two seconds. */
+/** Measures the device's peak rates, and has lwPlan know them from now on. Blocks for less than two seconds. */
 LW_API LWStatus lwProbeDevice(LWDevice device, LWRoofline* roofline);
 
 /** Waits until everything enqueued on the device before this call has finished, and reports errors of its
@@ -942,7 +942,7 @@ typedef struct LWPlanDesc {
     float budgetMs;    /**< of a frame: lwUpdate and all of its lwRender, from the host's images to its output; 0: no limit */
     float errorTarget; /**< relMSE against all bounces (docs/accuracy.md); the cheapest that is predicted to reach it, else the most
                             accurate within the budget. 0: the most accurate within the budget */
-    uint32_t views;    /**< that a frame renders; 0: 1 */
+    uint32_t views;    /**< that a frame renders, 64 at most; 0: 1 */
 } LWPlanDesc;
 
 /** What lwPlan measures of a frame in order to predict errors; where it has nothing to measure it by, a figure is NaN. */

@@ -58,8 +58,8 @@ LW_FN void compare_neighbours(const probe_view* v, lw_surface a, real depth, lw_
 }
 
 // Where something is shown in front of the segment from pixel to emitter, near enough to lie in its way.
-LW_FN mask is_hidden(const probe_view* v, lw_surface s, real ex, real ey, real ez) {
-    mask hidden = splat_mask(0);
+LW_FN mask is_hidden(const probe_view* v, lw_surface s, mask faces, real ex, real ey, real ez) {
+    mask hidden = not_(faces);  // of the others nothing is asked
     for (int k = 1; k <= LW_PROBE_STEPS; ++k) {
         const float t = (float)k / (float)(LW_PROBE_STEPS + 1);
         const real x = fma_(t, ex - s.px, s.px), y = fma_(t, ey - s.py, s.py), z = fma_(t, ez - s.pz, s.pz);
@@ -75,13 +75,15 @@ LW_FN mask is_hidden(const probe_view* v, lw_surface s, real ex, real ey, real e
         const lanei p = at_pixel(v->positionLayout, px, py), n = at_pixel(v->normalLayout, px, py);
         const int ps = v->positionLayout.z, ns = v->normalLayout.z;
         const real sx = gather(v->position, p), sy = gather(v->position, p + ps), sz = gather(v->position, p + 2 * ps);
-        const mask shown = is_surface(sx, sy, sz, gather(v->normal, n), gather(v->normal, n + ns), gather(v->normal, n + 2 * ns));
         const real depth = depth_of(v, x, y, z), scale = scale_of(v, depth);
         const real front = depth - depth_of(v, sx, sy, sz);
-        const mask blocks = and_(front > LW_PROBE_LEAST * scale, front < LW_PROBE_MOST * scale);
-        hidden = or_(hidden, and_(and_(inside, shown), blocks));
+        const mask blocks = and_(inside, and_(front > LW_PROBE_LEAST * scale, front < LW_PROBE_MOST * scale));
+        // Memory that is far apart is what this costs: normals only where they decide.
+        if (!any_(and_(blocks, not_(hidden)))) continue;
+        const mask shown = is_surface(sx, sy, sz, gather(v->normal, n), gather(v->normal, n + ns), gather(v->normal, n + 2 * ns));
+        hidden = or_(hidden, and_(shown, blocks));
     }
-    return hidden;
+    return and_(hidden, faces);
 }
 
 // Of the pixels in column `column` on of the grid's row `row`: which pixel each is.
@@ -141,7 +143,7 @@ __kernel void frame_probes_pixels(__global const float* position, int4 positionL
             const real there = fma_(dx, gather(emitters, at + 4), fma_(dy, gather(emitters, at + 5), dz * gather(emitters, at + 6)));
             const mask faces = and_(here > 0.0f, there > 0.0f);
             tested += ones_(faces);
-            hidden += ones_(and_(faces, is_hidden(&v, s, ex, ey, ez)));
+            hidden += ones_(is_hidden(&v, s, faces, ex, ey, ez));
         }
     }
 

@@ -86,7 +86,8 @@ __kernel void frame_probes_texels(__global const float* texels, int4 layout, __g
         weight = (vpl.flux.x + vpl.flux.y + vpl.flux.z) * (1.0f / 3.0f);
         places[i] = i - sampleCount;
     }
-    const int shown = hasCamera && t.valid && is_shown(t, camera, position, positionLayout, normal, normalLayout, width, height);
+    // Without weight it does not matter.
+    const int shown = hasCamera && t.valid && weight > 0.0f && is_shown(t, camera, position, positionLayout, normal, normalLayout, width, height);
     write_texel(planes, step, i, t.valid ? weight : 0.0f, t, shown);
 }
 

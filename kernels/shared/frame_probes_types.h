@@ -15,7 +15,7 @@
 #define LW_PROBE_TEXELS 4096
 #define LW_PROBE_CHUNKS 64    // that their sums are taken in, one work-item each
 #define LW_PROBE_EMITTERS 128 // drawn by flux from the texels; each lights each of the pixels
-#define LW_PROBE_PAIRS 2      // of each pixel with an emitter, between which the view is asked for something in front
+#define LW_PROBE_PAIRS 1      // of each pixel with an emitter, between which the view is asked for something in front
 #define LW_PROBE_STEPS 6      // along each of them; more would find thinner things
 
 // Lengths as shares of the depth (of an orthographic view: of its size).

@@ -103,7 +103,7 @@ LWStatus lwProbeDevice(LWDevice device, LWRoofline* roofline) {
     return enter("lwProbeDevice", [&](Call& call) {
         Device& own = call.device(device);
         const std::uint32_t size = checkedStructSize(roofline, "roofline");
-        writeStruct(roofline, size, probeRoofline(own));
+        writeStruct(roofline, size, renewRoofline(own));
     });
 }
 

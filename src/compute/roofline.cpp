@@ -123,6 +123,14 @@ StoreKey rooflineKey(const Device& device) {
                     std::to_string(device.width()), std::to_string(sizeof(LWRoofline))});
 }
 
+const LWRoofline& renewRoofline(Device& device) {
+    const LWRoofline roofline = probeRoofline(device);
+    device.roofline() = roofline;
+    const auto* first = reinterpret_cast<const unsigned char*>(&roofline);
+    if (const auto problem = device.programs().store().write(rooflineKey(device), {first, first + sizeof roofline})) device.warnOfCache(*problem);
+    return *device.roofline();
+}
+
 const LWRoofline& knownRoofline(Device& device) {
     if (device.roofline()) return *device.roofline();
     const BinaryStore& store = device.programs().store();
@@ -134,9 +142,7 @@ const LWRoofline& knownRoofline(Device& device) {
     if (!areRates(roofline)) {
         if (found != BinaryStore::Found::kNo)
             device.log(LW_LOG_WARNING, "cache: " + store.path(key) + " is damaged; the device's rates are measured again");
-        roofline = probeRoofline(device);
-        const auto* first = reinterpret_cast<const unsigned char*>(&roofline);
-        if (const auto problem = store.write(key, {first, first + sizeof roofline})) device.warnOfCache(*problem);
+        return renewRoofline(device);
     }
     device.roofline() = roofline;
     return *device.roofline();

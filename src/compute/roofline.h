@@ -15,6 +15,8 @@ LWRoofline probeRoofline(Device& device);
 // The same, measured when the device is first asked, then kept with it and beside its programs on disk. A file there that is
 // damaged, or holds no rates, is replaced, and logged.
 const LWRoofline& knownRoofline(Device& device);
+// Measured now, and kept in place of what was known.
+const LWRoofline& renewRoofline(Device& device);
 // Of this device, driver and library, in the store that holds the device's programs.
 StoreKey rooflineKey(const Device& device);
 

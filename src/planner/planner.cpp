@@ -81,8 +81,9 @@ void predictError(const PlanRow& row, const std::array<double, kPlanProbes>& z, 
 
 std::string number(double value) {
     char text[32];
-    std::snprintf(text, sizeof text, "%.2g", value);
-    return value >= 100.0 ? std::to_string(std::lround(value)) : text;
+    const bool isPlain = value >= 100.0 && value < 1e6;  // two digits would say too little, an exponent is hard to read
+    std::snprintf(text, sizeof text, isPlain ? "%.0f" : "%.2g", value);
+    return text;
 }
 
 std::string nameOf(const Prediction& prediction) {

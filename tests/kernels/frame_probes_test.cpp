@@ -7,13 +7,9 @@
 #include <cstdio>
 #include <cstring>
 #include <map>
-#include <memory>
 
-#include "inputs/camera.h"
-#include "reference/frame_probes_twin.h"
 #include "shared/vpl_types.h"
-#include "support/kernel_rig.h"
-#include "support/view_scene.h"
+#include "support/frame_probes_rig.h"
 
 using namespace lightwell;
 using namespace lightwell::test;
@@ -24,188 +20,6 @@ constexpr double kPi = 3.14159265358979323846;
 // Sums of some thousand floats; and what a place on the edge of a pixel or of a tolerance decides otherwise than in double, of
 // 2,304 pixels and 4,096 texels.
 constexpr double kRounding = 2e-4, kDecisions = 2e-3;
-
-// A room whose floor a lamp lights, with a panel that stands in it.
-ViewScene room() {
-    ViewScene scene;
-    scene.quad({-2, 0, -2}, {4, 0, 0}, {0, 0, 4}, 0.5);
-    scene.quad({-2, 0, -2}, {0, 3, 0}, {4, 0, 0}, 0.1);
-    scene.quad({-2, 0, -2}, {0, 0, 4}, {0, 3, 0}, 0.05);
-    scene.quad({2, 0, -2}, {0, 3, 0}, {0, 0, 4}, 0.02);
-    scene.quad({0.3, 0, -0.6}, {0.2, 0, 1}, {0, 1.2, 0}, 0.2);
-    return scene;
-}
-
-struct Setup {
-    ViewScene scene = room();
-    TestCamera camera = lookAt({0.2, 1.5, 2.5}, {0, 0.6, 0}, 0.6, 16.0 / 9.0);
-    TestCamera lamp = lookAt({-0.5, 2.8, 0.3}, {-0.4, 0, 0.1}, 0.7, 1.0);
-    std::uint32_t width = 320, height = 180, texels = 128;
-    double length = 1.0, light = 1.0;  // the unit of length, the lamp's strength
-    bool hasAlbedo = true, hasRadiance = true;
-};
-
-glm::dvec3 albedoOf(const ViewScene::Hit& hit) { return glm::dvec3(0.7, 0.5, 0.3) * (0.6 + 0.4 * std::sin(3.0 * hit.position.x)); }
-
-TestCamera scaled(TestCamera camera, double by) {
-    camera.eye *= by;
-    camera.near *= by;
-    camera.far *= by;
-    if (camera.orthographic) camera.left *= by, camera.rightEdge *= by, camera.bottom *= by, camera.top *= by;
-    return camera;
-}
-
-ViewScene::Hit castPixel(const ViewScene& scene, const TestCamera& camera, std::uint32_t x, std::uint32_t y, std::uint32_t w, std::uint32_t h) {
-    const double u = (x + 0.5) / w, v = (y + 0.5) / h;
-    const glm::dvec3 from = camera.orthographic ? camera.point(u, v, 0.0) : camera.eye;
-    return scene.cast(from, glm::normalize(camera.point(u, v, 1.0) - from));
-}
-
-// As float holds it: what the device gets.
-glm::dvec3 rounded(const glm::dvec3& v) { return {double(float(v.x)), double(float(v.y)), double(float(v.z))}; }
-
-ProbedPicture drawPicture(const Setup& s) {
-    ProbedPicture picture;
-    picture.width = s.width;
-    picture.height = s.height;
-    for (std::uint32_t y = 0; y < s.height; ++y)
-        for (std::uint32_t x = 0; x < s.width; ++x) {
-            const ViewScene::Hit hit = castPixel(s.scene, s.camera, x, y, s.width, s.height);
-            ProbeSurface surface;
-            surface.isSurface = bool(hit);
-            if (hit) surface.position = rounded(hit.position * s.length), surface.normal = rounded(hit.normal);
-            picture.pixels.push_back(surface);
-            if (s.hasAlbedo) picture.albedo.push_back(hit ? rounded(albedoOf(hit)) : glm::dvec3(0.0));
-            if (s.hasRadiance) picture.radiance.push_back(rounded(glm::dvec3(hit.radiance * s.light)));
-        }
-    const TestCamera camera = scaled(s.camera, s.length);
-    picture.eye = camera.eye;
-    picture.right = camera.right;
-    picture.up = camera.up;
-    picture.forward = camera.forward;
-    picture.left = camera.left;
-    picture.rightEdge = camera.rightEdge;
-    picture.bottom = camera.bottom;
-    picture.top = camera.top;
-    picture.orthographic = camera.orthographic;
-    return picture;
-}
-
-// Flux of a lamp that shines evenly into its map, areas as lightwell.h defines them.
-ProbedMap drawMap(const Setup& s) {
-    ProbedMap map;
-    map.width = map.height = s.texels;
-    const double window = (s.lamp.rightEdge - s.lamp.left) * (s.lamp.top - s.lamp.bottom) / (double(s.texels) * s.texels);
-    for (std::uint32_t y = 0; y < s.texels; ++y)
-        for (std::uint32_t x = 0; x < s.texels; ++x) {
-            const ViewScene::Hit hit = castPixel(s.scene, s.lamp, x, y, s.texels, s.texels);
-            ProbedTexel t;
-            if (hit) {
-                const glm::dvec3 d = hit.position - s.lamp.eye;
-                const double axial = glm::dot(glm::normalize(d), s.lamp.forward), solid = window * axial * axial * axial;
-                const double cosine = std::max(0.05, std::abs(glm::dot(glm::normalize(d), hit.normal)));
-                t.isSurface = true;
-                t.position = rounded(hit.position * s.length);
-                t.normal = rounded(hit.normal);
-                t.flux = rounded(albedoOf(hit) * (30.0 * s.light * solid * s.length * s.length));
-                t.area = double(float(solid * glm::dot(d, d) / cosine * s.length * s.length));
-            }
-            map.texels.push_back(t);
-        }
-    return map;
-}
-
-// The pass on these, as RsmInput and GBufferInput would lay them out.
-class Probing {
-public:
-    explicit Probing(std::uint32_t width) : rig(width), pass(rig.device()) {}
-
-    LWPlanProbes run(const ProbedPicture& picture, const std::vector<ProbedMap>& maps, const LWCamera* camera,
-                     const std::vector<LWVpl>& vpls = {}) {
-        std::vector<float> position, normal, albedo, radiance;
-        const auto planes = [&](auto value) {
-            std::vector<float> packed;
-            for (int c = 0; c < 3; ++c)
-                for (std::size_t i = 0; i < picture.pixels.size(); ++i) packed.push_back(float(value(i)[c]));
-            held.push_back(std::make_unique<Guarded>(rig.uploadPlanes(packed, picture.width, picture.height, 3, std::nanf(""))));
-            return rig.planes(*held.back(), picture.width, picture.height, 3);
-        };
-        ProbedView view;
-        view.position = planes([&](std::size_t i) { return picture.pixels[i].position; });
-        view.normal = planes([&](std::size_t i) { return picture.pixels[i].normal; });
-        if (!picture.albedo.empty()) view.albedo = planes([&](std::size_t i) { return picture.albedo[i]; });
-        if (!picture.radiance.empty()) view.directRadiance = planes([&](std::size_t i) { return picture.radiance[i]; });
-        view.width = picture.width;
-        view.height = picture.height;
-        view.hasCamera = camera != nullptr;
-        if (camera) view.camera = Camera(*camera, picture.width, picture.height, "camera").texelsOf(1);
-        RsmInput input;
-        upload(maps, input);
-        pass.record(rig.executor(), view, input, vpls.data(), std::uint32_t(vpls.size()));
-        pass.readLate(rig.executor());
-        rig.device().finish();
-        const LWPlanProbes* probes = pass.take();
-        REQUIRE(probes != nullptr);
-        CHECK(pass.take() == nullptr);
-        pass.sums().download(0, sizeof sums, &sums);
-        return *probes;
-    }
-
-    KernelRig rig;
-    FrameProbes pass;
-    LwFrameProbes sums{};
-
-private:
-    void upload(const std::vector<ProbedMap>& maps, RsmInput& input) {
-        std::uint32_t total = 0;
-        for (const ProbedMap& map : maps) {
-            input.spans.push_back({0, total, 0, map.width, map.height});
-            total += paddedWidth(map.width) * map.height;
-        }
-        if (total == 0) return;
-        std::vector<float> planes(std::size_t(total) * RsmInput::kPlaneCount, 0.0f);
-        for (std::size_t m = 0; m < maps.size(); ++m)
-            for (std::uint32_t y = 0; y < maps[m].height; ++y)
-                for (std::uint32_t x = 0; x < maps[m].width; ++x) {
-                    const ProbedTexel& t = maps[m].texels[std::size_t(y) * maps[m].width + x];
-                    const std::size_t at = input.spans[m].firstTexel + std::size_t(y) * paddedWidth(maps[m].width) + x;
-                    for (int c = 0; c < 3; ++c) {
-                        planes[std::size_t(RsmInput::kPositionX + c) * total + at] = float(t.position[c]);
-                        planes[std::size_t(RsmInput::kNormalX + c) * total + at] = float(t.normal[c]);
-                        planes[std::size_t(RsmInput::kFluxR + c) * total + at] = float(t.flux[c]);
-                    }
-                    planes[std::size_t(RsmInput::kArea) * total + at] = float(t.area);
-                }
-        held.push_back(std::make_unique<Guarded>(rig.upload(planes)));
-        input.texels.memory = held.back()->get();
-        input.texels.rowStride = input.texels.planeStride = total;
-        input.texels.width = total;
-        input.texels.height = 1;
-        input.texels.count = RsmInput::kPlaneCount;
-    }
-    std::vector<std::unique_ptr<Guarded>> held;
-};
-
-LWPlanProbes probe(Probing& probing, const Setup& setup) {
-    const LWCamera camera = scaled(setup.camera, setup.length).matrices();
-    return probing.run(drawPicture(setup), {drawMap(setup)}, &camera);
-}
-
-void checkNear(const LWPlanProbes& got, const LWPlanProbes& expected, double relative, double absolute) {
-    const auto near = [&](float a, float b, const char* name) {
-        INFO(name << ": " << a << ", expected " << b);
-        CHECK(std::isnan(a) == std::isnan(b));
-        CHECK_FALSE(std::abs(double(a) - double(b)) > relative * std::abs(double(b)) + absolute);
-    };
-    near(got.indirectShare, expected.indirectShare, "indirectShare");
-    near(got.fluxOnScreen, expected.fluxOnScreen, "fluxOnScreen");
-    near(got.fluxConcentration, expected.fluxConcentration, "fluxConcentration");
-    near(got.depthComplexity, expected.depthComplexity, "depthComplexity");
-    near(got.extent, expected.extent, "extent");
-    near(got.albedo, expected.albedo, "albedo");
-    near(got.facing, expected.facing, "facing");
-    near(got.hidden, expected.hidden, "hidden");
-}
 
 // A level floor or ceiling of n x n texels over [-1,1]^2 at `height`; flux even.
 ProbedMap floorMap(std::uint32_t n, double height = 0.0, double up = 1.0) {
@@ -229,7 +43,7 @@ ProbedMap floorMap(std::uint32_t n, double height = 0.0, double up = 1.0) {
 TEST_CASE("probes are those of the serial twin", "[frame_probes]") {
     const auto width = GENERATE(1u, 16u);
     Probing probing(width);
-    Setup setup;
+    ProbedSetup setup;
     std::tie(setup.width, setup.height) = testSize({320, 180});
     SECTION("one map") {
         const ProbedPicture picture = drawPicture(setup);
@@ -248,7 +62,7 @@ TEST_CASE("probes are those of the serial twin", "[frame_probes]") {
         setup.camera.orthographic = true;
         setup.camera.eye = {0.0, 1.5, 2.5};
         setup.camera.left = -3.0, setup.camera.rightEdge = 3.0, setup.camera.bottom = -1.7, setup.camera.top = 1.7;
-        Setup other = setup;
+        ProbedSetup other = setup;
         other.texels = 37;
         const ProbedPicture picture = drawPicture(setup);
         const std::vector<ProbedMap> maps{drawMap(setup), drawMap(other), floorMap(16, 2.0, -1.0)};
@@ -266,9 +80,9 @@ TEST_CASE("probes are those of the serial twin", "[frame_probes]") {
 
 TEST_CASE("probes depend on no unit, no strength of light and no resolution", "[frame_probes][large]") {
     Probing probing(16);
-    const Setup plain;
+    const ProbedSetup plain;
     const LWPlanProbes probes = probe(probing, plain);
-    Setup long_ = plain, bright = plain, coarse = plain, fine = plain;
+    ProbedSetup long_ = plain, bright = plain, coarse = plain, fine = plain;
     long_.length = 10.0;
     bright.light = 100.0;
     coarse.width /= 2, coarse.height /= 2, coarse.texels /= 2;
@@ -281,7 +95,7 @@ TEST_CASE("probes depend on no unit, no strength of light and no resolution", "[
     checkNear(probe(probing, fine), probes, kHalfPixel, kPlaces);
     // Very bright, very long and very short units leave float's range nowhere.
     for (const double extreme : {1e-6, 1e6}) {
-        Setup far = plain;
+        ProbedSetup far = plain;
         far.length = extreme;
         checkNear(probe(probing, far), probes, 10 * kRounding, kDecisions);
         far.length = 1.0;
@@ -292,7 +106,7 @@ TEST_CASE("probes depend on no unit, no strength of light and no resolution", "[
 
 TEST_CASE("probes have the same bits in every run", "[frame_probes][large]") {
     Probing probing(16);
-    Setup setup;
+    ProbedSetup setup;
     std::tie(setup.width, setup.height) = testSize({320, 180});
     const LWCamera camera = setup.camera.matrices();
     const ProbedPicture picture = drawPicture(setup);
@@ -308,7 +122,7 @@ TEST_CASE("probes have the same bits in every run", "[frame_probes][large]") {
 TEST_CASE("probes of figures known by construction", "[frame_probes][large]") {
     Probing probing(GENERATE(1u, 16u));
     // A ceiling at 2 m, seen from below all over, over an evenly lit floor.
-    Setup setup;
+    ProbedSetup setup;
     setup.scene.quads.clear();
     setup.scene.quad({-8, 2, -8}, {16, 0, 0}, {0, 0, 16}, 0.0);
     setup.camera = lookAt({0, 0.5, 0}, {0, 2, 0.001}, 0.5, 1.0);
@@ -371,7 +185,7 @@ TEST_CASE("probes of figures known by construction", "[frame_probes][large]") {
 
 TEST_CASE("a screen between floor and ceiling hides them from each other, as far as the view shows it", "[frame_probes][large]") {
     Probing probing(16);
-    Setup setup;
+    ProbedSetup setup;
     setup.scene.quads.clear();
     setup.scene.quad({-4, 0, -4}, {8, 0, 0}, {0, 0, 8}, 0.0);   // floor
     setup.scene.quad({-4, 0, -4}, {0, 4, 0}, {8, 0, 0}, 0.0);   // wall behind
@@ -388,7 +202,7 @@ TEST_CASE("a screen between floor and ceiling hides them from each other, as far
 
 TEST_CASE("probes are NaN where nothing is given to measure them by", "[frame_probes][large]") {
     Probing probing(16);
-    Setup setup;
+    ProbedSetup setup;
     setup.width = 32, setup.height = 18;
     const LWCamera camera = setup.camera.matrices();
     SECTION("no light") {
@@ -442,7 +256,7 @@ TEST_CASE("probes are NaN where nothing is given to measure them by", "[frame_pr
 
 TEST_CASE("the host's own VPLs are emitters like texels", "[frame_probes]") {
     Probing probing(16);
-    Setup setup;
+    ProbedSetup setup;
     setup.width = 64, setup.height = 36;
     const LWCamera camera = setup.camera.matrices();
     LWVpl vpl{};
@@ -464,7 +278,7 @@ TEST_CASE("the host's own VPLs are emitters like texels", "[frame_probes]") {
 // `frame_probes_test "[timing]"`: the time of each pass at full size, for docs/planner.md.
 TEST_CASE("the time that probes take", "[frame_probes][large][.timing]") {
     Probing probing(16);
-    Setup setup;
+    ProbedSetup setup;
     setup.width = 1280, setup.height = 720, setup.texels = 512;
     const LWCamera camera = setup.camera.matrices();
     const ProbedPicture picture = drawPicture(setup);

@@ -208,6 +208,8 @@ TEST_CASE("the choice is the most accurate within the budget, or the cheapest th
     CHECK_FALSE(missed.reachesError);
     CHECK_THAT(missed.reason, Contains("none reaches 0.06"));
     CHECK(choose(made({{2.0, 0.8}}), 0.0, 0.0).reason.find("would") == std::string::npos);
+    CHECK_THAT(chosen(3e38, 0.0).reason, Contains("within 3e+38 ms"));
+    CHECK_THAT(chosen(12345.0, 0.0).reason, Contains("within 12345 ms"));
     CHECK_THROWS_AS(choose({}, 1.0, 0.0), Error);
     // A sentence of whatever the table holds fits into LWPlan.
     for (const double budget : {0.0, 1e-3, 5.0, 33.333333})
@@ -268,6 +270,11 @@ TEST_CASE("a device's rates are measured once, and kept on disk", "[planner][lar
     CHECK(std::memcmp(&knownRoofline(second), &measured, sizeof measured) == 0);
     CHECK(second.programs().built() + second.programs().loaded() == 0);
     CHECK(log.lines.empty());
+    // Whoever measures on purpose replaces them, for devices to come as well.
+    const LWRoofline renewed = renewRoofline(second);
+    CHECK(std::memcmp(&knownRoofline(second), &renewed, sizeof renewed) == 0);
+    Device third(desc);
+    CHECK(std::memcmp(&knownRoofline(third), &renewed, sizeof renewed) == 0);
     // Another width is another device.
     desc.width = 1;
     Device narrow(desc);
