@@ -120,7 +120,7 @@ def write_values(data, kept, model, costs):
         log = model.predict(data.probes[[v]])[0][kept]
         some = kept[v % len(kept)]
         at = list(kept).index(some)
-        chosen = ", ".join(f'"{names[kept[choose(ms, log, budget)[0]]]}"' for budget in BUDGETS)
+        chosen = ", ".join(f'"{names[kept[choose(ms, log, budget)]]}"' for budget in BUDGETS)
         probes = ", ".join(f"{p:.9g}f" if "." in f"{p:.9g}" or "e" in f"{p:.9g}" else f"{p:.1f}f" for p in data.probes[v])
         lines.append(f'    {{{{{probes}}}, {data.views[v]["triangles"]}.0, "{names[some]}", {ms[at]:.6g}, {10 ** log[at]:.6g},\n     {{{chosen}}}}},')
     lines += ["};", ""]

@@ -14,6 +14,7 @@ FLOORS = np.array([1e-3, 1e-3, 1e-4, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3])
 FACING = PROBES.index("facing")
 LIMIT = 2.5  # deviations beyond which a probe counts no more
 SAME = 1.02  # as in src/planner/planner.cpp: of errors so near to each other the quickest is taken
+SAME_TIME = 1.15  # likewise: where nothing fits
 BUDGETS = [4, 8, 16, 33, 66]  # ms
 STRENGTHS = [(rank, ridge) for rank in (1, 2) for ridge in (3.0, 10.0, 30.0, 100.0)] + [(1, math.inf)]
 RIDGE_OF_VIEWS = [3.0, 10.0, 30.0, 100.0, math.inf]
@@ -169,11 +170,9 @@ class ErrorModel:
 
 def choose(ms, log, budget):
     """Index of the candidate that planner.cpp chooses: predicted times and errors of one view."""
-    affordable = np.where(ms <= budget)[0]
-    if len(affordable) == 0:
-        return int(np.argmin(ms)), False
+    affordable = np.where(ms <= max(budget, SAME_TIME * ms.min() if ms.min() > budget else 0.0))[0]
     near = affordable[log[affordable] <= log[affordable].min() + math.log10(SAME)]
-    return int(near[np.argmin(ms[near])]), True
+    return int(near[np.argmin(ms[near])])
 
 
 def outcomes(data, ms, log, rows, allowed):
@@ -182,8 +181,7 @@ def outcomes(data, ms, log, rows, allowed):
     for i, v in enumerate(rows):
         for budget in BUDGETS:
             fits = np.where(data.ms[v] <= budget)[0]
-            chosen, _ = choose(ms[i][allowed], log[i][allowed], budget)
-            chosen = allowed[chosen]
+            chosen = allowed[choose(ms[i][allowed], log[i][allowed], budget)]
             # Where nothing fits, the quickest is the best that can be had.
             best = fits[np.argmin(data.log[v, fits])] if len(fits) else int(np.nanargmin(data.ms[v]))
             result.append((v, budget, chosen, int(best), 10 ** (data.log[v, chosen] - data.log[v, best]), bool(len(fits))))

@@ -17,6 +17,8 @@ namespace {
 
 // Errors so near to each other are the same to a viewer: of those the quickest is taken.
 constexpr double kSameError = 1.02;
+// Where no time is short enough, so much longer than the shortest costs less than what it saves in error.
+constexpr double kSameTime = 1.15;
 const double kTwice = std::log10(2.0);
 
 struct NeedName {
@@ -194,11 +196,13 @@ Choice choose(const std::vector<Prediction>& predictions, double budgetMilliseco
     const std::string limit = limitOf(budgetMilliseconds), possible = "of " + std::to_string(predictions.size()) + " possible";
     Choice choice;
     if (affordable == 0) {
-        choice.prediction = predictions.front();
+        const double quickest = predictions.front().milliseconds;
+        const auto isSlow = [&](const Prediction& one) { return one.milliseconds > kSameTime * quickest; };
+        choice.prediction = mostAccurate(predictions, std::size_t(std::find_if(predictions.begin(), predictions.end(), isSlow) - predictions.begin()));
         choice.isWithinBudget = false;
         choice.reachesError = !(errorTarget > 0.0) || choice.prediction.error <= errorTarget;
-        choice.reason = nameOf(choice.prediction) + ": " + possible + " none is predicted to stay" + limit + ", and this is the quickest (" +
-                        number(choice.prediction.milliseconds) + " ms)";
+        choice.reason = nameOf(choice.prediction) + ": " + possible + " none is predicted to stay" + limit + "; this is about as quick (" +
+                        number(choice.prediction.milliseconds) + " ms) as the quickest (" + number(quickest) + " ms), and the most accurate of those";
         return choice;
     }
     const auto affordableEnd = predictions.begin() + std::ptrdiff_t(affordable);
