@@ -40,6 +40,7 @@ def write(data, kept, heldOut, strength, sigma, model, costs):
     draw_choosing(data, needs)
     write_between(ROOT / "docs/planner.md", BEGIN, END, fit_block(data, kept, ms, log, found, strength, sigma))
     write_between(ROOT / "docs/choosing.md", BEGIN, END, choosing_block(data, kept, needs, found))
+    write_between(ROOT / "docs/choosing.md", "<!-- begin: thrift, written by docs/figures/planner.py -->", "<!-- end: thrift -->", thrift_block(data))
     write_between(ROOT / "docs/accuracy.md", BEGIN, END, accuracy_block(data, kept))
 
 
@@ -221,6 +222,28 @@ def choosing_block(data, kept, needs, found):
             cells.append(f"`{short(names[f[2]])}` {data.error[v, f[2]]:.2g} ({data.error[v, f[3]]:.2g})" if f[5] else "nothing fits")
         lines.append(f"| {view_name(view)} | " + " | ".join(cells) + " |")
     return lines + [""] + rival_lines(data, found)
+
+
+STEPS = [("bounces 2 to 4", "ssvp clusters=16 resolution=half", "ssvp clusters=16 bounces=4 resolution=half"),
+         ("clusters 8 to 16", "ssvp bounces=4 resolution=half", "ssvp clusters=16 bounces=4 resolution=half"),
+         ("clusters 16 to 32", "ssvp clusters=16 bounces=4 resolution=half", "ssvp clusters=32 bounces=4 resolution=half"),
+         ("VPLs 256 to 512", "ssvp clusters=16 bounces=4 resolution=half", "ssvp vpls=512 clusters=16 bounces=4 resolution=half"),
+         ("VPLs 256 to 1,024", "ssvp clusters=32 bounces=4 resolution=half", "ssvp vpls=1024 clusters=32 bounces=4 resolution=half"),
+         ("clusters 32 to 64", "ssvp vpls=1024 clusters=32 bounces=4 resolution=half", "ssvp vpls=1024 clusters=64 bounces=4 resolution=half"),
+         ("interleave 4 to 8", "ssvp vpls=1024 clusters=32 bounces=4 resolution=half", "ssvp vpls=1024 clusters=32 bounces=4 interleave=8 resolution=half"),
+         ("later bounces' light unshadowed", "ssvp clusters=16 bounces=4 resolution=half", "ssvp clusters=16 bounces=4 shadowed_bounces=1 resolution=half"),
+         ("half to full resolution", "ssvp clusters=16 bounces=4 resolution=half", "ssvp clusters=16 bounces=4")]
+
+
+def thrift_block(data):
+    names = data.names()
+    lines = ["| step | from | time | error | views where the error falls |", "| --- | --- | ---: | ---: | ---: |"]
+    for title, before, after in STEPS:
+        a, b = names.index(before), names.index(after)
+        change = data.log[:, b] - data.log[:, a]
+        lines.append(f"| {title} | `{short(before)}` | x {np.median(data.ms[:, b] / data.ms[:, a]):.2f} | x {10 ** change.mean():.2f} | "
+                     f"{(change < 0).sum()} of {len(change)} |")
+    return lines
 
 
 def rival_time(points, error):
