@@ -4,8 +4,8 @@ Below `work`: chart*/ (errors and times of all views; the point with more frames
 sizes), rival/ (path tracing), probes.json, rsm_sizes.json, launches.json. Every command goes on where it was stopped.
 """
 import json
-import math
 import pathlib
+import re
 import statistics
 import subprocess
 
@@ -89,7 +89,7 @@ def variant(candidate):
     return ",".join([technique, *(settings or ALONE[technique]).split()])
 
 
-def measure(program, work, only=None):
+def measure(program, work):
     def lightwell(*arguments, capture=True):
         result = subprocess.run([program, *map(str, arguments)], capture_output=capture, text=True)
         if result.returncode:
@@ -118,7 +118,8 @@ def measure(program, work, only=None):
 
 def probe(lightwell, view):
     plan = json.loads(lightwell("plan", view["scene"], "--camera", view["camera"], "--budget-ms", 33, "--json"))
-    return {"scene": view["scene"], "camera": view["camera"], "probes": plan["probes"], "triangles": plan["triangles"]}
+    named = {name: plan["probes"][re.sub("[A-Z]", lambda letter: "_" + letter.group().lower(), name)] for name in PROBES}
+    return {"scene": view["scene"], "camera": view["camera"], "probes": named, "triangles": plan["triangles"]}
 
 
 def launches(lightwell, candidate):
