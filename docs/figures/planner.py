@@ -6,7 +6,7 @@ docs/accuracy.md, their pictures, and what tests hold the C++ to.
     docs/figures/planner.py --measure [--lightwell PROGRAM]    measures first: hours where truths are not cached
     docs/figures/planner.py --collect --work DIR               takes what was measured below DIR
 
-The models are in planner_model.py, the measuring in planner_measure.py, the pages in planner_page.py.
+The models are in planner_model.py, the measuring in planner_measure.py, the pages in planner_page.py and planner_choosing.py.
 """
 import argparse
 import datetime
