@@ -79,7 +79,7 @@ def fit_costs(data, rows):
         rest = data.ms[rows, c][known] - perTexel * data.mega["texels"]
         share = fixed[c]
         # One column for what is the same in all views: parted afterwards by `share`.
-        matrix = np.stack([np.ones(known.sum()), triangles[known], facing[known]], axis=1)
+        matrix = np.stack([np.ones(known.sum()), triangles[known] * draws_geometry(technique, data.candidates[c][1]), facing[known]], axis=1)
         same, byTriangle, byFacing = robust(matrix, rest)
         pixels = data.mega["pixels"]
         costs[c] = [share * same, (1.0 - share) * same / pixels, byTriangle, perTexel, byFacing / pixels]
@@ -107,10 +107,9 @@ def fixed_shares(data):
                 measured.setdefault(c, []).append((view, scale, ms))
     shares = {}
     for c, points in measured.items():
-        # ms / ms(usual size) = share + (1 - share) * pixels / usual pixels
-        x = np.array([1.0 - p[1] / data.mega["pixels"] for p in points])
-        y = np.array([p[2] / data.ms[p[0], c] - p[1] / data.mega["pixels"] for p in points])
-        shares[c] = float(np.clip((x @ y) / (x @ x), 0.0, 0.9))
+        # ms / ms(usual size) = speed (share + (1 - share) pixels / usual pixels); speed: of the machine at that hour
+        slope, intercept = np.polyfit([p[1] / data.mega["pixels"] for p in points], [p[2] / data.ms[p[0], c] for p in points], 1)
+        shares[c] = float(np.clip(intercept / (intercept + slope), 0.0, 0.9))
     usual = np.nanmedian(data.ms, axis=0)
     result = np.zeros(len(data.candidates))
     for c, (technique, _) in enumerate(data.candidates):
@@ -121,6 +120,10 @@ def fixed_shares(data):
 
 def needs_light(technique, settings):
     return technique in ("rsm", "ssvp", "lpv", "cone_tracing") or "second=" in settings
+
+
+def draws_geometry(technique, settings):
+    return technique in ("ssvp", "lpv", "cone_tracing") or "voxel" in settings or "second=" in settings and "second=rsm" not in settings
 
 
 def predict_ms(data, costs, rows):
