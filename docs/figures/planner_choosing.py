@@ -22,7 +22,7 @@ def best_by_budget(data, able, budget, rows=None):
 
 
 def draw(data, needs):
-    figure, every = plt.subplots(len(INPUTS), 1, figsize=(9.2, 1.15 * len(INPUTS) + 0.8), dpi=100, sharex=True)
+    figure, every = plt.subplots(len(INPUTS), 1, figsize=(9.2, 1.5 * len(INPUTS) + 0.8), dpi=100, sharex=True)
     names = data.names()
     for axes, (title, have) in zip(every, INPUTS):
         able = [c for c in range(len(needs)) if needs[c] & ~have == 0]
@@ -106,11 +106,14 @@ def thrift_block(data):
 
 
 def rival_time(points, error):
-    """Milliseconds of the rival's line at an error, straight in logarithms; None beyond its ends."""
+    """Milliseconds of the rival's line at an error, straight in logarithms: of its end where it never gets so far (it takes longer), None where
+    its beginning is better already."""
     front = []
     for p in sorted(points, key=lambda p: p["ms"]):
         if not front or p["own"] < front[-1]["own"]:
             front.append(p)
+    if error < front[-1]["own"]:
+        return front[-1]["ms"]
     for a, b in zip(front, front[1:]):
         if b["own"] <= error <= a["own"]:
             share = math.log(error / a["own"]) / math.log(b["own"] / a["own"])
@@ -123,10 +126,10 @@ def rival_lines(data, found):
     if not rivals:
         return []
     names, reached = data.names(), []
-    lines = ["**Against path tracing.** The [rival](techniques/rival.md) with two bounces, filtered, 1 to 8 paths a pixel, traced at full and at half resolution, "
+    lines = ["**Against path tracing.** The [rival](techniques/rival.md) with two bounces, filtered, traced at full and at half resolution, "
              "judged against two bounces (its best case); the planner's choices against all. How many times longer the rival takes for the same error, at "
-             "the budget where that is most; `full`: its line without coarse resolution.", "",
-             "| scene | rival: errors of its line | chosen | ms | relMSE | rival's ms (full) | times (full) |", "| --- | --- | --- | ---: | ---: | ---: | ---: |"]
+             "the budget where that is most (>: no point of the rival's line is as accurate); `full`: its line without coarse resolution.", "",
+             "| scene | rival: errors of its line, paths a pixel | chosen | ms | relMSE | rival's ms (full) | times (full) |", "| --- | --- | --- | ---: | ---: | ---: | ---: |"]
     for view in dict.fromkeys((r["scene"], r["camera"]) for r in rivals):
         v = next(i for i, w in enumerate(data.views) if (w["scene"], w["camera"]) == view)
         points = [r for r in rivals if (r["scene"], r["camera"]) == view]
@@ -138,7 +141,7 @@ def rival_lines(data, found):
                 both, alone = rival_time(points, error), rival_time(full, error)
                 if both or alone:
                     rows.append(((both or 0) / ms, (alone or 0) / ms, f[2], ms, error, both, alone))
-        span = f"{max(p['own'] for p in points):.2g} to {min(p['own'] for p in points):.2g}"
+        span = f"{max(p['own'] for p in points):.2g} to {min(p['own'] for p in points):.2g} (1 to {max(p['spp'] for p in points)} paths)"
         if not rows:
             errors = [data.error[v, f[2]] for f in found if f[0] == v and f[5]]
             lines.append(f"| {view_name(data.views[v])} | {span} | none within that range: {max(errors):.2g} to {min(errors):.2g} | | | | |")
@@ -146,7 +149,8 @@ def rival_lines(data, found):
         _, _, c, ms, error, both, alone = max(rows)
         if both and both >= WANTED_TIMES * ms:
             reached.append(view_name(data.views[v]))
-        dash = lambda x, d=0: f"{x:.{d}f}" if x else "none"  # noqa: E731
+        more = "> " if error < min(p["own"] for p in points) else ""
+        dash = lambda x, d=0: f"{more}{x:.{d}f}" if x else "none"  # noqa: E731
         lines.append(f"| {view_name(data.views[v])} | {span} | `{short(names[c])}` | {ms:.1f} | {error:.2g} | {dash(both)} ({dash(alone)}) | "
                      f"{dash(both / ms if both else None, 1)} ({dash(alone / ms if alone else None, 1)}) |")
     count = len({(r["scene"], r["camera"]) for r in rivals})
