@@ -965,7 +965,7 @@ typedef struct LWPlanProbes {
 /** What to run, and what to expect of it. */
 typedef struct LWPlan {
     uint32_t structSize;
-    uint32_t withinBudget;       /**< 0: nothing that the frame allows is predicted to be; this is the quickest */
+    uint32_t withinBudget;       /**< 0: nothing that the frame allows is predicted to be; this is the most accurate of the quickest */
     uint32_t reachesError;       /**< 0: nothing within the budget is predicted to reach the target (1 where there is none) */
     float predictedMs;
     float predictedError;        /**< relMSE against all bounces */
