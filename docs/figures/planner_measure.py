@@ -113,7 +113,7 @@ def measure(program, work):
                                                                    "--size", "1280x720", "--frames", 11, "--json"))["wall_ms"]}
         for t in ("rsm", "ssvp") for n in RSM_SIZES]))
     (work / "launches.json").write_text(json.dumps({c: launches(lightwell, c) for c in CANDIDATES}))
-    (work / "rates.json").write_text(lightwell("devices", "--probe", "--json"))
+    (work / "rates.json").write_text(json.dumps([json.loads(lightwell("devices", "--probe", "--json"))[0] for _ in range(4)]))
 
 
 def probe(lightwell, view):
@@ -178,8 +178,9 @@ def collect(work, date):
         errors[v][c] = rounded(noiseless(some[0]["errors"]["all"]))
         ms[v][c] = rounded(min(time_of(p, threads) for p in some if p["frames"] == most) * beyond * drift(v, most))
     launched = json.loads((work / "launches.json").read_text()) if (work / "launches.json").exists() else {}
-    rates = json.loads((work / "rates.json").read_text()) if (work / "rates.json").exists() else []
-    rate = next((r for r in rates if "multiply_add_gflops" in r), None)
+    rates = json.loads((work / "rates.json").read_text())
+    rate = {"multiply_add_gflops": rounded(max(r["multiply_add_gflops"] for r in rates)), "bandwidth_GBps": rounded(max(r["bandwidth_GBps"] for r in rates)),
+            "launch_us": rounded(statistics.median(r["launch_us"] for r in rates), 3)}
     whole = [c for c in range(len(CANDIDATES)) if all(row[c] is not None for row in errors)]
     for c in set(range(len(CANDIDATES))) - set(whole):
         print(f"left out, for it is not measured in every view: {CANDIDATES[c]}")
