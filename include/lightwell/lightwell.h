@@ -473,6 +473,9 @@ typedef struct LWRsmDesc {
                                   time and in its neighbourhood; 0: as far as it likes */
     LWRsmVisibility visibility;
     uint32_t voxels;         /**< of visibility VOXEL: a side of the grid, fitted to the scene; 32, 64, 128, 256 */
+    float autoResolution;    /**< above 0: gathered as HALF, whatever `resolution` says; then pixels around which the light found there
+                                  differs by more than this share of it, or has no sample on their surface, are gathered by
+                                  themselves, of all VPLs: at most a 32nd of the pixels. 0: never; 0 .. 10 */
 } LWRsmDesc;
 
 LW_API void lwDefaultRsm(LWRsmDesc* desc);
@@ -498,13 +501,6 @@ typedef enum LWOccluders {
     LW_OCCLUDERS_SCREEN = 3     /**< the texels of all RSMs and the pixels of LWFrame::sourceViews as discs, in every
                                      frame anew; what neither shows blocks nothing */
 } LWOccluders;
-
-/** Which of the VPLs a pixel of technique "ssvp" gathers. */
-typedef enum LWVplGather {
-    LW_VPL_GATHER_INTERLEAVED = 0, /**< the share that is its own in an n x n window of pixels, or all */
-    LW_VPL_GATHER_RESAMPLED = 1    /**< a few, drawn in proportion to the light that they would bring it with nothing in between, and shared
-                                        with its neighbours */
-} LWVplGather;
 
 /** Technique "ssvp": VPLs in clusters, each cluster's visibility in a paraboloid map of what stands around it
  *  (LWOccluders), a second bounce drawn from the maps. */
@@ -539,9 +535,7 @@ typedef struct LWSsvpDesc {
                                   that VPLs of some size lack; 0: none. Above 0 the G-buffer needs `directRadiance`, of the
                                   lights that have RSMs, and `camera` */
     uint32_t voxels;         /**< as LWRsmDesc's */
-    LWVplGather gather;      /**< which VPLs a pixel gathers */
-    uint32_t candidates;     /**< of gather RESAMPLED: VPLs that a pixel draws to choose from; 1 .. 64 */
-    uint32_t survivors;      /**< of gather RESAMPLED: VPLs that it keeps of them, each with its own visibility; 1 .. 8 */
+    float autoResolution;    /**< as LWRsmDesc's; not with `compensation` */
 } LWSsvpDesc;
 
 LW_API void lwDefaultSsvp(LWSsvpDesc* desc);
@@ -679,6 +673,8 @@ typedef struct LWLpvDesc {
                               the finer ones lie around LWFrame::focus, else in the middle, at whole cells of their own */
     float autoError;     /**< of propagation, above 0: `steps` is the most, and light that is still on its way is dropped once it
                               is less than this share of all; 0: always all steps; 0 .. 1 */
+    uint32_t rests;      /**< 1: light that is as it was in the frame before is not carried again, with the same result; of one grid
+                              in one frame. 0: always */
 } LWLpvDesc;
 
 LW_API void lwDefaultLpv(LWLpvDesc* desc);
@@ -703,9 +699,17 @@ typedef enum LWConeResolution {
     LW_CONE_RESOLUTION_FULL = 0,
     LW_CONE_RESOLUTION_HALF = 1,       /**< on every second pixel and row, then up-sampled */
     LW_CONE_RESOLUTION_QUARTER = 2,    /**< on every fourth pixel and row, then up-sampled */
-    LW_CONE_RESOLUTION_INTERLEAVED = 3 /**< on all, a share of the cones each, then a filter over the pixels that have all:
-                                            3 x 3 for 9 cones */
+    LW_CONE_RESOLUTION_INTERLEAVED = 3, /**< on all, a share of the cones each, then a filter over the pixels that have all:
+                                             3 x 3 for 9 cones */
+    LW_CONE_RESOLUTION_HALF_INTERLEAVED = 4 /**< on every second pixel and row, a share of the cones each, filtered, then
+                                                 up-sampled */
 } LWConeResolution;
+
+/** Between how many voxels the samples of technique "cone_tracing" are interpolated. */
+typedef enum LWConeInterpolation {
+    LW_CONE_INTERPOLATION_TRILINEAR = 0,  /**< eight */
+    LW_CONE_INTERPOLATION_TETRAHEDRAL = 1 /**< the four of the tetrahedron that a sample lies in: less time, a little more error */
+} LWConeInterpolation;
 
 /** What ambient occlusion from voxels dims of the light of technique "cone_tracing". */
 typedef enum LWConeOcclusion {
@@ -743,6 +747,7 @@ typedef struct LWConeTracingDesc {
     uint32_t shadowLight;    /**< index in LWFrame::lights of the one whose `shadow` is asked for */
     float shadowAngle;       /**< full angle of its cone, in radians; above 0 .. 1.5: the angle that the light's source fills */
     float refractiveIndex;   /**< of what `refractedRadiance` is seen through, to that around it; 1 .. 4 */
+    LWConeInterpolation interpolation;
 } LWConeTracingDesc;
 
 LW_API void lwDefaultConeTracing(LWConeTracingDesc* desc);
@@ -960,7 +965,7 @@ typedef struct LWPlanProbes {
 /** What to run, and what to expect of it. */
 typedef struct LWPlan {
     uint32_t structSize;
-    uint32_t withinBudget;       /**< 0: nothing that the frame allows is predicted to be; this is the quickest */
+    uint32_t withinBudget;       /**< 0: nothing that the frame allows is predicted to be; this is the most accurate of the quickest */
     uint32_t reachesError;       /**< 0: nothing within the budget is predicted to reach the target (1 where there is none) */
     float predictedMs;
     float predictedError;        /**< relMSE against all bounces */

@@ -6,11 +6,12 @@
 #include "shared/wide.h"
 
 // The lower of the eight voxels around a place as a word of its plane, and the upper ones' shares. `side`: voxels a side of the level.
+// `shared`: all lanes that have one have the same.
 typedef struct {
     lanei at;
     real x, y, z;
     mask has;
-    int side;
+    int side, shared;
 } cone_corner;
 
 // at[l] and the word behind it: two voxels along x.
@@ -59,10 +60,17 @@ LW_FN lanei in_brick(lanei ix, lanei iy, lanei iz) {
 // LW_VOXEL_STRIDE, 23 * 32, times a slot, at less than half of a product's latency.
 LW_FN lanei brick_at(lanei slot) { return (((slot << 4) + (slot << 3)) - slot) << 5; }
 
+// Do the lanes `live` lie between the same voxels as lane 0? (Not where one lane is all there is: nothing would be saved.)
+LW_FN int between_same(lanei ix, lanei iy, lanei iz, mask live) {
+    const lanei key = ix + (iy << 10) + (iz << 20);
+    return LW_WIDTH > 1 && !any_(and_(live, key != (lanei)firsti_lane(key)));
+}
+
 // x, y, z: in voxels of the finest level. table: of the level. 0: no live lane has anything there.
 LW_FN int find_corner(cone_corner* c, __global const int* table, int size, int level, real x, real y, real z, mask live) {
     const int side = size >> level;
     c->side = side;
+    c->shared = LW_WIDTH > 1;
     if (side == 1) {  // all of the weights but the lower corner's are 0
         const int only = table[0];
         c->has = live;
@@ -76,13 +84,21 @@ LW_FN int find_corner(cone_corner* c, __global const int* table, int size, int l
     c->x = qx - to_real(ix);
     c->y = qy - to_real(iy);
     c->z = qz - to_real(iz);
+    const int bits = 28 - (int)clz(side);  // of bricks a side, above one
+    if (between_same(ix, iy, iz, live)) {
+        const int fx = firsti_lane(ix), fy = firsti_lane(iy), fz = firsti_lane(iz);
+        const int slot = side <= LW_VOXEL_BRICK ? table[0] : table[((((fz >> 3) << bits) + (fy >> 3)) << bits) + (fx >> 3)];
+        c->has = live;
+        c->at = (lanei)(slot * LW_VOXEL_STRIDE + ((fz & 7) * LW_VOXEL_STORED + (fy & 7)) * LW_VOXEL_STORED + (fx & 7));
+        return slot >= 0;
+    }
+    c->shared = 0;
     if (side <= LW_VOXEL_BRICK) {
         const int slot = table[0];
         c->has = live;
         c->at = in_brick(ix, iy, iz) + slot * LW_VOXEL_STRIDE;
         return slot >= 0;
     }
-    const int bits = 28 - (int)clz(side);  // of bricks a side
     const lanei slot = gatheri(table, ((((iz >> 3) << bits) + (iy >> 3)) << bits) + (ix >> 3));
     c->has = and_(live, slot >= (lanei)0);
     if (!any_(c->has)) return 0;

@@ -1,7 +1,7 @@
 // Samples of a volume of voxels at LW_WIDTH places: one level, interpolated between eight voxels.
 //
 // LW_CONE_MODE: 0 isotropic, 1 anisotropic, 2 two bands of harmonics. LW_CONE_SIDES 1: the finest level has six sides. LW_CONE_LIGHT
-// 0: opacity alone.
+// 0: opacity alone. LW_CONE_VOXELS: 8, or 4, between which a place is interpolated.
 #ifndef LW_CONE_VOLUME_H
 #define LW_CONE_VOLUME_H
 
@@ -18,6 +18,9 @@
 #endif
 #ifndef LW_CONE_LIGHT
 #define LW_CONE_LIGHT 1
+#endif
+#ifndef LW_CONE_VOXELS
+#define LW_CONE_VOXELS 8
 #endif
 
 // Of one cascade.
@@ -63,33 +66,83 @@ LW_FN void add_word(cone_words* sum, laneu word, real weight) {
 #endif
 }
 
-// The eight voxels' words of one plane, each lane's with `weight`, onto the sum. Neighbouring pixels' cones are mostly between the same
-// voxels from a few levels on: their words are then loaded once for all lanes, and of a level that is one voxel, one.
-LW_FN void add_plane(cone_words* sum, __global const uint* words, const cone_corner* c, lanei at, real weight) {
-    const int first = firsti_lane(at), shared = LW_WIDTH > 1 && !any_(at != (lanei)first);
-    if (shared && c->side == 1) {
-        add_word(sum, (laneu)words[first], weight);
-        return;
-    }
-    const real upper = weight * c->z, lower = weight - upper;
+#define LW_CONE_X 1
+#define LW_CONE_Y LW_VOXEL_STORED
+#define LW_CONE_Z (LW_VOXEL_STORED * LW_VOXEL_STORED)
+
+// Between which of a corner's voxels a place is interpolated, and their shares: all eight, or the four of the tetrahedron that it lies in:
+// of the six along the way from the lower corner to the upper one the one that takes the axes by the place's shares, largest first.
+typedef struct {
+    real w[LW_CONE_VOXELS];
+#if LW_CONE_VOXELS == 4
+    mask y, z, notZ;  // of x and y y is the larger; z is larger, and is not, than both
+#endif
+} cone_between;
+
+// has: the sum of the shares, 1 or 0.
+LW_FN void between(cone_between* b, const cone_corner* c, real has) {
+#if LW_CONE_VOXELS == 4
+    const real x = c->x, y = c->y, z = c->z, high = greater(x, y), low = lesser(x, y);
+    const real most = greater(high, z), least = lesser(low, z), middle = greater(low, lesser(high, z));
+    b->y = x < y;
+    b->z = z > high;
+    b->notZ = z <= low;
+    b->w[0] = has - most * has;
+    b->w[1] = (most - middle) * has;
+    b->w[2] = (middle - least) * has;
+    b->w[3] = least * has;
+#else
+    const real upper = has * c->z, lower = has - upper;
     const real w3 = upper * c->y, w2 = upper - w3, w1 = lower * c->y, w0 = lower - w1;
     const real rows[4] = {w0, w1, w2, w3};
-    if (shared) {
-        LW_UNROLL for (int k = 0; k < 4; ++k) {
-            const int row = first + ((k & 1) ? LW_VOXEL_STORED : 0) + ((k & 2) ? LW_VOXEL_STORED * LW_VOXEL_STORED : 0);
-            const real far = rows[k] * c->x;
-            add_word(sum, (laneu)words[row], rows[k] - far);
-            add_word(sum, (laneu)words[row + 1], far);
-        }
+    LW_UNROLL for (int k = 0; k < 4; ++k) {
+        b->w[2 * k + 1] = rows[k] * c->x;
+        b->w[2 * k] = rows[k] - b->w[2 * k + 1];
+    }
+#endif
+}
+
+// The words of those voxels, `at` the lower corner's.
+LW_FN void load_words(laneu* found, __global const uint* words, lanei at, const cone_between* b) {
+#if LW_CONE_VOXELS == 4
+    __global const int* from = (__global const int*)words;
+    const lanei x = (lanei)LW_CONE_X, y = (lanei)LW_CONE_Y, z = (lanei)LW_CONE_Z, upper = (lanei)(LW_CONE_X + LW_CONE_Y + LW_CONE_Z);
+    found[0] = as_laneu_(gatheri(from, at));
+    found[1] = as_laneu_(gatheri(from, at + selecti_(selecti_(x, y, b->y), z, b->z)));
+    found[2] = as_laneu_(gatheri(from, at + (upper - selecti_(selecti_(y, x, b->y), z, b->notZ))));
+    found[3] = as_laneu_(gatheri(from, at + upper));
+#else
+    LW_UNROLL for (int k = 0; k < 4; ++k)
+        gather_pairs(words, at + ((k & 1) ? LW_CONE_Y : 0) + ((k & 2) ? LW_CONE_Z : 0), found + 2 * k, found + 2 * k + 1);
+#endif
+}
+
+// The same where all lanes have one corner: each word is loaded once for all of them.
+LW_FN void load_shared(laneu* found, __global const uint* words, const cone_between* b) {
+#if LW_CONE_VOXELS == 4
+    found[0] = (laneu)words[0];
+    found[1] = selectu_(selectu_((laneu)words[LW_CONE_X], (laneu)words[LW_CONE_Y], b->y), (laneu)words[LW_CONE_Z], b->z);
+    found[2] = selectu_(selectu_((laneu)words[LW_CONE_X + LW_CONE_Z], (laneu)words[LW_CONE_Y + LW_CONE_Z], b->y),
+                        (laneu)words[LW_CONE_X + LW_CONE_Y], b->notZ);
+    found[3] = (laneu)words[LW_CONE_X + LW_CONE_Y + LW_CONE_Z];
+#else
+    LW_UNROLL for (int k = 0; k < 8; ++k)
+        found[k] = (laneu)words[((k & 1) ? LW_CONE_X : 0) + ((k & 2) ? LW_CONE_Y : 0) + ((k & 4) ? LW_CONE_Z : 0)];
+#endif
+}
+
+// The words of one plane that each lane lies between onto the sum. Neighbouring pixels' cones are mostly between the same voxels from a
+// few levels on; of a level that is one voxel there is one word.
+LW_FN void add_plane(cone_words* sum, __global const uint* words, const cone_corner* c, lanei at, const cone_between* b, real has) {
+    const int first = firsti_lane(at), shared = c->shared && !any_(at != (lanei)first);
+    if (shared && c->side == 1) {
+        add_word(sum, (laneu)words[first], has);
         return;
     }
-    LW_UNROLL for (int k = 0; k < 4; ++k) {
-        laneu low, high;
-        gather_pairs(words, at + ((k & 1) ? LW_VOXEL_STORED : 0) + ((k & 2) ? LW_VOXEL_STORED * LW_VOXEL_STORED : 0), &low, &high);
-        const real far = rows[k] * c->x;
-        add_word(sum, low, rows[k] - far);
-        add_word(sum, high, far);
-    }
+    laneu found[LW_CONE_VOXELS];
+    if (shared) load_shared(found, words + first, b);
+    else load_words(found, words, at, b);
+    LW_UNROLL for (int k = 0; k < LW_CONE_VOXELS; ++k) add_word(sum, found[k], b->w[k]);
 }
 
 LW_FN void begin_words(cone_words* sum) { sum->r = sum->g = sum->b = sum->a = sum->ones = sum->squares = (real)0.0f; }
@@ -119,11 +172,12 @@ LW_FN void finish_words(cone_sample* sample, const cone_words* sum, real has, in
 
 // The plane of an axis that a ray meets, seen at the cosine of its angle to that axis; `closed`: the largest share of a voxel's side that
 // something covers; `ones`: of opacity's sum.
-LW_FN void add_side(cone_words* sum, real* closed, real* ones, real* variance, real* most, __global const uint* words, const cone_corner* c, int plane, real d, real has) {
+LW_FN void add_side(cone_words* sum, real* closed, real* ones, real* variance, real* most, __global const uint* words, const cone_corner* c,
+                    const cone_between* b, int plane, real d, real has) {
     const real cosine = fabs(d);
     cone_words side;
     begin_words(&side);
-    add_plane(&side, words, c, c->at + selecti_((lanei)0, (lanei)plane, d > (real)0.0f), has);
+    add_plane(&side, words, c, c->at + selecti_((lanei)0, (lanei)plane, d > (real)0.0f), b, has);
     sum->a = fma_(cosine, side.a, sum->a);
     sum->r = fma_(cosine, side.r, sum->r);
     sum->g = fma_(cosine, side.g, sum->g);
@@ -145,10 +199,12 @@ LW_FN void sample_sides(cone_sample* sample, __global const uint* words, const c
                         int unit) {
     cone_words sum;
     begin_words(&sum);
+    cone_between b;
+    between(&b, c, has);
     real closed = (real)0.0f, ones = (real)0.0f, variance = (real)0.0f, most = (real)0.0f;
-    add_side(&sum, &closed, &ones, &variance, &most, words, c, plane, dx, has);
-    add_side(&sum, &closed, &ones, &variance, &most, words + 2 * plane, c, plane, dy, has);
-    add_side(&sum, &closed, &ones, &variance, &most, words + 4 * plane, c, plane, dz, has);
+    add_side(&sum, &closed, &ones, &variance, &most, words, c, &b, plane, dx, has);
+    add_side(&sum, &closed, &ones, &variance, &most, words + 2 * plane, c, &b, plane, dy, has);
+    add_side(&sum, &closed, &ones, &variance, &most, words + 4 * plane, c, &b, plane, dz, has);
     finish_words(sample, &sum, ones, unit);
     const real taken = fmax((sum.a - ones) * LW_CONE_OPACITY_STEP, (real)0.0f);
     const real share = 1.0f / fmax(taken + (1.0f - fmin(closed * LW_CONE_OPACITY_STEP, (real)1.0f)), (real)1e-6f);
@@ -171,35 +227,27 @@ LW_FN real along(laneu word, real dx, real dy, real dz) {
 // L = Y0 c0 (1 + 3 share . d), d against the ray, of each voxel before it is interpolated: the product is linear in what was filtered.
 LW_FN void add_harmonics(cone_sample* sum, __global const uint* words, const cone_corner* c, int plane, real dx, real dy, real dz, real has,
                          int unit) {
-    const real upper = has * c->z, lower = has - upper;
-    const real w3 = upper * c->y, w2 = upper - w3, w1 = lower * c->y, w0 = lower - w1;
-    const real rows[4] = {w0, w1, w2, w3};
+    cone_between b;
+    between(&b, c, has);
+    laneu found[4][LW_CONE_VOXELS];
+    LW_UNROLL for (int k = 0; k < 4; ++k) load_words(found[k], words + k * plane, c->at, &b);
     // The fields are 511 for 0.
     const real even_light = fma_((real)(511.0f * LW_CONE_SHARE), dx + dy + dz, (real)0.2820947918f);
-    LW_UNROLL for (int k = 0; k < 4; ++k) {
-        const lanei at = c->at + ((k & 1) ? LW_VOXEL_STORED : 0) + ((k & 2) ? LW_VOXEL_STORED * LW_VOXEL_STORED : 0);
-        laneu word[2], r[2], g[2], b[2];
-        gather_pairs(words, at, &word[0], &word[1]);
-        gather_pairs(words + plane, at, &r[0], &r[1]);
-        gather_pairs(words + 2 * plane, at, &g[0], &g[1]);
-        gather_pairs(words + 3 * plane, at, &b[0], &b[1]);
-        const real far = rows[k] * c->x;
-        const real weight[2] = {rows[k] - far, far};
-        LW_UNROLL for (int i = 0; i < 2; ++i) {
-            const laneu w = word[i];
-            const real step = weight[i] * as_real_(((w >> LW_VOXEL_EXPONENT_SHIFT) & LW_VOXEL_EXPONENT_MASK) + (uint)unit);
-            const real opacity = to_real(as_lanei_(w & LW_VOXEL_OPACITY_MASK)) * LW_VOXEL_OPACITY_STEP, share = opacity * weight[i];
-            sum->a += share;
-            sum->spread = fma_(opacity, share, sum->spread);
-            sum->r = fma_(to_real(as_lanei_(w & LW_VOXEL_RED_MASK)) * step, fma_((real)-LW_CONE_SHARE, along(r[i], dx, dy, dz), even_light), sum->r);
-            sum->g = fma_(to_real(as_lanei_(w & LW_VOXEL_GREEN_MASK)) * step, fma_((real)-LW_CONE_SHARE, along(g[i], dx, dy, dz), even_light), sum->g);
-            sum->b = fma_(to_real(as_lanei_(w & LW_VOXEL_BLUE_MASK)) * step, fma_((real)-LW_CONE_SHARE, along(b[i], dx, dy, dz), even_light), sum->b);
-        }
+    LW_UNROLL for (int i = 0; i < LW_CONE_VOXELS; ++i) {
+        const laneu w = found[0][i];
+        const real weight = b.w[i], step = weight * as_real_(((w >> LW_VOXEL_EXPONENT_SHIFT) & LW_VOXEL_EXPONENT_MASK) + (uint)unit);
+        const real opacity = to_real(as_lanei_(w & LW_VOXEL_OPACITY_MASK)) * LW_VOXEL_OPACITY_STEP, share = opacity * weight;
+        const laneu red = found[1][i], green = found[2][i], blue = found[3][i];
+        sum->a += share;
+        sum->spread = fma_(opacity, share, sum->spread);
+        sum->r = fma_(to_real(as_lanei_(w & LW_VOXEL_RED_MASK)) * step, fma_((real)-LW_CONE_SHARE, along(red, dx, dy, dz), even_light), sum->r);
+        sum->g = fma_(to_real(as_lanei_(w & LW_VOXEL_GREEN_MASK)) * step, fma_((real)-LW_CONE_SHARE, along(green, dx, dy, dz), even_light), sum->g);
+        sum->b = fma_(to_real(as_lanei_(w & LW_VOXEL_BLUE_MASK)) * step, fma_((real)-LW_CONE_SHARE, along(blue, dx, dy, dz), even_light), sum->b);
     }
 }
 #endif
 
-// Light and opacity between a corner's eight voxels, seen by a ray that goes along d.
+// Light and opacity between a corner's voxels, seen by a ray that goes along d.
 LW_FN void sample_corner(cone_sample* sample, const cone_volume* v, int level, const cone_corner* c, real dx, real dy, real dz) {
     const real has = ones_(c->has), none = (real)0.0f;
     sample->r = sample->g = sample->b = sample->a = sample->spread = none;
@@ -223,7 +271,9 @@ LW_FN void sample_corner(cone_sample* sample, const cone_volume* v, int level, c
     }
     cone_words sum;
     begin_words(&sum);
-    add_plane(&sum, words, c, c->at, has);
+    cone_between b;
+    between(&b, c, has);
+    add_plane(&sum, words, c, c->at, &b, has);
     finish_words(sample, &sum, has, v->unit);
     real variance, most;
     spread_of(&variance, &most, &sum, has);

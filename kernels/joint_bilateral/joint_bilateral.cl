@@ -1,8 +1,12 @@
 // Half resolution and back: a G-buffer of every second column and row, and joint bilateral up-sampling
 // (Kopf et al. 2007) of what was computed on it: 3x3 half-resolution samples around a pixel, a tent in
 // the distance of pixels, nothing across a depth or normal edge.
+// Over 300 lines: up-sampling that marks pixels is the same loops, compiled in.
 #ifndef LW_CHANNELS
 #define LW_CHANNELS 3  // of the light: 1 a scalar, 3 irradiance, 5 irradiance and two scalars
+#endif
+#ifndef LW_MARKS
+#define LW_MARKS 0  // 1: up-sampling marks the pixels that it does not know the light of; of irradiance only
 #endif
 #include "shared/wide.h"
 #include "shared/surface.h"
@@ -106,12 +110,32 @@ LW_FN void load_sample(lw_sample* q, const lw_coarse* coarse, int hx, int i, int
     }
 }
 
-typedef struct { real light[LW_CHANNELS], weight; } lw_sum;
+typedef struct {
+    real light[LW_CHANNELS], weight;
+#if LW_MARKS
+    real least, greatest;  // of the samples' sums of red, green and blue
+#endif
+} lw_sum;
 
 LW_FN void accumulate(lw_sum* sum, real w, const real* light) {
     LW_UNROLL for (int a = 0; a < LW_CHANNELS; ++a) sum->light[a] = fma_(w, light[a], sum->light[a]);
     sum->weight += w;
 }
+
+#if LW_MARKS
+// Of what counts. Light is no NaN.
+LW_FN void widen(lw_sum* sum, real w, const real* light) {
+    const real whole = (light[0] + light[1]) + light[2];
+    sum->least = select_(sum->least, whole, and_(w > 0.0f, whole < sum->least));
+    sum->greatest = select_(sum->greatest, whole, and_(w > 0.0f, whole > sum->greatest));
+}
+
+// Where samples on the pixel's surface differ by more than `share` of what comes of them all.
+LW_FN mask is_steep(const lw_sum sum, float share) {
+    const real whole = (sum.light[0] + sum.light[1]) + sum.light[2];
+    return (sum.greatest - sum.least) * sum.weight > share * whole;
+}
+#endif
 
 // What a sample counts for `s`: by the edge test; or by likeness of the normals alone.
 LW_FN real sample_weight(const lw_surface s, const lw_sample* q, int byLikeness) {
@@ -132,7 +156,11 @@ LW_FN void add_sample(lw_sum* sum, const lw_surface* s, const lw_coarse* coarse,
         if (k == 1 && j < 0) continue;
         const float rowTent = 1.0f - (float)abs(2 * j - k) * (1.0f / 3.0f);
         const real tent = select_((real)0.0f, (real)(rowTent * columnTent), q.valid);
-        accumulate(&sum[k], tent * sample_weight(s[k], &q, byLikeness), q.light);
+        const real w = tent * sample_weight(s[k], &q, byLikeness);
+        accumulate(&sum[k], w, q.light);
+#if LW_MARKS
+        if (k == 0 && !odd && !byLikeness) widen(&sum[0], w, q.light);
+#endif
     }
 }
 
@@ -140,6 +168,10 @@ LW_FN void clear_sums(lw_sum* sum) {
     LW_UNROLL for (int k = 0; k < 2; ++k) {
         LW_UNROLL for (int a = 0; a < LW_CHANNELS; ++a) sum[k].light[a] = (real)0.0f;
         sum[k].weight = (real)0.0f;
+#if LW_MARKS
+        sum[k].least = (real)INFINITY;
+        sum[k].greatest = (real)0.0f;
+#endif
     }
 }
 
@@ -159,7 +191,13 @@ LW_FN void sum_any(lw_sum* sum, const lw_surface* s, const lw_coarse* coarse, in
 
 // The light of the even (or odd) columns of two rows of pixels, and how many of those that exist have no sample on their own
 // surface, or are neither surface nor background. `odd`: a constant.
+//
+// marked, with LW_MARKS: 1 for pixels without such a sample, and for all of a block whose first one has samples that differ by more than
+// `share`: it sees all that the others do, if they are of its surface. `steep`: of that one; the even columns come first.
 LW_FN void light_columns(real out[2][LW_CHANNELS][2], int* lostPixels, int* badPixels, lw_pair p[2][3], lw_pair n[2][3],
+#if LW_MARKS
+                         real marked[2][2], real surface[2][2], mask* steep, float share,
+#endif
                          const lw_coarse* coarse, int hx, int hy, int width, int rows, const int odd) {
     lw_surface s[2];
     lw_sum sum[2];
@@ -172,6 +210,14 @@ LW_FN void light_columns(real out[2][LW_CHANNELS][2], int* lostPixels, int* badP
     // A weight this far below a sample's own tent comes from rounding at the edge tests' borders. Such pixels, for which no
     // sample passes the test, are lit like their neighbourhood and not black.
     LW_UNROLL for (int k = 0; k < 2; ++k) lost[k] = and_(s[k].valid, not_(sum[k].weight > 1e-4f));
+#if LW_MARKS
+    if (!odd) *steep = is_steep(sum[0], share);
+    LW_UNROLL for (int k = 0; k < 2; ++k)
+        {
+        marked[k][odd] = ones_(and_(s[k].valid, or_(lost[k], *steep)));
+        surface[k][odd] = ones_(s[k].valid);
+    }
+#endif
     if (any_(or_(lost[0], lost[1]))) {
         lw_sum rest[2];
         sum_any(rest, s, coarse, hx, hy, odd, 1);
@@ -192,7 +238,8 @@ LW_FN void light_columns(real out[2][LW_CHANNELS][2], int* lostPixels, int* badP
 // One work-item = 2 * LW_WIDTH pixels of two rows: the even and the odd columns of LW_WIDTH blocks.
 // half*: 3 planes each of the half-resolution image, the light LW_CHANNELS; with 5, `fourth` and `fifth` take the
 // scalars, and any of the three may be null. counts[0]: pixels that are
-// neither surface nor background; counts[1]: pixels lit without edge test.
+// neither surface nor background; counts[1]: pixels lit without edge test. With LW_MARKS, a plane each: marks, see light_columns; validity,
+// unless not hasValidity: 1 on surfaces, 0 elsewhere.
 __kernel void joint_bilateral_upsample(__global const float* position, int4 positionLayout,
                                        __global const float* normal, int4 normalLayout, int width, int height,
                                        __global const float* halfPosition, int4 halfPositionLayout,
@@ -201,6 +248,10 @@ __kernel void joint_bilateral_upsample(__global const float* position, int4 posi
                                        __global float* irradiance, int4 irradianceLayout,
 #if LW_CHANNELS == 5
                                        __global float* fourth, int4 fourthLayout, __global float* fifth, int4 fifthLayout,
+#endif
+#if LW_MARKS
+                                       float share, __global float* marks, int4 marksLayout, __global float* validity,
+                                       int4 validityLayout, int hasValidity,
 #endif
                                        __global int* counts) {
     const int hx = (int)get_global_id(0) * LW_WIDTH, hy = (int)get_global_id(1);
@@ -225,8 +276,15 @@ __kernel void joint_bilateral_upsample(__global const float* position, int4 posi
 
     real out[2][LW_CHANNELS][2];
     int lost = 0, bad = 0;
+#if LW_MARKS
+    real marked[2][2], surface[2][2];
+    mask steep;
+    light_columns(out, &lost, &bad, p, n, marked, surface, &steep, share, &coarse, hx, hy, width, rows, 0);
+    light_columns(out, &lost, &bad, p, n, marked, surface, &steep, share, &coarse, hx, hy, width, rows, 1);
+#else
     light_columns(out, &lost, &bad, p, n, &coarse, hx, hy, width, rows, 0);
     light_columns(out, &lost, &bad, p, n, &coarse, hx, hy, width, rows, 1);
+#endif
     if (lost) atomic_add(counts + 1, lost);
     if (bad) atomic_add(counts, bad);
 
@@ -240,5 +298,10 @@ __kernel void joint_bilateral_upsample(__global const float* position, int4 posi
             LW_UNROLL for (int a = 0; a < (LW_CHANNELS < 3 ? LW_CHANNELS : 3); ++a)
                 LW_STORE(irradiance, irradianceLayout.x + a * irradianceLayout.z + (y + k) * irradianceLayout.y + x, a);
 #undef LW_STORE
+#if LW_MARKS
+        const int hasSecond = x + LW_WIDTH < rowEnd;
+        store_pair(marks, marksLayout.x + (y + k) * marksLayout.y + x, hasSecond, marked[k][0], marked[k][1]);
+        if (hasValidity) store_pair(validity, validityLayout.x + (y + k) * validityLayout.y + x, hasSecond, surface[k][0], surface[k][1]);
+#endif
     }
 }

@@ -111,24 +111,32 @@ __kernel void lpv_grid_inject_vpls(__global const lw_vpl* vpls, int count, __glo
 //
 // environment: radiance that comes from outside, of each colour. Through each outer face of the border's cells its flux, pi L s^2,
 // enters as a lobe about the inward normal, as propagation would hand it on from a cell beyond: L s^2 lobe(n).
+//
+// changed: raised where a cell's light is another than it was; watches: 0: it is not touched.
 __kernel void lpv_grid_resolve(__global const uint* sums, __global const LwLpvPlace* grid, int size, float4 environment,
-                               __global float* to) {
+                               __global float* to, int watches, __global int* changed) {
     const int x = (int)get_global_id(0), line = (int)get_global_id(1);
     if (x >= size || line >= size * size) return;
     const float first = 1.0f / grid->cell.y, second = 1.0f / grid->cell.z;
     __global const uint* from = sums + 2 * LW_LPV_PLANES * (line * size + x);
     const int at = lpv_cell(size, x, line % size, line / size), plane = lpv_plane(size);
-    for (int p = 0; p < LW_LPV_PLANES; ++p) to[p * plane + at] = convert_float(long_at(from + 2 * p)) * first * second;
+    float light[LW_LPV_PLANES];
+    for (int p = 0; p < LW_LPV_PLANES; ++p) light[p] = convert_float(long_at(from + 2 * p)) * first * second;
     const int y = line % size, z = line / size, last = size - 1;
     const float inX = (float)((x == 0) - (x == last)), inY = (float)((y == 0) - (y == last)), inZ = (float)((z == 0) - (z == last));
     const float faces = fabs(inX) + fabs(inY) + fabs(inZ);
-    if (faces == 0.0f) return;
     // Of each band: how often the lobes have it.
     const float bands[LW_LPV_BANDS] = {LPV_LOBE0 * faces, LPV_LOBE1 * inX, LPV_LOBE1 * inY, LPV_LOBE1 * inZ};
-    const float4 light = environment * (grid->cell.x * grid->cell.x);
-    for (int band = 0; band < LW_LPV_BANDS; ++band) {
-        to[band * plane + at] += bands[band] * light.x;
-        to[(LW_LPV_BANDS + band) * plane + at] += bands[band] * light.y;
-        to[(2 * LW_LPV_BANDS + band) * plane + at] += bands[band] * light.z;
+    const float4 sky = environment * (grid->cell.x * grid->cell.x);
+    for (int band = 0; faces != 0.0f && band < LW_LPV_BANDS; ++band) {
+        light[band] += bands[band] * sky.x;
+        light[LW_LPV_BANDS + band] += bands[band] * sky.y;
+        light[2 * LW_LPV_BANDS + band] += bands[band] * sky.z;
     }
+    int isOther = 0;
+    for (int p = 0; p < LW_LPV_PLANES; ++p) {
+        isOther |= watches && to[p * plane + at] != light[p];
+        to[p * plane + at] = light[p];
+    }
+    if (isOther) atomic_or(changed, 1);
 }

@@ -29,9 +29,10 @@ LW_FN int cell_in(int order, int size, int x, int y, int z) {
 
 // One work-item = a row of cells in one order (rows of a slice; slices and orders): sums to floats. Marks: of each cell the bits of
 // the normals that send in it, and those of the sheets in it. used: the same of each row; planes of others are not written.
+// changed: raised where light is other than it was; watches: 0: it is not touched.
 __kernel void lpv_sweep_resolve(__global const uint* lights, __global const uint* areas, __global const LwSweepCover* cover,
                                 __global const LwLpvPlace* grid, int size, __global float* sources, __global float* sheets,
-                                __global uint* used) {
+                                __global uint* used, int watches, __global int* changed) {
     const int row = (int)get_global_id(0), line = (int)get_global_id(1);
     if (row >= size || line >= LW_SWEEP_ORDERS * size) return;
     const int order = line / size, z = line % size, cells = size * size * size, stride = LW_SWEEP_ORDERS * cells;
@@ -52,6 +53,7 @@ __kernel void lpv_sweep_resolve(__global const uint* lights, __global const uint
         stopping |= areaMarks[kept + step * i];  // in any order
     }
     const int at = order * cells + (z * size + row) * size;
+    int isOther = watches && used[2 * (at / size)] != sending;
     used[2 * (at / size)] = sending;
     used[2 * (at / size) + 1] = stopping;
     for (int i = 0; i < size; ++i) {
@@ -59,9 +61,11 @@ __kernel void lpv_sweep_resolve(__global const uint* lights, __global const uint
         __global const uint* light = lights + 2 * LW_SWEEP_SOURCES * cell;
         for (uint bits = sending; bits;) {
             const int k = LW_SWEEP_COLOURS * take_lowest(&bits);
-            for (int c = 0; c < LW_SWEEP_COLOURS; ++c)
-                sources[(k + c) * stride + at + i] =
-                    convert_float(long_at(light + 2 * (k + c))) * first * second * inverse * inverse;
+            for (int c = 0; c < LW_SWEEP_COLOURS; ++c) {
+                const float sent = convert_float(long_at(light + 2 * (k + c))) * first * second * inverse * inverse;
+                isOther |= watches && sources[(k + c) * stride + at + i] != sent;
+                sources[(k + c) * stride + at + i] = sent;
+            }
         }
         const int from = kept + step * slot_along(firstSlot + i, size);
         __global const uint* area = areas + 2 * LW_SWEEP_BLOCKS * from;
@@ -72,7 +76,11 @@ __kernel void lpv_sweep_resolve(__global const uint* lights, __global const uint
         const float closed = areaMarks[from] ? convert_float(long_at(area + 2 * LW_SWEEP_COVER)) * unit : 0.0f;
         sheets[LW_SWEEP_COVER * stride + at + i] = 1.0f - fmin(closed, 1.0f);
     }
+    if (isOther) atomic_or(changed, 1);
 }
+
+// Work-items leave where the last frame's result stays. watches: 0: `rest` is not looked at.
+LW_FN int rests(__global const LwLpvProgress* rest, int watches) { return watches && rest->done; }
 
 // 1 - alpha of LW_WIDTH cells for a direction.
 LW_FN real passing(__global const float* sheets, int at, int stride, uint stopping, __global const float* direction) {
@@ -91,9 +99,10 @@ LW_FN real passing(__global const float* sheets, int at, int stride, uint stoppi
 // all there is; nothing else writes there.
 __kernel void lpv_sweep_march(__global const float* sources, __global const float* sheets, __global const uint* used,
                               __global const float* directions, int count, int size, int firstGroup, int groupCount,
-                              __global float* carried, __global float* parts, float4 environment) {
+                              __global float* carried, __global float* parts, float4 environment,
+                              __global const LwLpvProgress* rest, int watches) {
     const int item = (int)get_global_id(0);
-    if (item >= groupCount) return;
+    if (item >= groupCount || rests(rest, watches)) return;
     const int group = firstGroup + item, axis = group >> 3, octant = group & 7;
     const int cells = size * size * size, stride = LW_SWEEP_ORDERS * cells;
     const int order = axis == 0 ? 1 : 0;
@@ -147,9 +156,10 @@ __kernel void lpv_sweep_march(__global const float* sources, __global const floa
 }
 
 // One work-item = LW_WIDTH cells of one side, colour and order: what that order's groups, one axis' or the other two's, bring there.
-__kernel void lpv_sweep_combine(__global const float* parts, int size, __global float* sides) {
+__kernel void lpv_sweep_combine(__global const float* parts, int size, __global float* sides, __global const LwLpvProgress* rest,
+                                int watches) {
     const int cells = size * size * size, at = (int)get_global_id(0) * LW_WIDTH, plane = (int)get_global_id(1);
-    if (at >= cells || plane >= LW_SWEEP_ORDERS * LW_SWEEP_SIDES * LW_SWEEP_COLOURS) return;
+    if (at >= cells || plane >= LW_SWEEP_ORDERS * LW_SWEEP_SIDES * LW_SWEEP_COLOURS || rests(rest, watches)) return;
     const int order = plane / (LW_SWEEP_SIDES * LW_SWEEP_COLOURS), side = plane / LW_SWEEP_COLOURS % LW_SWEEP_SIDES;
     const int axis = side / 2, positive = side & 1;  // of the light that the side meets
     const int part = LW_SWEEP_COLOURS * axis + plane % LW_SWEEP_COLOURS;
@@ -166,9 +176,10 @@ __kernel void lpv_sweep_combine(__global const float* parts, int size, __global 
 // One work-item = one cell (x; y and z): what arrives at its sides, for pixels to read; where hasTotal, added to `total` as well.
 // largest: bits of the largest sum, which order as the numbers do.
 __kernel void lpv_sweep_pack(__global const float* sides, __global const float* sheets, int size, int hasTotal,
-                             __global float* to, __global float* total, __global uint* largest) {
+                             __global float* to, __global float* total, __global uint* largest,
+                             __global const LwLpvProgress* rest, int watches) {
     const int x = (int)get_global_id(0), line = (int)get_global_id(1);
-    if (x >= size || line >= size * size) return;
+    if (x >= size || line >= size * size || rests(rest, watches)) return;
     const int cells = size * size * size, here = line * size + x, there = cell_in(1, size, x, line % size, line / size);
     const float open = fmax(sheets[LW_SWEEP_COVER * LW_SWEEP_ORDERS * cells + here], SWEEP_LEAST_OPEN);
     float most = 0.0f;

@@ -50,8 +50,10 @@ void complete(Arguments& arguments) {
     chart.truth.pictureNoise = kPictureNoise;
     if (!arguments.pictureNoise.empty())
         chart.truth.pictureNoise = parseNumber("--picture-noise", arguments.pictureNoise);
-    if (!(chart.truth.pictureNoise > 0.0))
-        throw UsageError("--picture-noise: expected a relMSE above 0");
+    if (!(chart.truth.pictureNoise >= 0.0))
+        throw UsageError("--picture-noise: expected a relMSE above 0, or 0 for none");
+    if (chart.truth.pictureNoise == 0.0 && !arguments.skipsReport)
+        throw UsageError("--picture-noise 0: expected --no-report: a report shows whole pictures");
     chart.truth.takesShipped = chart.quick;
 }
 
@@ -107,7 +109,7 @@ void addChart(CLI::App& app) {
     command->add_option(
         "--picture-noise", arguments->pictureNoise,
         "relMSE to which the truths of whole pictures (score, FLIP, previews) are traced where the "
-        "irradiance is judged at fewer pixels; default: 2e-2");
+        "irradiance is judged at fewer pixels; 0: none, and neither score nor FLIP nor report; default: 2e-2");
     command
         ->add_option(
             "--truth-seconds", arguments->seconds,
@@ -125,6 +127,11 @@ void addChart(CLI::App& app) {
     command->add_option(
         "--truth-cache", options.truth.directory,
         "Folder of the truths; default: references/ in LIGHTWELL_CACHE_DIR or the user's cache");
+    command
+        ->add_option("--frames", options.frames,
+                     "Measured frames of each point after three unmeasured ones, whatever their time; "
+                     "default: enough for steady figures")
+        ->check(CLI::Range(1, 200));
     command->add_option("--device", options.device, "As for render");
     command->add_option("--width", options.deviceWidth,
                         "Lanes per work-item: 1, 4, 8 or 16; default: by probe");

@@ -81,11 +81,9 @@ Json irradianceErrors(const JudgedPicture& picture, const ChartView& view, const
         studio::compareIrradiance(view.picks().pick(picture.irradiance), judged.truth.image), judged);
 }
 
-}  // namespace
-
-Json judge(const JudgedPicture& picture, const ChartView& view, const std::string& folder) {
+// Where the truth holds every pixel: score and FLIP as well, and previews.
+void judgePicture(const JudgedPicture& picture, const ChartView& view, const std::string& folder, Json& json) {
     const JudgedTruth& own = view.truths().at(picture.bounces);
-    Json json{{"own", nullptr}, {"all", nullptr}, {"screen", nullptr}, {"images", Json::object()}};
     const studio::Image display =
         studio::toneMap(lit(picture.irradiance, own.picture().image), own.exposure);
     json["images"]["picture"] = writePreview(folder, picture.imageName, display);
@@ -106,6 +104,17 @@ Json judge(const JudgedPicture& picture, const ChartView& view, const std::strin
         json["own"] = errors;
         json["images"]["error"] = writePreview(folder, picture.imageName + "_error", maps.relativeError);
     }
+}
+
+}  // namespace
+
+Json judge(const JudgedPicture& picture, const ChartView& view, const std::string& folder) {
+    const JudgedTruth& own = view.truths().at(picture.bounces);
+    Json json{{"own", nullptr}, {"all", nullptr}, {"screen", nullptr}, {"images", Json::object()}};
+    if (view.picks().areAll() || own.whole)
+        judgePicture(picture, view, folder, json);
+    else if (!own.isBlack)
+        json["own"] = irradianceErrors(picture, view, own);
     if (const auto all = view.truths().find(0); all != view.truths().end() && !all->second.isBlack)
         json["all"] = irradianceErrors(picture, view, all->second);
     const JudgedTruth* onScreen = view.onScreen();

@@ -14,6 +14,7 @@ struct ChartOptions {
     std::string folder, device;
     int width = 1280, height = 720;
     int deviceWidth = 0;  // lanes per work-item; 0: by probe
+    int frames = 0;       // measured ones of each point; 0: enough for steady figures
     bool quick = false, firstCameraOnly = false, onlyTruths = false, skipsAllBounces = false;
     TruthOptions truth;
 };

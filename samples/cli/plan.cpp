@@ -79,7 +79,7 @@ struct PlannedFrame {
 };
 
 void print(const PlanOptions& options, const std::string& scene, const std::string& camera, const Size& size,
-           const lightwell::Device& device, const LWPlan& plan, const std::vector<LWPlan>& all) {
+           const lightwell::Device& device, const LWFrame& frame, const LWPlan& plan, const std::vector<LWPlan>& all) {
     const bool isChoice = options.hasBudget() || options.hasError();
     const LWPlanDesc desc = describe(options);
     if (!options.asJson) {
@@ -95,6 +95,7 @@ void print(const PlanOptions& options, const std::string& scene, const std::stri
     document["budget_ms"] = options.hasBudget() ? nlohmann::ordered_json(desc.budgetMs) : nlohmann::ordered_json();
     document["error_target"] = options.hasError() ? nlohmann::ordered_json(desc.errorTarget) : nlohmann::ordered_json();
     document["probes"] = probesJson(plan.probes);
+    document["triangles"] = frame.geometry ? frame.geometry->triangleCount : 0;
     document["device"] = deviceJson(device.info());
     if (!isChoice || options.listsAll) {
         document["candidates"] = nlohmann::ordered_json::array();
@@ -124,7 +125,8 @@ void planScene(const PlanOptions& options) {
     const lightwell::Device device = openDevice(options.device, std::uint32_t(options.width));
     const lightwell::View view(device, std::uint32_t(size.width), std::uint32_t(size.height));
     const LWPlan plan = lightwell::plan(view, planned.frame, inputs.lwGBuffer(), desc);
-    print(options, scene->name, camera.name, size, device, plan, lightwell::listPlans(view, planned.frame, inputs.lwGBuffer(), desc));
+    print(options, scene->name, camera.name, size, device, planned.frame, plan,
+          lightwell::listPlans(view, planned.frame, inputs.lwGBuffer(), desc));
 }
 
 }  // namespace

@@ -9,7 +9,11 @@ namespace {
 
 constexpr const char* kProgram = "joint_bilateral/joint_bilateral";
 
-Defines definesOf(std::uint32_t channels) { return {{"LW_CHANNELS", std::to_string(channels)}}; }
+Defines definesOf(std::uint32_t channels, bool marks = false) {
+    Defines defines = {{"LW_CHANNELS", std::to_string(channels)}};
+    if (marks) defines.push_back({"LW_MARKS", "1"});
+    return defines;
+}
 
 Range groupOf(const Kernel& kernel) { return kernel.width() == 1 ? Range{64, 1} : Range{8, 1}; }
 
@@ -20,9 +24,9 @@ Range itemsOver(std::uint32_t fullWidth, std::uint32_t rows, const Kernel& kerne
 
 }  // namespace
 
-JointBilateral::JointBilateral(Device& device, std::uint32_t channels)
+JointBilateral::JointBilateral(Device& device, std::uint32_t channels, bool marks)
     : downsample_(device.programs().kernel(kProgram, "joint_bilateral_downsample", definesOf(channels))),
-      upsample_(device.programs().kernel(kProgram, "joint_bilateral_upsample", definesOf(channels))) {}
+      upsample_(device.programs().kernel(kProgram, "joint_bilateral_upsample", definesOf(channels, marks))) {}
 
 void JointBilateral::recordDownsample(Executor& executor, const Planes& position, const Planes& normal,
                                       const Planes& halfPosition, const Planes& halfNormal) {
@@ -37,6 +41,15 @@ void JointBilateral::recordUpsample(Executor& executor, const Planes& position, 
     executor.run("joint_bilateral.upsample", upsample_, itemsOver(position.width, halved(position.height), upsample_),
                  groupOf(upsample_), position, normal, cl_int(position.width), cl_int(position.height), halfPosition,
                  halfNormal, halfIrradiance, irradiance, counts);
+}
+
+void JointBilateral::recordUpsampleMarked(Executor& executor, const Planes& position, const Planes& normal, const Planes& halfPosition,
+                                          const Planes& halfNormal, const Planes& halfIrradiance, const Planes& irradiance, float share,
+                                          const Planes& marks, const Planes& validity, const Buffer& counts) {
+    // A kernel's argument must be some memory, also where it is not written.
+    executor.run("joint_bilateral.upsample", upsample_, itemsOver(position.width, halved(position.height), upsample_),
+                 groupOf(upsample_), position, normal, cl_int(position.width), cl_int(position.height), halfPosition, halfNormal,
+                 halfIrradiance, irradiance, share, marks, validity ? validity : marks, cl_int(validity ? 1 : 0), counts);
 }
 
 void JointBilateral::recordUpsampleAll(Executor& executor, const Planes& position, const Planes& normal,

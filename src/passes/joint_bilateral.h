@@ -9,8 +9,8 @@ namespace lightwell {
 
 class JointBilateral {
 public:
-    // channels: of what recordUpsample up-samples, 1 or 3; 5 for recordUpsampleAll.
-    explicit JointBilateral(Device& device, std::uint32_t channels = 3);
+    // channels: of what recordUpsample up-samples, 1 or 3; 5 for recordUpsampleAll. marks: 3, for recordUpsampleMarked.
+    explicit JointBilateral(Device& device, std::uint32_t channels = 3, bool marks = false);
 
     static std::uint32_t halved(std::uint32_t size) { return (size + 1) / 2; }
 
@@ -22,7 +22,13 @@ public:
     void recordUpsample(Executor& executor, const Planes& position, const Planes& normal,
                         const Planes& halfPosition, const Planes& halfNormal, const Planes& halfIrradiance,
                         const Planes& irradiance, const Buffer& counts);
-    // The same of 5 planes: irradiance and two scalars, each of which may be empty.
+    // The same, and what it does not know the light of: `marks`, a plane, is 1 at pixels without a sample on their own surface and where
+    // the samples around differ by more than `share` of the light, and 0 elsewhere. `validity`, where wanted, becomes 1 on surfaces and 0
+    // elsewhere.
+    void recordUpsampleMarked(Executor& executor, const Planes& position, const Planes& normal, const Planes& halfPosition,
+                              const Planes& halfNormal, const Planes& halfIrradiance, const Planes& irradiance, float share,
+                              const Planes& marks, const Planes& validity, const Buffer& counts);
+    // As recordUpsample, of 5 planes: irradiance and two scalars, each of which may be empty.
     void recordUpsampleAll(Executor& executor, const Planes& position, const Planes& normal, const Planes& halfPosition,
                            const Planes& halfNormal, const Planes& halfLight, const Planes& irradiance,
                            const Planes& fourth, const Planes& fifth, const Buffer& counts);

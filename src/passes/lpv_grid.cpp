@@ -42,7 +42,7 @@ LpvGrid::LpvGrid(Device& device, std::uint32_t size, GridPlace& place)
       place_(place) {}
 
 void LpvGrid::recordInject(Executor& executor, const RsmInput& rsms, const Buffer& authored, std::uint32_t authoredCount,
-                           const Buffer* inner, const float* environment) {
+                           const Buffer* inner, const float* environment, const Buffer* changed) {
     const Buffer& left = inner ? *inner : place();  // a kernel's argument must be some memory
     const cl_int hasInner = inner ? 1 : 0;
     sums_.reserve(device_, sumBytes(size_), "sums of injected light");
@@ -55,13 +55,13 @@ void LpvGrid::recordInject(Executor& executor, const RsmInput& rsms, const Buffe
     if (authoredCount)
         executor.run("lpv_grid.inject", injectVpls_, runsOf(authoredCount), kListGroup, authored, cl_int(authoredCount), place(), left,
                      hasInner, cl_int(size_), sums_, state());
-    recordResolve(executor, environment);
+    recordResolve(executor, environment, changed);
 }
 
-void LpvGrid::recordResolve(Executor& executor, const float* environment) {
+void LpvGrid::recordResolve(Executor& executor, const float* environment, const Buffer* changed) {
     const cl_float4 outside = environment ? cl_float4{{environment[0], environment[1], environment[2], 0.0f}} : cl_float4{};
     executor.run("lpv_grid.resolve", resolve_, {size_, std::size_t(size_) * size_}, kCellGroup, sums_, place(), cl_int(size_),
-                 outside, injected_);
+                 outside, injected_, cl_int(changed ? 1 : 0), changed ? *changed : state());
 }
 
 std::uint64_t LpvGrid::bytes() const {

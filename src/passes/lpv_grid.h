@@ -21,9 +21,9 @@ public:
 
     // Passes "grid_place.*" and "lpv_grid.*". `authored` is read before the call returns.
     void record(Executor& executor, const RsmInput& rsms, const LWVpl* authored, std::uint32_t authoredCount,
-                const LpvPlacement& placement, const float* environment = nullptr) {
+                const LpvPlacement& placement, const float* environment = nullptr, const Buffer* changed = nullptr) {
         recordPlace(executor, rsms, authored, authoredCount, placement);
-        recordInject(executor, rsms, authoredCount, environment);
+        recordInject(executor, rsms, place_.authored(), authoredCount, nullptr, environment, changed);
     }
     // Its two halves; the second one where cells shall hold spherical harmonics. environment: radiance of three colours that comes
     // in through the border's cells; none: 0.
@@ -35,14 +35,15 @@ public:
         recordInject(executor, rsms, place_.authored(), authoredCount, nullptr, environment);
     }
     // Once more of the last recordInject's sums, with another environment.
-    void recordResolve(Executor& executor, const float* environment);
+    void recordResolve(Executor& executor, const float* environment, const Buffer* changed = nullptr);
     // In place of recordPlace: with cells half as large as those of `outer`, which it lies in.
     void recordNested(Executor& executor, const LpvGrid& outer, const LpvPlacement& placement) {
         place_.recordNested(executor, outer.place_, placement);
     }
-    // authored: as authored() has them. inner: none, or the place of a grid whose lights are left out.
+    // authored: as authored() has them. inner: none, or the place of a grid whose lights are left out. changed: none, or an int that is
+    // raised where injected() becomes other than it was.
     void recordInject(Executor& executor, const RsmInput& rsms, const Buffer& authored, std::uint32_t authoredCount,
-                      const Buffer* inner, const float* environment = nullptr);
+                      const Buffer* inner, const float* environment = nullptr, const Buffer* changed = nullptr);
 
     const Buffer& injected() const { return injected_; }          // a grid of LpvPropagation's
     const Buffer& place() const { return place_.place(); }        // LwLpvPlace

@@ -41,12 +41,12 @@ Buffer LpvPropagation::makeGrid(Executor& executor, std::uint32_t size, const ch
 }
 
 const Buffer& LpvPropagation::record(Executor& executor, const Buffer& injected, std::uint32_t steps, const LpvBlockers* blockers,
-                                     LpvProgress* progress) {
+                                     LpvProgress* progress, const Buffer* rest) {
     if (steps == 0) return injected;
     for (std::uint32_t i = 0; i < std::min(steps, 2u); ++i)
         if (!grids_[i]) grids_[i] = makeGrid(executor, size_, "propagated light");
     const bool inSteps = step_.width() == 1 || steps == 1;
-    Run run{injected, blockers, nullptr, &injected, inSteps ? 1u : 0u};
+    Run run{injected, blockers, rest, &injected, inSteps ? 1u : 0u};
     const auto take = [&](std::uint32_t count) {
         if (inSteps)
             recordSteps(executor, run, count);

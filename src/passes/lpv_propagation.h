@@ -28,9 +28,9 @@ public:
     // shared/lpv_types.h has it. Returns the sum of what was injected and of all that `steps` steps make of it; `injected` itself
     // for none.
     // blockers: none, or what takes light away between cells. progress: none, or when to leave out what is left of its steps,
-    // which are as many.
+    // which are as many. rest: without progress; none, or LpvRest's state: where it says so, the last record()'s result stays.
     const Buffer& record(Executor& executor, const Buffer& injected, std::uint32_t steps, const LpvBlockers* blockers = nullptr,
-                         LpvProgress* progress = nullptr);
+                         LpvProgress* progress = nullptr, const Buffer* rest = nullptr);
 
     // After record() without `progress`: the sum less what the last step made.
     const Buffer& before() const { return *before_; }

@@ -158,31 +158,37 @@ void LpvSweep::recordRelight(Executor& executor, const SurfelSet& surfels, const
                  cl_int(inner ? 1 : 0), cl_int(options_.size), bounceCells(), scratch_->lights);
 }
 
-void LpvSweep::recordResolve(Executor& executor, const Buffer& place, const Flight& flight) {
+void LpvSweep::recordResolve(Executor& executor, const Buffer& place, const Flight& flight, LpvRest* rest) {
+    if (rest) rest->begin(executor);
     const std::size_t size = options_.size;
     executor.run("lpv_sweep.resolve", resolve_, {size, LW_SWEEP_ORDERS * size}, {4, 1}, scratch_->lights, areas_, cover_, place,
-                 cl_int(size), flight.sources, flight.sheets, flight.used);
+                 cl_int(size), flight.sources, flight.sheets, flight.used, cl_int(rest ? 1 : 0), rest ? rest->changed() : outside_);
+    if (rest) rest->decide(executor, place, &cover_, isWhole_ && isSameSky_);
+    isWhole_ = false;
 }
 
-void LpvSweep::recordGroups(Executor& executor, const Flight& flight) {
+void LpvSweep::recordGroups(Executor& executor, const Flight& flight, const LpvRest* rest) {
     executor.run("lpv_sweep.march", march_, {step_, 1}, {1, 1}, flight.sources, flight.sheets, flight.used, scratch_->directions,
                  cl_int(options_.directions / LW_SWEEP_GROUPS), cl_int(options_.size), cl_int(nextGroup_), cl_int(step_),
-                 scratch_->carried, flight.parts, bounce_ == 0 ? environment_ : cl_float4{});
+                 scratch_->carried, flight.parts, bounce_ == 0 ? environment_ : cl_float4{}, rest ? rest->state() : place_,
+                 cl_int(rest ? 1 : 0));
 }
 
 // What arrived in all groups becomes cells to read.
-void LpvSweep::recordBounce(Executor& executor, Field field) {
+void LpvSweep::recordBounce(Executor& executor, Field field, const LpvRest* rest) {
     const std::size_t size = options_.size;
     const bool adds = field == kAll && bounce_ > 0;
     const Flight& flight = *flights_[field];
     const Buffer& largest = field == kAll ? largest_ : outerLargest_;
     const Buffer& cells = field == kOuter ? outerCells_ : adds ? bounceCells_ : totalCells_;
+    const Buffer& state = rest ? rest->state() : place_;
+    const cl_int watches = rest ? 1 : 0;
     executor.fill("lpv_sweep.clear", largest, 0, 0, largest.bytes());
     const std::size_t vectors = std::size_t(cellsOf(options_)) / combine_.width();
     executor.run("lpv_sweep.combine", combine_, {vectors, LW_SWEEP_ORDERS * LW_SWEEP_SIDES * LW_SWEEP_COLOURS}, {64, 1},
-                 flight.parts, cl_int(size), scratch_->sides);
+                 flight.parts, cl_int(size), scratch_->sides, state, watches);
     executor.run("lpv_sweep.pack", pack_, {size, size * size}, kCellGroup, scratch_->sides, flight.sheets, cl_int(size),
-                 cl_int(adds ? 1 : 0), cells, totalCells_, largest);
+                 cl_int(adds ? 1 : 0), cells, totalCells_, largest, state, watches);
 }
 
 bool LpvSweep::begin(Executor& executor, bool restart) {
@@ -195,7 +201,9 @@ bool LpvSweep::begin(Executor& executor, bool restart) {
 
 void LpvSweep::recordStart(Executor& executor, const LpvSweepInput& input) {
     executor.copy("lpv_sweep.place", input.place.get(), place_.get(), 0, 0, sizeof(LwLpvPlace));
+    const cl_float4 before = environment_;
     for (std::size_t k = 0; k < LW_SWEEP_COLOURS; ++k) environment_.s[k] = input.environment ? input.environment[k] : 0.0f;
+    isSameSky_ = std::equal(before.s, before.s + LW_SWEEP_COLOURS, environment_.s);
     recordCover(executor, input);
 }
 
@@ -209,11 +217,11 @@ bool LpvSweep::recordPart(Executor& executor, const LpvSweepInput& input, const 
             recordLights(executor, input, field == kOuter ? inner : nullptr);
         else if (nextGroup_ == 0)
             recordRelight(executor, input.surfels, field == kOuter ? inner : nullptr);
-        if (nextGroup_ == 0) recordResolve(executor, bounce_ == 0 ? place_ : unitPlace_, flight);
+        if (nextGroup_ == 0) recordResolve(executor, bounce_ == 0 ? place_ : unitPlace_, flight, input.rest);
         if (nextGroup_ == 0 && field == kAll && input.specular)
             input.specular->recordPackSweep(executor, sources(), bounce_ > 0);
-        recordGroups(executor, flight);
-        if (isLast) recordBounce(executor, field);
+        recordGroups(executor, flight, input.rest);
+        if (isLast) recordBounce(executor, field, input.rest);
     }
     nextGroup_ = isLast ? 0 : nextGroup_ + step_;
     if (isLast) ++bounce_;
@@ -235,6 +243,7 @@ void LpvSweep::record(Executor& executor, const LpvSweepInput& input) {
         recordPart(executor, input, nullptr);
     } while (all && !isDone());
     if (isDone()) recordEnd(executor, input.specular);
+    isWhole_ = true;
 }
 
 void LpvSweep::recordGather(Executor& executor, const Planes& position, const Planes& normal, const Planes& irradiance,

@@ -12,6 +12,7 @@
 #include "inputs/surfel_set.h"
 #include "passes/harmonics.h"
 #include "passes/lpv_cascades.h"
+#include "passes/lpv_rest.h"
 #include "shared/lpv_types.h"
 
 namespace lightwell {
@@ -38,6 +39,7 @@ struct LpvSweepInput {
     const float* environment = nullptr;  // radiance from outside of the grid, of three colours; none: 0
     const GeometryInput* triangles = nullptr;  // block in place of the surfels, as samples on the grid's own lattice
     LpvSpecular* specular = nullptr;  // gets each bounce's light as well, and is told when that is all
+    LpvRest* rest = nullptr;  // of record(), one bounce in one frame: where it finds the light to be as it was, the last result stays
 };
 
 // What surfaces send and cover in a bounce's cells, as lpv_sweep_resolve leaves it.
@@ -109,9 +111,9 @@ private:
     void recordLights(Executor& executor, const LpvSweepInput& input, const Buffer* inner);
     void recordCover(Executor& executor, const LpvSweepInput& input);
     void recordRelight(Executor& executor, const SurfelSet& surfels, const Buffer* inner);
-    void recordResolve(Executor& executor, const Buffer& place, const Flight& flight);
-    void recordGroups(Executor& executor, const Flight& flight);
-    void recordBounce(Executor& executor, Field field);
+    void recordResolve(Executor& executor, const Buffer& place, const Flight& flight, LpvRest* rest);
+    void recordGroups(Executor& executor, const Flight& flight, const LpvRest* rest);
+    void recordBounce(Executor& executor, Field field, const LpvRest* rest);
 
     Device& device_;
     LpvSweepOptions options_;
@@ -126,7 +128,8 @@ private:
     std::uint32_t step_ = 0;  // groups of directions that a call does
     std::uint32_t nextGroup_ = 0, bounce_ = 0;
     cl_float4 environment_{};  // of the light that is under way
-    bool isShown_ = false;
+    bool isShown_ = false, isWhole_ = false;  // isWhole_: the last record() came to its end
+    bool isSameSky_ = false;                  // as the last one's
 };
 
 }  // namespace lightwell

@@ -20,11 +20,12 @@ constexpr std::size_t kPlanProbes = 8;  // in the order of LWPlanProbes' fields
 
 // A technique with settings that were measured.
 //
-//     ms = launches * (here) + computeScale * (cost[0] - launches * (there) + cost[1] * views * Mpixels + cost[2] * Mtriangles)
+//     ms = launches * (here) + computeScale * (cost[0] - launches * (there) + (cost[1] + cost[4] * facing) * views * Mpixels
+//                                              + cost[2] * Mtriangles)
 //          + memoryScale * cost[3] * Mtexels
 //
 // with (here) and (there) the milliseconds of a launch on this device and on the one that was measured, scales of 1 there;
-// triangles: and surfels, texels: of all RSMs. All of `cost` are 0 or more.
+// triangles: and surfels, texels: of all RSMs, facing: the probe, of pairs that a gather has work with. All of `cost` are 0 or more.
 //
 //     log10 relMSE = errorMean + sum over probes of errorSlopes * z,   with a standard deviation of errorSigma
 struct PlanRow {
@@ -32,7 +33,7 @@ struct PlanRow {
     const char* settings;  // as lwCreateTechniqueFromText takes them
     std::uint32_t needs;
     double launches;  // of kernels in a frame; 0: not known
-    double cost[4];   // ms, ms per million pixels, per million triangles, per million texels
+    double cost[5];   // ms, ms per million pixels, per million triangles, per million texels, per million pixels with facing = 1
     double errorMean;
     double errorSlopes[kPlanProbes];
     double errorSigma;
@@ -44,10 +45,11 @@ struct PlanProbeScale {
     double floor, mean, deviation, lowest, highest;
 };
 
-// Of the device that the costs were measured on, as `lightwell devices --probe` has them.
+// Of the device that the costs were measured on, as `lightwell devices --probe` has them; and the probe `facing` of a frame that does
+// not tell it: the mean of the views that were measured.
 struct PlanReference {
     const char* device;
-    double multiplyAddGflops, bandwidthGBps, launchMicroseconds;
+    double multiplyAddGflops, bandwidthGBps, launchMicroseconds, usualFacing;
 };
 
 }  // namespace lightwell

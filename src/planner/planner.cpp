@@ -17,6 +17,8 @@ namespace {
 
 // Errors so near to each other are the same to a viewer: of those the quickest is taken.
 constexpr double kSameError = 1.02;
+// Where no time is short enough, so much longer than the shortest costs less than what it saves in error.
+constexpr double kSameTime = 1.15;
 const double kTwice = std::log10(2.0);
 
 struct NeedName {
@@ -39,11 +41,11 @@ bool allows(std::uint32_t brought, const PlanRow& row) {
     return (row.needs & ~brought) == 0;
 }
 
-double millisecondsOf(const PlanRow& row, const Calibration& calibration, const FrameTraits& traits) {
+double millisecondsOf(const PlanRow& row, const Calibration& calibration, const FrameTraits& traits, double facing) {
     const double million = 1e-6;
     // What a launch takes is part of what was measured as fixed, but grows by its own rate.
     const double launching = std::min(row.launches * kPlanReference.launchMicroseconds * 1e-3, row.cost[0]);
-    const double computed = row.cost[0] - launching + row.cost[1] * traits.pixels * traits.views * million +
+    const double computed = row.cost[0] - launching + (row.cost[1] + row.cost[4] * facing) * traits.pixels * traits.views * million +
                             row.cost[2] * (traits.triangles + traits.surfels) * million;
     return calibration.launchScale * launching + calibration.computeScale * computed +
            calibration.memoryScale * row.cost[3] * traits.rsmTexels * million;
@@ -163,12 +165,13 @@ const std::vector<Candidate>& candidates() {
 std::vector<Prediction> predict(const Calibration& calibration, const FrameTraits& traits, const LWPlanProbes& probes) {
     const std::uint32_t brought = broughtBy(traits);
     const std::array<double, kPlanProbes> z = standardised(probes);
+    const double facing = std::isnan(probes.facing) ? kPlanReference.usualFacing : std::clamp(double(probes.facing), 0.0, 1.0);
     Predictions predictions;
     for (std::size_t i = 0; i < std::size(kPlanRows); ++i) {
         if (!allows(brought, kPlanRows[i])) continue;
         Prediction prediction;
         prediction.candidate = i;
-        prediction.milliseconds = millisecondsOf(kPlanRows[i], calibration, traits);
+        prediction.milliseconds = millisecondsOf(kPlanRows[i], calibration, traits, facing);
         predictError(kPlanRows[i], z, prediction);
         predictions.push_back(prediction);
     }
@@ -193,11 +196,13 @@ Choice choose(const std::vector<Prediction>& predictions, double budgetMilliseco
     const std::string limit = limitOf(budgetMilliseconds), possible = "of " + std::to_string(predictions.size()) + " possible";
     Choice choice;
     if (affordable == 0) {
-        choice.prediction = predictions.front();
+        const double quickest = predictions.front().milliseconds;
+        const auto isSlow = [&](const Prediction& one) { return one.milliseconds > kSameTime * quickest; };
+        choice.prediction = mostAccurate(predictions, std::size_t(std::find_if(predictions.begin(), predictions.end(), isSlow) - predictions.begin()));
         choice.isWithinBudget = false;
         choice.reachesError = !(errorTarget > 0.0) || choice.prediction.error <= errorTarget;
-        choice.reason = nameOf(choice.prediction) + ": " + possible + " none is predicted to stay" + limit + ", and this is the quickest (" +
-                        number(choice.prediction.milliseconds) + " ms)";
+        choice.reason = nameOf(choice.prediction) + ": " + possible + " none is predicted to stay" + limit + "; this is about as quick (" +
+                        number(choice.prediction.milliseconds) + " ms) as the quickest (" + number(quickest) + " ms), and the most accurate of those";
         return choice;
     }
     const auto affordableEnd = predictions.begin() + std::ptrdiff_t(affordable);

@@ -14,10 +14,11 @@ constexpr const char* kModes[] = {"isotropic", "anisotropic", "sh2", nullptr};
 constexpr double kModeSweep[] = {LW_VOXEL_MODE_ISOTROPIC, LW_VOXEL_MODE_ANISOTROPIC, LW_VOXEL_MODE_SH2};
 constexpr double kConeValues[] = {6, 9, 16, 64, 256};
 constexpr double kConeSweep[] = {9, 16, 64};
-constexpr const char* kResolutions[] = {"full", "half", "quarter", "interleaved", nullptr};
+constexpr const char* kResolutions[] = {"full", "half", "quarter", "interleaved", "half_interleaved", nullptr};
 constexpr double kResolutionSweep[] = {LW_CONE_RESOLUTION_HALF, LW_CONE_RESOLUTION_INTERLEAVED};
 constexpr const char* kSources[] = {"auto", "triangles", "surfels", "screen", nullptr};
 constexpr double kBounceValues[] = {0, 1};
+constexpr const char* kInterpolations[] = {"trilinear", "tetrahedral", nullptr};
 constexpr const char* kOcclusions[] = {"off", "all", "near", nullptr};
 
 LWParameter centre(const char* name, std::size_t axis) {
@@ -82,8 +83,8 @@ std::vector<LWParameter> ofCones() {
               kConeSweep),
         swept(choosing(parameter("resolution",
                                  "pixels that cones start at: all, one of 4, one of 16, up-sampled after; interleaved: all, with one cone "
-                                 "each of those around it, filtered after",
-                                 LW_PARAMETER_ENUM, offsetof(LWConeTracingDesc, resolution), 0, 3, LW_CONE_RESOLUTION_INTERLEAVED),
+                                 "each of those around it, filtered after; half_interleaved: both",
+                                 LW_PARAMETER_ENUM, offsetof(LWConeTracingDesc, resolution), 0, 4, LW_CONE_RESOLUTION_INTERLEAVED),
                        kResolutions),
               kResolutionSweep),
         parameter("nudge",
@@ -114,6 +115,11 @@ std::vector<LWParameter> ofCones() {
                   offsetof(LWConeTracingDesc, shadowLight), 0, 1e6, 0),
         parameter("shadow_angle", "full angle of the shadow's cone, in radians: more, and shadows are softer and cost less",
                   LW_PARAMETER_FLOAT, offsetof(LWConeTracingDesc, shadowAngle), 1e-3, 1.5, 0.1),
+        choosing(parameter("interpolation",
+                           "between the voxels around each sample: eight, or the four of the tetrahedron that it lies in: a fifth less time, "
+                           "up to a sixth more error",
+                           LW_PARAMETER_ENUM, offsetof(LWConeTracingDesc, interpolation), 0, 1, LW_CONE_INTERPOLATION_TRILINEAR),
+                 kInterpolations),
         parameter("refractive_index", "of what refracted radiance is seen through, to that around it", LW_PARAMETER_FLOAT,
                   offsetof(LWConeTracingDesc, refractiveIndex), 1, 4, 1.5),
     };
@@ -167,4 +173,5 @@ extern "C" void lwDefaultConeTracing(LWConeTracingDesc* desc) {
     desc->occlusionDistance = 0.125f;
     desc->shadowAngle = 0.1f;
     desc->refractiveIndex = 1.5f;
+    desc->interpolation = LW_CONE_INTERPOLATION_TRILINEAR;
 }

@@ -15,9 +15,16 @@ constexpr std::uint32_t kLightPlanes = 5;  // irradiance, validity, open share
 bool isAsked(const LWImage& image) { return rawEnum(image.format) != LW_FORMAT_NONE; }
 
 std::uint32_t halvingsOf(const LWConeTracingDesc& desc) {
-    return desc.resolution == LW_CONE_RESOLUTION_HALF ? 1 : desc.resolution == LW_CONE_RESOLUTION_QUARTER ? 2 : 0;
+    switch (desc.resolution) {
+        case LW_CONE_RESOLUTION_HALF:
+        case LW_CONE_RESOLUTION_HALF_INTERLEAVED: return 1;
+        case LW_CONE_RESOLUTION_QUARTER: return 2;
+        default: return 0;
+    }
 }
-bool isInterleaved(const LWConeTracingDesc& desc) { return desc.resolution == LW_CONE_RESOLUTION_INTERLEAVED; }
+bool isInterleaved(const LWConeTracingDesc& desc) {
+    return desc.resolution == LW_CONE_RESOLUTION_INTERLEAVED || desc.resolution == LW_CONE_RESOLUTION_HALF_INTERLEAVED;
+}
 bool dimsLight(const LWConeTracingDesc& desc) { return desc.occlusion == LW_CONE_OCCLUSION_ALL; }
 
 std::uint32_t halved(std::uint32_t side, std::uint32_t times) {
@@ -44,6 +51,7 @@ ConeGatherOptions coneOptions(const LWConeTracingDesc& desc) {
     options.apertureOffset = desc.apertureOffset != 0;
     options.near = desc.occlusion == LW_CONE_OCCLUSION_NEAR;
     options.occlusionDistance = double(desc.occlusionDistance);
+    options.tetrahedral = desc.interpolation == LW_CONE_INTERPOLATION_TETRAHEDRAL;
     return options;
 }
 
@@ -79,7 +87,8 @@ ConeTracingView::ConeTracingView(Device& device, const LWConeTracingDesc& desc)
 // Memory of what this frame needs, for the view's largest size.
 void ConeTracingView::reserve(const View& view, bool wantsOpen) {
     if (interleaved_ && !gathered_)
-        gathered_ = PlanarImage(device_, view.maxWidth, view.maxHeight, ConeGather::kGathered, "shares of pixels' cones");
+        gathered_ = PlanarImage(device_, halved(view.maxWidth, halvings_), halved(view.maxHeight, halvings_), ConeGather::kGathered,
+                                "shares of pixels' cones");
     if (!halvings_ && wantsOpen && !ownOpen_) ownOpen_ = PlanarImage(device_, view.maxWidth, view.maxHeight, 1, "ambient occlusion");
     for (std::uint32_t l = std::uint32_t(levels_.size()); l < halvings_; ++l) {
         const std::uint32_t w = halved(view.maxWidth, l + 1), h = halved(view.maxHeight, l + 1);
@@ -105,10 +114,7 @@ void ConeTracingView::render(Executor& executor, const View& view, const LWGBuff
         traceReduced(executor, view, passes, world, light);
     } else if (light) {
         if (makesOpen) light.open = ownOpen_.planes(view.width, view.height);
-        if (interleaved_)
-            traceInterleaved(executor, passes, world, light);
-        else
-            traceAll(executor, passes, world, light);
+        trace(executor, passes, gbuffer_.position, gbuffer_.normal, world, light);
     }
     irradiance_.end(executor);
     validity_.end(executor);
@@ -117,17 +123,17 @@ void ConeTracingView::render(Executor& executor, const View& view, const LWGBuff
     isRendered_ = true;
 }
 
-void ConeTracingView::traceAll(Executor& executor, ConeTracingPasses& passes, const ConeWorld& world, const Light& light) {
-    passes.gather.recordTrace(executor, gbuffer_.position, gbuffer_.normal, world, light.irradiance, light.validity, light.open, counts_);
+void ConeTracingView::trace(Executor& executor, ConeTracingPasses& passes, const Planes& position, const Planes& normal,
+                            const ConeWorld& world, const Light& light) {
+    if (interleaved_) {
+        const Planes gathered = gathered_.planes(position.width, position.height);
+        passes.gather.recordTrace(executor, position, normal, world, gathered, {}, {}, counts_, bool(light.open));
+        passes.gather.recordFilter(executor, position, normal, gathered, light.irradiance, light.validity, light.open);
+        lastTraced_ = gathered;
+    } else {
+        passes.gather.recordTrace(executor, position, normal, world, light.irradiance, light.validity, light.open, counts_);
+    }
     if (dims_ && light.irradiance) passes.recordDim(executor, light.irradiance, light.open);
-}
-
-void ConeTracingView::traceInterleaved(Executor& executor, ConeTracingPasses& passes, const ConeWorld& world, const Light& light) {
-    const Planes gathered = gathered_.planes(gbuffer_.position.width, gbuffer_.position.height);
-    passes.gather.recordTrace(executor, gbuffer_.position, gbuffer_.normal, world, gathered, {}, {}, counts_, bool(light.open));
-    passes.gather.recordFilter(executor, gbuffer_.position, gbuffer_.normal, gathered, light.irradiance, light.validity, light.open);
-    if (dims_ && light.irradiance) passes.recordDim(executor, light.irradiance, light.open);
-    lastTraced_ = gathered;
 }
 
 // Halves of halves: each level's surfaces are some of the one before, which it is up-sampled by.
@@ -145,8 +151,7 @@ void ConeTracingView::traceReduced(Executor& executor, const View& view, ConeTra
     const Planes& coarsest = lights.back();
     const Light traced{light.irradiance ? subPlanes(coarsest, 0, 3) : Planes{}, light.validity ? subPlanes(coarsest, 3, 1) : Planes{},
                        light.open || dims ? subPlanes(coarsest, 4, 1) : Planes{}};
-    passes.gather.recordTrace(executor, positions.back(), normals.back(), world, traced.irradiance, traced.validity, traced.open, counts_);
-    if (dims) passes.recordDim(executor, traced.irradiance, traced.open);
+    trace(executor, passes, positions.back(), normals.back(), world, traced);
     for (std::uint32_t l = halvings_; l > 0; --l) {
         const Planes& to = lights[l - 1];
         const Light result = l == 1 ? light
@@ -181,7 +186,7 @@ void ConeTracingView::addDebugViews(std::vector<DebugView>& views) const {
     views.push_back({"normal", "world normal as the host gave it", gbuffer_.normal, {}});
     if (!lastTraced_) return;
     views.push_back({"gathered",
-                     interleaved_ ? "irradiance of a share of the cones (W/m^2), and what the filter makes of the others"
+                     interleaved_ && !halvings_ ? "irradiance of a share of the cones (W/m^2), and what the filter makes of the others"
                                   : "irradiance (W/m^2), validity and open share of fewer pixels, before they are up-sampled",
                      lastTraced_, {}});
 }
@@ -197,7 +202,7 @@ std::uint64_t ConeTracingView::estimateBytes(const LWConeTracingDesc& desc, cons
     std::uint64_t total = GBufferInput::estimateBytes(view, 0, uploads) + OutputTarget::estimateBytes(view, 3, uploads) +
                           2 * OutputTarget::estimateBytes(view, 1, uploads) + kCountBytes + kUpsampleCountBytes +
                           ConeTracingRays::estimateBytes(view, uploads);
-    if (isInterleaved(desc)) total += ConeGather::kGathered * planeBytes(view.maxWidth, view.maxHeight);
+    if (isInterleaved(desc)) total += ConeGather::kGathered * planeBytes(halved(view.maxWidth, halvingsOf(desc)), halved(view.maxHeight, halvingsOf(desc)));
     if (dimsLight(desc) && !halvingsOf(desc)) total += planeBytes(view.maxWidth, view.maxHeight);
     for (std::uint32_t l = 1; l <= halvingsOf(desc); ++l)
         total += (3 + 3 + kLightPlanes) * planeBytes(halved(view.maxWidth, l), halved(view.maxHeight, l));

@@ -1,5 +1,5 @@
-// What technique cone_tracing keeps of a view: cones traced at every pixel, at fewer of them and up-sampled, or a share of them at each
-// and filtered.
+// What technique cone_tracing keeps of a view: cones traced at every pixel, at fewer of them and up-sampled, or a share of them at
+// each and filtered.
 #pragma once
 
 #include <optional>
@@ -66,8 +66,9 @@ private:
         PlanarImage position, normal, light;
     };
     void reserve(const View& view, bool wantsOpen);
-    void traceAll(Executor& executor, ConeTracingPasses& passes, const ConeWorld& world, const Light& light);
-    void traceInterleaved(Executor& executor, ConeTracingPasses& passes, const ConeWorld& world, const Light& light);
+    // All cones at each of these pixels, or a share of them and a filter.
+    void trace(Executor& executor, ConeTracingPasses& passes, const Planes& position, const Planes& normal, const ConeWorld& world,
+               const Light& light);
     void traceReduced(Executor& executor, const View& view, ConeTracingPasses& passes, const ConeWorld& world, const Light& light);
 
     Device& device_;

@@ -4,6 +4,7 @@
 
 #include "compute/device.h"
 #include "compute/error.h"
+#include "shared/pixel_repair_types.h"
 
 namespace lightwell {
 namespace {
@@ -38,6 +39,10 @@ InterleavedView::InterleavedView(Device& device, const InterleavedOptions& optio
         senders_.reserve(device, width, height, options.interleave);
         if (options.half) halfRadiance_ = PlanarImage(device, width, height, 3, "half-resolution direct radiance");
     }
+    if (options.repairs > 0.0f) {
+        repaired_.emplace(device, view.maxWidth, view.maxHeight);
+        repairRows_ = RepairedPixels::listedRows(view.maxWidth, view.maxHeight);
+    }
     if (!options.keeps()) return;
     if (options.half || options.filters()) current_ = PlanarImage(device, view.maxWidth, view.maxHeight, 3, "irradiance of a frame alone");
     history_.emplace(device, options.history, view.maxWidth, view.maxHeight);
@@ -49,7 +54,7 @@ void InterleavedView::startFrame(bool forget) {
 }
 
 void InterleavedView::render(Executor& executor, const View& view, const LWGBuffer& gbuffer, const LWOutput& output,
-                             const Passes& passes, const Gather& gather) {
+                             const Passes& passes, const Gather& gather, const Gather& gatherAll) {
     if (history_) TemporalHistory::checkCamera(gbuffer, view.width, view.height);
     gbuffer_.import(executor, view, gbuffer, needsOf(options_), "gbuffer");
     // Should a later step fail, the images of the frame before are gone.
@@ -57,14 +62,14 @@ void InterleavedView::render(Executor& executor, const View& view, const LWGBuff
     isRendered_ = true;
     const Planes irradiance = irradiance_.begin(executor, view, output.irradiance, 3, "output.irradiance");
     const Planes validity = validity_.begin(executor, view, output.validity, 1, "output.validity");
-    if (irradiance) light(executor, passes, gbuffer.camera, irradiance, validity, gather);
-    if (validity && !(irradiance && filtersLast())) passes.gather.recordValidity(executor, gbuffer_.position, gbuffer_.normal, validity);
+    if (irradiance) light(executor, passes, gbuffer.camera, irradiance, validity, gather, gatherAll);
+    if (validity && !(irradiance && lastMakesValidity())) passes.gather.recordValidity(executor, gbuffer_.position, gbuffer_.normal, validity);
     irradiance_.end(executor);
     validity_.end(executor);
 }
 
 void InterleavedView::light(Executor& executor, const Passes& passes, const LWCamera& camera, const Planes& irradiance,
-                            const Planes& validity, const Gather& gather) {
+                            const Planes& validity, const Gather& gather, const Gather& gatherAll) {
     Planes position = gbuffer_.position, normal = gbuffer_.normal;
     const bool half = options_.half, filter = options_.filters();
     executor.fill("interleaved_gather.counts", counts_, 0, 0, counts_.bytes());
@@ -84,12 +89,31 @@ void InterleavedView::light(Executor& executor, const Passes& passes, const LWCa
         lit = half ? filtered_.planes(position.width, position.height) : made;
         passes.gather.recordFilter(executor, position, normal, gathered, lit, filtersLast() ? validity : Planes{});
     }
-    if (half)
-        passes.bilateral->recordUpsample(executor, gbuffer_.position, gbuffer_.normal, position, normal, lit, made, counts_);
+    if (half) upsample(executor, passes, position, normal, lit, made, validity, gatherAll);
     if (history_)
         passes.history->record(executor, {gbuffer_.position, gbuffer_.normal, gbuffer_.motion, made, irradiance, {}, {}}, camera, *history_);
     lastGathered_ = gathered;
     lastFiltered_ = lit;
+}
+
+// position, normal, lit: at half resolution.
+void InterleavedView::upsample(Executor& executor, const Passes& passes, const Planes& position, const Planes& normal, const Planes& lit,
+                               const Planes& made, const Planes& validity, const Gather& gatherAll) {
+    const Planes &fullPosition = gbuffer_.position, &fullNormal = gbuffer_.normal;
+    if (!repaired_) return passes.bilateral->recordUpsample(executor, fullPosition, fullNormal, position, normal, lit, made, counts_);
+    const std::uint32_t w = made.width, h = made.height;
+    passes.bilateral->recordUpsampleMarked(executor, fullPosition, fullNormal, position, normal, lit, made, options_.repairs,
+                                           repaired_->marks(w, h), validity, counts_);
+    passes.repair->recordCollect(executor, fullPosition, fullNormal, *repaired_);
+    gatherAll(repaired_->position(w, h), repaired_->normal(w, h), repaired_->light(w, h));
+    passes.repair->recordPut(executor, *repaired_, made);
+}
+
+const Buffer& InterleavedView::cullAll(Executor& executor, InterleavedGather& passes, const Planes& position, const Planes& normal,
+                                       const Buffer& vpls, lw_subset_order order) {
+    repairTiles_.reserve(device_, LW_REPAIR_COLUMNS, repairRows_, order, 1);
+    passes.recordCull(executor, position, normal, vpls, order, repairTiles_);
+    return repairTiles_.masks();
 }
 
 const Buffer& InterleavedView::cull(Executor& executor, InterleavedGather& passes, const Planes& position,
@@ -138,6 +162,7 @@ void InterleavedView::report(Device& device, Report& report, lw_subset_order ord
     report.read(device, "rejected_pixels", counts_, 0);
     report.read(device, "upsample_fallbacks", counts_, sizeof(cl_int));
     report.read(device, "saturated_pixels", counts_, 2 * sizeof(cl_int));
+    if (repaired_) repaired_->report(device, report);
     if (history_) history_->report(device, report);
     if (options_.compensated) report.read(device, "compensation_capped", counts_, 3 * sizeof(cl_int));
 }
@@ -148,6 +173,9 @@ void InterleavedView::addDebugViews(std::vector<DebugView>& views, TemporalHisto
     views.push_back({"normal", "world normal as the host gave it", gbuffer_.normal, {}});
     views.push_back({"gathered", "irradiance before the filter (W/m^2)", lastGathered_, {}});
     if (options_.filters()) views.push_back({"filtered", "irradiance after the filter (W/m^2)", lastFiltered_, {}});
+    if (repaired_)
+        views.push_back({"repair_marks", "1: a pixel that half resolution does not know the light of",
+                         repaired_->marks(gbuffer_.position.width, gbuffer_.position.height), {}});
     if (!history_) return;
     if (const Planes shape = history->ageShape(*history_); shape.width)
         views.push_back({"history_age", "frames in each pixel's mean; 1: new in this frame, 0: no surface", shape,
@@ -157,11 +185,12 @@ void InterleavedView::addDebugViews(std::vector<DebugView>& views, TemporalHisto
 std::uint64_t InterleavedView::bytes() const {
     return gbuffer_.bytes() + irradiance_.bytes() + validity_.bytes() + gathered_.bytes() + filtered_.bytes() +
            halfPosition_.bytes() + halfNormal_.bytes() + tiles_.bytes() + senders_.bytes() + halfRadiance_.bytes() +
-           counts_.bytes() + current_.bytes() + (history_ ? history_->bytes() : 0);
+           counts_.bytes() + current_.bytes() + repairTiles_.bytes() + (repaired_ ? repaired_->bytes() : 0) +
+           (history_ ? history_->bytes() : 0);
 }
 
 std::uint64_t InterleavedView::estimateBytes(const InterleavedOptions& options, const LWViewDesc& view, bool uploads,
-                                             lw_subset_order order) {
+                                             lw_subset_order order, lw_subset_order whole) {
     const std::uint32_t width = options.gathered(view.maxWidth), height = options.gathered(view.maxHeight);
     const bool keeps = options.keeps(), follows = options.half || options.filters();
     const std::uint64_t images = (follows || keeps ? 1u : 0u) +
@@ -173,7 +202,12 @@ std::uint64_t InterleavedView::estimateBytes(const InterleavedOptions& options, 
                      (follows ? 3 * sizeof(float) * std::uint64_t(paddedWidth(view.maxWidth)) * view.maxHeight : 0);
     const std::uint64_t senders =
         options.compensated ? CompensationSenders::estimateBytes(width, height, options.interleave) : 0;
-    return history + senders + GBufferInput::estimateBytes(view, needsOf(options), uploads) +
+    const std::uint64_t repairs =
+        !(options.repairs > 0.0f)
+            ? 0
+            : RepairedPixels::estimateBytes(view.maxWidth, view.maxHeight) +
+                  VplTiles::estimateBytes(LW_REPAIR_COLUMNS, RepairedPixels::listedRows(view.maxWidth, view.maxHeight), whole, 1);
+    return history + senders + repairs + GBufferInput::estimateBytes(view, needsOf(options), uploads) +
            OutputTarget::estimateBytes(view, 3, uploads) +
            OutputTarget::estimateBytes(view, 1, uploads) + kCountBytes +
            images * 3 * paddedWidth(width) * height * sizeof(float) +

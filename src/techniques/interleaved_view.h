@@ -13,6 +13,7 @@
 #include "passes/bounding_compensation.h"
 #include "passes/interleaved_gather.h"
 #include "passes/joint_bilateral.h"
+#include "passes/pixel_repair.h"
 #include "passes/temporal_history.h"
 #include "techniques/technique.h"
 
@@ -24,6 +25,7 @@ struct InterleavedOptions {
     bool half = false;   // gathers every second pixel and row
     TemporalHistoryOptions history;  // of what comes of these; none with 0 frames
     bool compensated = false;  // by BoundingCompensation; needs the G-buffer's direct radiance and camera
+    float repairs = 0.0f;  // above 0, with `half`: the share by which light may differ around pixels that are not gathered by themselves
 
     bool keeps() const { return history.frames > 0; }
     bool filters() const { return filter && interleave > 1; }
@@ -41,13 +43,17 @@ public:
         InterleavedGather& gather;
         JointBilateral* bilateral;
         TemporalHistory* history;
+        PixelRepair* repair = nullptr;
     };
-    // A view's frame, from the host's images to the host's images.
+    // A view's frame, from the host's images to the host's images. gatherAll: of all VPLs at each pixel, with options.repairs.
     void render(Executor& executor, const View& view, const LWGBuffer& gbuffer, const LWOutput& output, const Passes& passes,
-                const Gather& gather);
+                const Gather& gather, const Gather& gatherAll = {});
     // Recorded by `gather`: which VPLs (lw_vpl by slot) the tiles of this image can skip.
     const Buffer& cull(Executor& executor, InterleavedGather& passes, const Planes& position, const Planes& normal,
                        const Buffer& vpls, lw_subset_order order);
+    // The same by `gatherAll`: passes of interleave 1, a list of one subset.
+    const Buffer& cullAll(Executor& executor, InterleavedGather& passes, const Planes& position, const Planes& normal, const Buffer& vpls,
+                          lw_subset_order order);
 
     // Recorded by `gather`, after the VPLs: near light that their bounds lack is added to `irradiance`.
     void compensate(Executor& executor, BoundingCompensation& pass, const LWCamera& camera, const Planes& position,
@@ -56,6 +62,7 @@ public:
     void addCompensationView(BoundingCompensation& pass, std::vector<DebugView>& views) const;
 
     const Buffer& counts() const { return counts_; }  // as InterleavedGather and JointBilateral count
+    const Buffer& repairCounts() const { return repaired_->counts(); }  // of `gatherAll`
     // The surfaces of the last frame, at full resolution; empty where it had no irradiance.
     Planes position() const { return lastGathered_ ? gbuffer_.position : Planes{}; }
     Planes normal() const { return lastGathered_ ? gbuffer_.normal : Planes{}; }
@@ -65,15 +72,19 @@ public:
     void report(Device& device, Report& report, lw_subset_order order) const;
     void addDebugViews(std::vector<DebugView>& views, TemporalHistory* history) const;
     std::uint64_t bytes() const;
-    // Of the images, inputs, outputs and tiles for a view of this size; `order` of the longest list.
-    static std::uint64_t estimateBytes(const InterleavedOptions& options, const LWViewDesc& view, bool uploads,
-                                       lw_subset_order order);
+    // Of the images, inputs, outputs and tiles for a view of this size; `order` of the longest list, with options.repairs `whole` of that
+    // which gatherAll culls.
+    static std::uint64_t estimateBytes(const InterleavedOptions& options, const LWViewDesc& view, bool uploads, lw_subset_order order,
+                                       lw_subset_order whole = {});
 
 private:
     void light(Executor& executor, const Passes& passes, const LWCamera& camera, const Planes& irradiance, const Planes& validity,
-               const Gather& gather);
-    // The filter makes validity, too, of what it has read.
+               const Gather& gather, const Gather& gatherAll);
+    void upsample(Executor& executor, const Passes& passes, const Planes& position, const Planes& normal, const Planes& lit,
+                  const Planes& made, const Planes& validity, const Gather& gatherAll);
+    // What comes last makes validity, too, of what it has read: the filter, or an up-sampling that marks.
     bool filtersLast() const { return options_.filters() && !options_.half; }
+    bool lastMakesValidity() const { return filtersLast() || repaired_; }
 
     Device& device_;
     InterleavedOptions options_;
@@ -82,7 +93,9 @@ private:
     PlanarImage gathered_, filtered_, halfPosition_, halfNormal_, current_;
     std::optional<ViewHistory> history_;
     std::uint32_t gatheredWidth_, gatheredHeight_;  // at most
-    VplTiles tiles_;
+    VplTiles tiles_, repairTiles_;
+    std::optional<RepairedPixels> repaired_;
+    std::uint32_t repairRows_ = 0;  // of its small image, at most
     CompensationSenders senders_;
     PlanarImage halfRadiance_;
     Planes compensatedPosition_, compensatedNormal_;  // of the last frame

@@ -35,6 +35,9 @@ public:
     // LpvBlocking's, of the last record(); null where the parameter is off.
     const Buffer* corners() const { return blockings_.empty() ? nullptr : &blockings_.front()->corners(); }
 
+    // LwLpvBlockers of the same; null where the parameter is off.
+    const Buffer* state() const { return blockings_.empty() ? nullptr : &blockings_.front()->state(); }
+
     // What of the frame's geometry and views is used, and what is not.
     std::vector<LWChoice> choices(const LWFrame& frame) const;
     void report(Report& report) const;

@@ -76,6 +76,9 @@ const std::vector<LWParameter>& lpvParameters() {
                                  LW_PARAMETER_ENUM, offsetof(LWLpvDesc, resolution), 0, 1, LW_RESOLUTION_FULL),
                        kResolutionNames),
               kResolutionSweep),
+        parameter("rests", "light that is as it was in the frame before is not carried again, with the same result: still lights take less time; of one "
+                           "bounce in one grid",
+                  LW_PARAMETER_BOOL, offsetof(LWLpvDesc, rests), 0, 1, 0),
         swept(parameter("cascades",
                         "grids of `size` cells, each half as large as the one around it: finer light near the eye (or the middle, without a "
                         "focus); time grows with twice their number",

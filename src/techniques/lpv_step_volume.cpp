@@ -17,16 +17,22 @@ LpvStepVolume::LpvStepVolume(Device& device, const LWLpvDesc& desc)
       read_(device, desc.size),
       specular_(device, desc.size) {
     if (desc.autoError > 0.0f) progress_.emplace(progressOf(device, desc));
+    if (desc.rests) rest_.emplace(device);
 }
 
 void LpvStepVolume::record(Executor& executor, const LWFrame& frame, const RsmInput& rsms, const LpvPlacement& placement) {
+    const bool isKnown = isWhole_;
+    isWhole_ = false;
     geometry_.import(executor, frame, rsms);
-    grid_.record(executor, rsms, frame.vpls, frame.vplCount, placement, frame.environment);
+    if (rest_) rest_->begin(executor);
+    grid_.record(executor, rsms, frame.vpls, frame.vplCount, placement, frame.environment, rest_ ? &rest_->changed() : nullptr);
     const std::optional<LpvBlockers> blockers = geometry_.record(executor, grid_.place());
+    if (rest_) rest_->decide(executor, grid_.place(), geometry_.state(), isKnown);
     propagated_ = &propagation_.record(executor, grid_.injected(), stepsOf(desc_), blockers ? &*blockers : nullptr,
-                                       progress_ ? &*progress_ : nullptr);
+                                       progress_ ? &*progress_ : nullptr, rest_ ? &rest_->state() : nullptr);
     read_.recordPack(executor, *propagated_, progress_ ? &progress_->state() : nullptr);
     specular_.startFrame(frame.environment);
+    isWhole_ = true;
 }
 
 void LpvStepVolume::recordGather(Executor& executor, const Planes& position, const Planes& normal, const Planes& irradiance,
@@ -45,6 +51,7 @@ void LpvStepVolume::report(Report& report) const {
     geometry_.report(report);
     report.counts.push_back({"steps", progress_ ? 0 : stepsOf(desc_)});
     if (progress_ && propagated_) reportProgress(device_, *progress_, report);
+    if (rest_ && propagated_) rest_->report(device_, report);
     report.counts.push_back({"lights_outside", 0});
     if (propagated_) report.read(device_, "lights_outside", grid_.state(), LW_LPV_OUTSIDE * sizeof(cl_uint));
 }
@@ -69,13 +76,14 @@ void LpvStepVolume::addDebugViews(std::vector<DebugView>& views) const {
 }
 
 std::uint64_t LpvStepVolume::bytes() const {
-    return geometry_.bytes() + grid_.bytes() + propagation_.bytes() + read_.bytes() + specular_.bytes() + (progress_ ? progress_->bytes() : 0);
+    return geometry_.bytes() + grid_.bytes() + propagation_.bytes() + read_.bytes() + specular_.bytes() + (progress_ ? progress_->bytes() : 0) +
+           (rest_ ? rest_->bytes() : 0);
 }
 
 std::uint64_t LpvStepVolume::estimateBytes(const LWLpvDesc& desc, const FrameShape& shape) {
     return LpvGrid::estimateBytes(desc.size, shape.vplCount) + LpvPropagation::estimateBytes(desc.size, stepsOf(desc)) +
            LpvRead::estimateBytes(desc.size) + LpvStepSpecular::estimateBytes(desc.size) + LpvGeometry::estimateBytes(desc, shape) +
-           (desc.autoError > 0.0f ? LpvProgress::estimateBytes(desc.size) : 0);
+           (desc.autoError > 0.0f ? LpvProgress::estimateBytes(desc.size) : 0) + (desc.rests ? LpvRest::estimateBytes() : 0);
 }
 
 }  // namespace lightwell

@@ -6,6 +6,7 @@
 #include "passes/lpv_progress.h"
 #include "passes/lpv_propagation.h"
 #include "passes/lpv_read.h"
+#include "passes/lpv_rest.h"
 #include "techniques/lpv_geometry.h"
 #include "techniques/lpv_step_specular.h"
 #include "techniques/lpv_volume.h"
@@ -46,6 +47,8 @@ private:
     LpvPropagation propagation_;
     LpvRead read_;
     std::optional<LpvProgress> progress_;  // with an error target
+    std::optional<LpvRest> rest_;          // with desc.rests
+    bool isWhole_ = false;                 // the last record() came to its end
     LpvStepSpecular specular_;
     const Buffer* propagated_ = nullptr;  // of the last record
 };

@@ -1,6 +1,8 @@
 // Technique lpv with transport=sweep: the sweep, and the surfaces that stop light and send it on.
 #pragma once
 
+#include <optional>
+
 #include "passes/lpv_sweep.h"
 #include "techniques/lpv_surfaces.h"
 #include "techniques/lpv_volume.h"
@@ -32,7 +34,7 @@ public:
     std::vector<LWChoice> choices(const LWFrame& frame, double side) const override { return surfaces_.choices(frame, side); }
     void report(Report& report) const override;
     std::uint64_t bytes() const override {
-        return grid_.bytes() + sweep_.bytes() + specular_.bytes() + surfaces_.bytes();
+        return grid_.bytes() + sweep_.bytes() + specular_.bytes() + surfaces_.bytes() + (rest_ ? rest_->bytes() : 0);
     }
     static std::uint64_t estimateBytes(const LWLpvDesc& desc, const FrameShape& shape);
 
@@ -45,6 +47,7 @@ private:
     LpvGrid grid_;  // its place alone
     LpvSweep sweep_;
     LpvSpecular specular_;
+    std::optional<LpvRest> rest_;  // with desc.rests
     // One bounce's sources are there when the first view asks; of several, or over frames, they are gone by then.
     bool packsLater_, isPacked_ = false;
 };

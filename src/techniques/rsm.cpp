@@ -34,7 +34,13 @@ VplSamplingOptions samplingOptions(const LWRsmDesc& desc) {
 constexpr std::uint32_t kPrewarmVpls = 1024;
 
 InterleavedOptions interleavedOptions(const LWRsmDesc& desc) {
-    return {desc.interleave, desc.filter != 0, desc.resolution == LW_RESOLUTION_HALF, {desc.history, desc.historyClamp, 0}};
+    InterleavedOptions options;
+    options.interleave = desc.interleave;
+    options.filter = desc.filter != 0;
+    options.half = desc.autoResolution > 0.0f || desc.resolution == LW_RESOLUTION_HALF;
+    options.history = {desc.history, desc.historyClamp, 0};
+    options.repairs = desc.autoResolution;
+    return options;
 }
 
 // What the host gave and this technique does not read: said in the stats, so that nobody waits for its light.
@@ -60,7 +66,11 @@ public:
     RsmTechnique(Device& device, const LWRsmDesc& desc, RsmShadows::Source source = RsmShadows::Source::best)
         : device_(device), desc_(desc), sampling_(device, samplingOptions(desc)), gather_(device, desc.interleave) {
         // A program built for nothing is also never cached.
-        if (interleavedOptions(desc).half) bilateral_.emplace(device);
+        if (interleavedOptions(desc).half) bilateral_.emplace(device, 3, repairs());
+        if (repairs()) {
+            repair_.emplace(device);
+            gatherAll_.emplace(device, 1);
+        }
         if (desc.history) history_.emplace(device, interleavedOptions(desc).history);
         if (isShadowed(desc)) shadows_.emplace(device, desc, source);
     }
@@ -85,12 +95,15 @@ public:
             view, [&] { return std::make_unique<InterleavedView>(device_, interleavedOptions(desc_), *view); });
         const Buffer& vpls = this->vpls();
         const lw_subset_order order = this->order();
-        state.render(executor, *view, gbuffer, output, {gather_, bilateral_ ? &*bilateral_ : nullptr, history()},
+        state.render(executor, *view, gbuffer, output, {gather_, bilateral_ ? &*bilateral_ : nullptr, history(), repair_ ? &*repair_ : nullptr},
                      [&](const Planes& position, const Planes& normal, const Planes& irradiance) {
                          const Buffer& masks = state.cull(executor, gather_, position, normal, vpls, order);
                          if (shadows_)
                              return shadows_->recordGather(executor, position, normal, masks, irradiance, state.counts());
                          gather_.recordGather(executor, position, normal, vpls, order, masks, irradiance, state.counts());
+                     },
+                     [&](const Planes& position, const Planes& normal, const Planes& irradiance) {
+                         gatherAll(executor, state, position, normal, irradiance);
                      });
     }
 
@@ -121,6 +134,15 @@ public:
     std::uint64_t bytes() const override;
 
 private:
+    bool repairs() const { return desc_.autoResolution > 0.0f; }
+    // All VPLs at each pixel.
+    void gatherAll(Executor& executor, InterleavedView& state, const Planes& position, const Planes& normal, const Planes& irradiance) {
+        const Buffer& vpls = shadows_ ? shadows_->wholeVpls() : sampling_.vpls();
+        const lw_subset_order order = shadows_ ? shadows_->wholeOrder() : wholeOrder(sampling_.order());
+        const Buffer& masks = state.cullAll(executor, *gatherAll_, position, normal, vpls, order);
+        if (shadows_) return shadows_->recordGatherAll(executor, position, normal, masks, irradiance, state.repairCounts());
+        gatherAll_->recordGather(executor, position, normal, vpls, order, masks, irradiance, state.repairCounts());
+    }
     TemporalHistory* history() { return history_ ? &*history_ : nullptr; }
     // As the gather walks them.
     const Buffer& vpls() const { return shadows_ ? shadows_->vpls() : sampling_.vpls(); }
@@ -134,6 +156,8 @@ private:
     VplSampling sampling_;
     InterleavedGather gather_;
     std::optional<JointBilateral> bilateral_;  // half resolution only
+    std::optional<PixelRepair> repair_;        // with desc.autoResolution only
+    std::optional<InterleavedGather> gatherAll_;
     std::optional<RsmShadows> shadows_;        // with visibility only
     std::optional<TemporalHistory> history_;
     PerView<InterleavedView> states_;
@@ -151,6 +175,10 @@ Report RsmTechnique::report() {
     report.counts.push_back({"rejected_pixels", 0});
     report.counts.push_back({"upsample_fallbacks", 0});
     report.counts.push_back({"saturated_pixels", 0});
+    if (repairs()) {
+        report.counts.push_back({"repaired_pixels", 0});
+        report.counts.push_back({"unrepaired_pixels", 0});
+    }
     if (history_) report.counts.push_back({"history_new", 0});
     states_.each([&](const InterleavedView& state) { state.report(device_, report, order()); });
     if (shadows_) shadows_->report(report);
@@ -180,14 +208,15 @@ std::uint64_t RsmTechnique::bytes() const {
 
 std::uint64_t estimateBytes(const void* desc, const LWViewDesc& view, const FrameShape& shape) {
     const LWRsmDesc& rsm = *static_cast<const LWRsmDesc*>(desc);
-    lw_subset_order order = VplSampling::orderOf(samplingOptions(rsm), shape);
+    lw_subset_order order = VplSampling::orderOf(samplingOptions(rsm), shape), whole = wholeOrder(order);
     std::uint64_t total = RsmInput::estimateBytes(shape) + VplSampling::estimateBytes(samplingOptions(rsm), shape);
     if (isShadowed(rsm)) {
         const std::uint32_t count = std::uint32_t(order.count);
         total += RsmShadows::estimateBytes(rsm, count, shape);
         order = RsmShadows::orderOf(rsm, count);
+        whole = RsmShadows::wholeOrderOf(count);
     }
-    return total + InterleavedView::estimateBytes(interleavedOptions(rsm), view, shape.uploads, order);
+    return total + InterleavedView::estimateBytes(interleavedOptions(rsm), view, shape.uploads, order, whole);
 }
 
 }  // namespace

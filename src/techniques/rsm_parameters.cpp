@@ -51,7 +51,10 @@ const std::vector<LWParameter>& rsmParameters() {
               kVisibilitySweep),
         allowing(parameter("voxels", "a side of the grid that visibility=voxel looks through: finer occluders; memory and drawing time with its cube",
                            LW_PARAMETER_UINT, offsetof(LWRsmDesc, voxels), 32, 256, 64),
-                 kVoxelsValues)};
+                 kVoxelsValues),
+        parameter("auto_resolution", "gathered at half resolution, but for pixels around which light found there differs by more than this share, or that it "
+                                     "lacks: time falls as it is raised; 0: as `resolution` says",
+                  LW_PARAMETER_FLOAT, offsetof(LWRsmDesc, autoResolution), 0, 10, 0)};
     return table;
 }
 

@@ -49,7 +49,9 @@ RsmShadows::RsmShadows(Device& device, const LWRsmDesc& desc, Source source)
       wanted_(source),
       shadows_(device, desc.voxels),
       clusters_(device, clusterOptions()),
-      gather_(device, desc.interleave, groupsOf(desc), ClusterVisibility::voxel) {}
+      gather_(device, desc.interleave, groupsOf(desc), ClusterVisibility::voxel) {
+    if (desc.autoResolution > 0.0f) gatherAll_.emplace(device, 1, 1, ClusterVisibility::voxel);
+}
 
 Source RsmShadows::sourceOf(const LWFrame& frame) const {
     return wanted_ == Source::best ? bestOf(trianglesOf(frame), surfelsOf(frame)) : wanted_;
@@ -91,6 +93,7 @@ void RsmShadows::update(Executor& executor, const LWFrame& frame, const RsmInput
     shadows_.recordSights(executor, {{clusters_.clusters(), clusters_.clusterCount()}});
     std::vector<GatheredList> lists{{vpls, &clusters_.assignment(), clusters_.clusterCount()}};
     gather_.recordOrder(executor, lists);
+    if (gatherAll_) gatherAll_->recordOrder(executor, lists);
     lists_ = std::move(lists);
     if (points_) points_->startFrame();
 }
@@ -106,6 +109,13 @@ void RsmShadows::recordGather(Executor& executor, const Planes& position, const 
     gather_.recordGather(executor, position, normal, masks,
                          VplTiles::layout(position.width, position.height, gather_.order(), desc_.interleave), mapsRead(sights),
                          irradiance, counts);
+}
+
+void RsmShadows::recordGatherAll(Executor& executor, const Planes& position, const Planes& normal, const Buffer& masks,
+                                 const Planes& irradiance, const Buffer& counts) {
+    const VoxelSights sights = shadows_.sights();
+    gatherAll_->recordGather(executor, position, normal, masks, VplTiles::layout(position.width, position.height, gatherAll_->order(), 1),
+                             mapsRead(sights), irradiance, counts);
 }
 
 void RsmShadows::renderPoints(Executor& executor, const Points& points) {
@@ -135,6 +145,7 @@ void RsmShadows::report(Report& report) const {
 
 std::uint64_t RsmShadows::bytes() const {
     return triangles_.bytes() + surfels_.bytes() + screen_.bytes() + shadows_.bytes() + clusters_.bytes() + gather_.bytes() +
+           (gatherAll_ ? gatherAll_->bytes() : 0) +
            (points_ ? points_->bytes() : 0);
 }
 
@@ -149,7 +160,8 @@ std::uint64_t RsmShadows::estimateBytes(const LWRsmDesc& desc, std::uint32_t cou
                                                                : ScreenSurfels::estimateBytes(shape);
     const std::uint64_t surfels = source == Source::triangles ? 0 : source == Source::surfels ? shape.surfels : shape.paddedTexels + shape.sourcePixels;
     return surfaces + VoxelShadows::estimateBytes(desc.voxels, kClusters, surfels, shape) +
-           KMeans::estimateBytes(clusterOptions(), count) + ClusteredGather::estimateBytes({count}, 1, desc.interleave);
+           KMeans::estimateBytes(clusterOptions(), count) + ClusteredGather::estimateBytes({count}, 1, desc.interleave) +
+           (desc.autoResolution > 0.0f ? ClusteredGather::estimateBytes({count}, 1, 1) : 0);
 }
 
 }  // namespace lightwell

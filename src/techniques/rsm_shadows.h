@@ -34,6 +34,11 @@ public:
     void update(Executor& executor, const LWFrame& frame, const RsmInput& rsms, VplList vpls, bool restart, bool lost);
     void recordGather(Executor& executor, const Planes& position, const Planes& normal, const Buffer& masks, const Planes& irradiance,
                       const Buffer& counts);
+    // With desc.autoResolution: the same of all VPLs at each pixel, from a list of its own.
+    void recordGatherAll(Executor& executor, const Planes& position, const Planes& normal, const Buffer& masks, const Planes& irradiance,
+                         const Buffer& counts);
+    const Buffer& wholeVpls() const { return gatherAll_->vpls(); }
+    lw_subset_order wholeOrder() const { return gatherAll_->order(); }
     void renderPoints(Executor& executor, const Points& points);
 
     const Buffer& vpls() const { return gather_.vpls(); }  // as interleaved gathers cull them
@@ -46,6 +51,7 @@ public:
     // count: of all VPLs.
     static std::uint64_t estimateBytes(const LWRsmDesc& desc, std::uint32_t count, const FrameShape& shape);
     static lw_subset_order orderOf(const LWRsmDesc& desc, std::uint32_t count);
+    static lw_subset_order wholeOrderOf(std::uint32_t count) { return ClusteredGather::orderOf({count}, 1); }
 
 private:
     Source sourceOf(const LWFrame& frame) const;
@@ -61,6 +67,7 @@ private:
     VoxelShadows shadows_;
     KMeans clusters_;
     ClusteredGather gather_;
+    std::optional<ClusteredGather> gatherAll_;
     std::vector<GatheredList> lists_;  // of the last frame
     std::optional<ClusteredPoints> points_;
 };

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "compute/device.h"
+#include "compute/error.h"
 #include "inputs/rsm_input.h"
 #include "passes/clustered_gather.h"
 #include "passes/kmeans.h"
@@ -59,7 +60,14 @@ public:
           passes_(device, desc.interleave),
           gather_(device, desc.interleave, groupsOf(desc), visibilityOf(desc.visibility)) {
         for (std::size_t i = 0; i < stagesOf(desc); ++i) stages_.emplace_back(device, desc, i);
-        if (interleavedOptions(desc).half) bilateral_.emplace(device);
+        if (repairs() && desc.compensation > 0)
+            fail(LW_ERROR_INVALID_ARGUMENT, "desc.autoResolution: expected 0 with desc.compensation above 0, got ", desc.autoResolution);
+        if (interleavedOptions(desc).half) bilateral_.emplace(device, 3, repairs());
+        if (repairs()) {
+            repair_.emplace(device);
+            cullAll_.emplace(device, 1);
+            gatherAll_.emplace(device, 1, 1, visibilityOf(desc.visibility));
+        }
         if (desc.history) history_.emplace(device, interleavedOptions(desc).history);
         if (desc.autoError > 0.0f) plan_.emplace(device, planOptions(desc));
         if (desc.visibility == LW_VISIBILITY_VOXEL) shadows_.emplace(device, desc.voxels);
@@ -96,6 +104,7 @@ public:
         }
         if (shadows_) recordShadows(executor, frame, restart);
         gather_.recordOrder(executor, lists);
+        if (gatherAll_) gatherAll_->recordOrder(executor, lists);
         lists_ = std::move(lists);
 
         choices_ = inputChoices(maps_, desc_, frame);
@@ -111,7 +120,7 @@ public:
             view, [&] { return std::make_unique<InterleavedView>(device_, interleavedOptions(desc_), *view); });
         const std::optional<VoxelSights> sights = sightsRead();
         const ClusterMaps maps = mapsRead(sights);
-        state.render(executor, *view, gbuffer, output, {passes_, bilateral_ ? &*bilateral_ : nullptr, history()},
+        state.render(executor, *view, gbuffer, output, {passes_, bilateral_ ? &*bilateral_ : nullptr, history(), repair_ ? &*repair_ : nullptr},
                      [&](const Planes& position, const Planes& normal, const Planes& irradiance) {
                          const Buffer& masks = state.cull(executor, passes_, position, normal, gather_.vpls(), gather_.order());
                          const lw_vpl_tiles tiles =
@@ -119,6 +128,12 @@ public:
                          gather_.recordGather(executor, position, normal, masks, tiles, maps, irradiance, state.counts());
                          if (compensation_)
                              state.compensate(executor, *compensation_, gbuffer.camera, position, normal, irradiance);
+                     },
+                     [&](const Planes& position, const Planes& normal, const Planes& irradiance) {
+                         const lw_subset_order order = gatherAll_->order();
+                         const Buffer& masks = state.cullAll(executor, *cullAll_, position, normal, gatherAll_->vpls(), order);
+                         gatherAll_->recordGather(executor, position, normal, masks, VplTiles::layout(position.width, position.height, order, 1),
+                                                  maps, irradiance, state.repairCounts());
                      });
     }
 
@@ -192,6 +207,7 @@ private:
         return count;
     }
 
+    bool repairs() const { return desc_.autoResolution > 0.0f; }
     TemporalHistory* history() { return history_ ? &*history_ : nullptr; }
 
     Device& device_;
@@ -207,6 +223,9 @@ private:
     InterleavedGather passes_;
     ClusteredGather gather_;
     std::optional<JointBilateral> bilateral_;  // half resolution only
+    std::optional<PixelRepair> repair_;        // with desc.autoResolution only, as the next two
+    std::optional<InterleavedGather> cullAll_;
+    std::optional<ClusteredGather> gatherAll_;
     std::optional<TemporalHistory> history_;
     std::optional<VoxelShadows> shadows_;  // with visibility through voxels only
     std::optional<BoundingCompensation> compensation_;
@@ -230,6 +249,10 @@ Report SsvpTechnique::report() {
     report.counts.push_back({"rejected_pixels", 0});
     report.counts.push_back({"upsample_fallbacks", 0});
     report.counts.push_back({"saturated_pixels", 0});
+    if (repairs()) {
+        report.counts.push_back({"repaired_pixels", 0});
+        report.counts.push_back({"unrepaired_pixels", 0});
+    }
     if (history_) report.counts.push_back({"history_new", 0});
     if (compensation_) report.counts.push_back({"compensation_capped", 0});
     states_.each([&](const InterleavedView& state) { state.report(device_, report, gather_.order()); });
@@ -274,7 +297,7 @@ std::vector<DebugView> SsvpTechnique::debugViews(const View* view) {
 
 std::uint64_t SsvpTechnique::bytes() const {
     std::uint64_t total = rsms_.bytes() + sampling_.bytes() + maps_.bytes() + gather_.bytes() +
-                          (plan_ ? plan_->bytes() : 0) + (shadows_ ? shadows_->bytes() : 0) + (compensation_ ? compensation_->bytes() : 0) +
+                          (gatherAll_ ? gatherAll_->bytes() : 0) + (plan_ ? plan_->bytes() : 0) + (shadows_ ? shadows_->bytes() : 0) + (compensation_ ? compensation_->bytes() : 0) +
                           (points_ ? points_->bytes() : 0);
     for (const Stage& stage : stages_) total += stage.clusters.bytes() + stage.next.bytes();
     states_.each([&](const InterleavedView& state) { total += state.bytes(); });

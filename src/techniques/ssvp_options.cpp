@@ -35,8 +35,14 @@ SecondBounceOptions nextOptions(const LWSsvpDesc& desc, std::size_t stage) {
 }
 
 InterleavedOptions interleavedOptions(const LWSsvpDesc& desc) {
-    return {desc.interleave, desc.filter != 0, desc.resolution == LW_RESOLUTION_HALF, {desc.history, desc.historyClamp, 0},
-            desc.compensation > 0};
+    InterleavedOptions options;
+    options.interleave = desc.interleave;
+    options.filter = desc.filter != 0;
+    options.half = desc.autoResolution > 0.0f || desc.resolution == LW_RESOLUTION_HALF;
+    options.history = {desc.history, desc.historyClamp, 0};
+    options.compensated = desc.compensation > 0;
+    options.repairs = desc.autoResolution;
+    return options;
 }
 
 CompensationOptions compensationOptions(const LWSsvpDesc& desc) {
@@ -103,13 +109,16 @@ std::uint64_t estimateSsvpBytes(const void* desc, const LWViewDesc& view, const 
         total += SsvpPlan::estimateBytes(planOptions(ssvp), shape.texels ? shape.rows : 0);
     if (ssvp.visibility == LW_VISIBILITY_VOXEL) total += VoxelShadows::estimateBytes(ssvp.voxels, shadowing, OccluderMaps::voxelSurfels(occluderOptions(ssvp), shape), shape);
     if (ssvp.compensation > 0) total += BoundingCompensation::estimateBytes(compensationOptions(ssvp));
+    const bool repairs = ssvp.autoResolution > 0.0f;
+    const std::size_t shadowedLists = std::max<std::size_t>(shadowedOf(ssvp), 1);
+    if (repairs) total += ClusteredGather::estimateBytes(counts, shadowedLists, 1);
     return total + RsmInput::estimateBytes(shape) +
            VplSampling::estimateBytes(samplingOptions(ssvp), shape) +
            OccluderMaps::estimateBytes(occluderOptions(ssvp), clusterCounts, shape) +
-           ClusteredGather::estimateBytes(counts, std::max<std::size_t>(shadowedOf(ssvp), 1),
-                                          ssvp.interleave) +
+           ClusteredGather::estimateBytes(counts, shadowedLists, ssvp.interleave) +
            InterleavedView::estimateBytes(interleavedOptions(ssvp), view, shape.uploads,
-                                          ClusteredGather::orderOf(counts, ssvp.interleave));
+                                          ClusteredGather::orderOf(counts, ssvp.interleave),
+                                          repairs ? ClusteredGather::orderOf(counts, 1) : lw_subset_order{});
 }
 
 }  // namespace lightwell

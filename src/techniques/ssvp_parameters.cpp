@@ -81,7 +81,10 @@ std::vector<LWParameter> makeTable() {
              offsetof(LWSsvpDesc, compensation), 0, 64, 0),
         allowing(uint("voxels", "a side of the grid that visibility=voxel looks through: finer occluders; memory and drawing time with its cube",
                       offsetof(LWSsvpDesc, voxels), 32, 256, 64),
-                 kVoxelsValues)};
+                 kVoxelsValues),
+        parameter("auto_resolution", "gathered at half resolution, but for pixels around which light found there differs by more than this share, or that it "
+                                     "lacks: time falls as it is raised; 0: as `resolution` says",
+                  LW_PARAMETER_FLOAT, offsetof(LWSsvpDesc, autoResolution), 0, 10, 0)};
 }
 
 }  // namespace

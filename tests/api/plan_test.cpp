@@ -68,7 +68,10 @@ TEST_CASE("a plan can be run, and says what it rests on", "[api]") {
     const LWPlan loose = rig.plan(budget(1e-6f, 1e6f));
     CHECK(loose.reachesError == 1);
     CHECK(rig.plan(budget(0.0f, 1e-30f)).reachesError == 0);
-    CHECK(rig.plan(budget(0.0f, 1e30f)).predictedMs == tight.predictedMs);
+    // Of what is nearly as quick as the quickest, the most accurate.
+    const LWPlan quickest = rig.plan(budget(0.0f, 1e30f));
+    CHECK((quickest.predictedMs <= tight.predictedMs && tight.predictedMs <= 1.15f * quickest.predictedMs));
+    CHECK(tight.predictedError <= quickest.predictedError);
     LWPlanDesc stereo = budget(0.0f, 1e30f);
     stereo.views = 2;
     CHECK(rig.plan(stereo).predictedMs >= tight.predictedMs);

@@ -185,6 +185,19 @@ class Chart(unittest.TestCase):
             self.assertLess(abs(own["bias"] - whole[point["id"]]["bias"]), 0.03)
         self.assertIn("--judge-one-of 8", self.chart(*common, "--judge-one-of", "8", code=2))
 
+    def test_many_points_in_little_time(self):
+        """--frames N and no whole pictures: the same error of the irradiance, neither score nor preview; no report can be made of that."""
+        common = ("--quick", "--scenes", "cornell", "--size", "128x72", "--noise", "0.1", "--techniques", "rsm,vpls=64", "--judge-one-of", "2")
+        self.chart(*common, "--no-report", "--picture-noise", "0.5")
+        [whole] = self.results()["points"]
+        self.chart(*common, "--no-report", "--picture-noise", "0", "--frames", "2")
+        [point] = self.results()["points"]
+        self.assertEqual((point["frames"], point["images"]), (2, {}))
+        self.assertEqual(point["errors"]["own"]["relMSE"], whole["errors"]["own"]["relMSE"])
+        self.assertNotIn("score", point["errors"]["own"])
+        self.assertIn("--no-report", self.chart(*common, "--picture-noise", "0", code=2))
+        self.assertIn("--frames", self.chart(*common, "--no-report", "--frames", "0", code=2))
+
     def test_one_bounce_against_what_the_view_shows(self):
         """--on-screen: techniques of the picture alone have a second truth, kept apart from the first, with less light."""
         common = ("--quick", "--scenes", "cornell", "--size", "64x36", "--noise", "0.02", "--techniques", "screen_space", "rival",

@@ -27,6 +27,7 @@ class Plan(CommandLine):
         self.assertIn(plan["technique"], plan["reason"])
         self.assertTrue(0 < plan["confidence"] <= 1)
         self.assertEqual(set(plan["probes"]), PROBES)
+        self.assertGreater(plan["triangles"], 0)
         for name, value in plan["probes"].items():
             self.assertTrue(0 <= value <= (100 if name == "extent" else 1), "%s: %s" % (name, value))
         self.assertNotIn("candidates", plan)
@@ -43,7 +44,7 @@ class Plan(CommandLine):
         self.assertLessEqual(everything["predicted_error"], 1.021 * least)
         tight = self.plan("--budget-ms", "0.0001", "--all")
         self.assertFalse(tight["within_budget"])
-        self.assertEqual(tight["predicted_ms"], times[0])
+        self.assertLessEqual(tight["predicted_ms"], 1.15 * times[0])  # of what is about as quick, the most accurate
         self.assertEqual(len(tight["candidates"]), len(candidates))
         cheap = self.plan("--error", "1e9")
         self.assertEqual((cheap["predicted_ms"], cheap["reaches_error"]), (times[0], True))

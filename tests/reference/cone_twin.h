@@ -56,6 +56,22 @@ struct ConeTwin {
         sum.squares += weight * double(value.opacity) * double(value.opacity);
     }
 
+    // Of the voxel k of eight, bits 0, 1, 2 its steps along x, y, z from the lower corner. Tetrahedral: linear between the corners that
+    // are passed as steps are taken in the order of their shares, so that a voxel's is the least share of its steps over the largest of
+    // the others.
+    double shareOf(int k, const double* share) const {
+        double weight = 1, least = 1, largest = 0;
+        for (int a = 0; a < 3; ++a) {
+            const bool isUpper = (k >> a & 1) != 0;
+            weight *= isUpper ? share[a] : 1 - share[a];
+            if (isUpper)
+                least = std::min(least, share[a]);
+            else
+                largest = std::max(largest, share[a]);
+        }
+        return options.tetrahedral ? std::max(0.0, least - largest) : weight;
+    }
+
     Sample sample(int cascade, int level, Vec at, Vec d) const {
         const double scale = std::ldexp(1.0, -level), most = (size() >> level) - 1,
                      p[3] = {at.x, at.y, at.z}, way[3] = {d.x, d.y, d.z};
@@ -69,11 +85,9 @@ struct ConeTwin {
         Sample sum, side[3];
         for (int k = 0; k < 8; ++k) {
             int i[3];
-            double weight = 1;
-            for (int a = 0; a < 3; ++a) {
-                i[a] = corner[a] + (k >> a & 1);
-                weight *= k >> a & 1 ? share[a] : 1 - share[a];
-            }
+            for (int a = 0; a < 3; ++a) i[a] = corner[a] + (k >> a & 1);
+            const double weight = shareOf(k, share);
+            if (weight <= 0) continue;
             if (level == 0 ? options.sides : options.mode == LW_VOXEL_MODE_ANISOTROPIC) {
                 for (int a = 0; a < 3; ++a)
                     add(side[a], word(cascade, level, 2 * a + (way[a] > 0), i, corner), weight);

@@ -42,7 +42,8 @@ void render(LWDevice device, LWTechnique technique, const TestView& view, const 
 
 TEST_CASE("cones: all outputs at once are each as alone, and as wide as they are known to be", "[cone_tracing][long]") {
     TestDevice device(16);
-    const auto resolution = GENERATE(LW_CONE_RESOLUTION_FULL, LW_CONE_RESOLUTION_QUARTER, LW_CONE_RESOLUTION_INTERLEAVED);
+    const auto resolution = GENERATE(LW_CONE_RESOLUTION_FULL, LW_CONE_RESOLUTION_QUARTER, LW_CONE_RESOLUTION_INTERLEAVED,
+                                     LW_CONE_RESOLUTION_HALF_INTERLEAVED);
     const ConeBox box(2.0, false, 1.0, 0.5, 64);
     const DrawnView drawn(box.walls, kInside, kWidth, kHeight);
     LWConeTracingDesc desc = coneDesc(32, LW_VOXEL_MODE_ANISOTROPIC, resolution);
@@ -82,7 +83,9 @@ TEST_CASE("cones compile nothing after lwPrewarm, and take no more memory than w
     // Each set of options is a program of its own, which takes seconds to compile: two that have all kernels between them.
     const bool isFirst = GENERATE(true, false);
     LWConeTracingDesc desc = coneDesc(32, isFirst ? LW_VOXEL_MODE_ANISOTROPIC : LW_VOXEL_MODE_SH2,
-                                      isFirst ? LW_CONE_RESOLUTION_INTERLEAVED : LW_CONE_RESOLUTION_HALF);
+                                      isFirst ? LW_CONE_RESOLUTION_INTERLEAVED
+                                              : GENERATE(LW_CONE_RESOLUTION_HALF, LW_CONE_RESOLUTION_HALF_INTERLEAVED));
+    desc.interpolation = isFirst ? LW_CONE_INTERPOLATION_TRILINEAR : LW_CONE_INTERPOLATION_TETRAHEDRAL;
     desc.bounces = desc.mode == LW_VOXEL_MODE_SH2 ? 1 : 0;
     desc.cascades = desc.mode == LW_VOXEL_MODE_SH2 ? 2 : 1;
     desc.occlusion = desc.bounces ? LW_CONE_OCCLUSION_ALL : LW_CONE_OCCLUSION_NEAR;

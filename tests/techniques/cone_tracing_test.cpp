@@ -121,7 +121,8 @@ TEST_CASE("cones: all bounces of a furnace add up to its exitance over what it a
 
 TEST_CASE("cones: a sky in an empty grid lights every surface with pi times its radiance", "[cone_tracing][long]") {
     TestDevice device(GENERATE(1u, 16u));
-    const auto resolution = GENERATE(LW_CONE_RESOLUTION_FULL, LW_CONE_RESOLUTION_HALF, LW_CONE_RESOLUTION_QUARTER, LW_CONE_RESOLUTION_INTERLEAVED);
+    const auto resolution = GENERATE(LW_CONE_RESOLUTION_FULL, LW_CONE_RESOLUTION_HALF, LW_CONE_RESOLUTION_QUARTER,
+                                     LW_CONE_RESOLUTION_INTERLEAVED, LW_CONE_RESOLUTION_HALF_INTERLEAVED);
     const ConeBox box(2.0);
     const DrawnView drawn(box.walls, kInside, kWidth, kHeight);
     LWConeTracingDesc desc = coneDesc(32, LW_VOXEL_MODE_ISOTROPIC, resolution);

@@ -82,6 +82,7 @@ TEST_CASE("the planner's table holds techniques that can be made, each once, and
     CHECK(kPlanReference.multiplyAddGflops > 0.0);
     CHECK(kPlanReference.bandwidthGBps > 0.0);
     CHECK(kPlanReference.launchMicroseconds > 0.0);
+    CHECK((kPlanReference.usualFacing > 0.0 && kPlanReference.usualFacing <= 1.0));
 }
 
 TEST_CASE("a frame allows what it brings the inputs for", "[planner]") {
@@ -122,10 +123,17 @@ TEST_CASE("predicted times follow the frame's sizes and the device's rates", "[p
         const PlanRow& row = kPlanRows[each.candidate];
         INFO(row.technique << " " << row.settings);
         const double pixels = traits.pixels * 1e-6, texels = traits.rsmTexels * 1e-6, triangles = traits.triangles * 1e-6;
-        CHECK(each.milliseconds == Approx(row.cost[0] + row.cost[1] * pixels + row.cost[2] * triangles + row.cost[3] * texels));
+        // Not told how many pairs face each other, as many as usual.
+        const double perPixel = row.cost[1] + row.cost[4] * kPlanReference.usualFacing;
+        CHECK(each.milliseconds == Approx(row.cost[0] + perPixel * pixels + row.cost[2] * triangles + row.cost[3] * texels));
+        LWPlanProbes all = kNoProbes;
+        all.facing = 1.0f;
+        const auto faced = predict({}, traits, all);
+        CHECK(find(faced, each.candidate)->milliseconds - each.milliseconds ==
+              Approx(row.cost[4] * (1.0 - kPlanReference.usualFacing) * pixels).margin(1e-9));
         const auto twice = predict({}, stereo, kNoProbes), none = predict({}, bare, kNoProbes);
-        CHECK(find(twice, each.candidate)->milliseconds - each.milliseconds == Approx(row.cost[1] * pixels).margin(1e-12));
-        CHECK(find(none, each.candidate)->milliseconds == Approx(row.cost[0]));
+        CHECK(find(twice, each.candidate)->milliseconds - each.milliseconds == Approx(perPixel * pixels).margin(1e-12));
+        CHECK(find(none, each.candidate)->milliseconds == Approx(row.cost[0]).margin(1e-12));
         // All rates half: all twice as long. Only memory half: only the texels.
         const auto slow = predict({2.0, 2.0, 2.0}, traits, kNoProbes), starved = predict({1.0, 2.0, 1.0}, traits, kNoProbes);
         CHECK(find(slow, each.candidate)->milliseconds == Approx(2.0 * each.milliseconds));
@@ -188,6 +196,11 @@ TEST_CASE("the choice is the most accurate within the budget, or the cheapest th
     CHECK(tight.reachesError);
     CHECK_THAT(tight.reason, Contains("none is predicted to stay within 1 ms") && Contains("quickest (2 ms)"));
     CHECK_FALSE(chosen(1.0, 0.5).reachesError);
+    // Late anyway: a little later for much less error, and no later than that.
+    const Choice late = choose(made({{2.0, 0.8}, {2.2, 0.1}, {2.4, 0.01}}), 1.0, 0.2);
+    CHECK(late.prediction.candidate == 1);
+    CHECK_FALSE(late.isWithinBudget);
+    CHECK(late.reachesError);
 
     const Choice cheap = chosen(33.0, 0.35);
     CHECK(cheap.prediction.candidate == 2);

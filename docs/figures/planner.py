@@ -1,0 +1,133 @@
+#!/usr/bin/env python3
+"""Fits the planner to planner_data.json: writes src/planner/plan_tables.h, the marked blocks of docs/planner.md, docs/choosing.md and
+docs/accuracy.md, their pictures, and what tests hold the C++ to.
+
+    docs/figures/planner.py                                    from planner_data.json alone: a minute
+    docs/figures/planner.py --measure [--lightwell PROGRAM]    measures first: hours where truths are not cached
+    docs/figures/planner.py --collect --work DIR               takes what was measured below DIR
+
+The models are in planner_model.py, the measuring in planner_measure.py, the pages in planner_page.py and planner_choosing.py.
+"""
+import argparse
+import datetime
+import math
+import pathlib
+
+import numpy as np
+
+import planner_measure
+import planner_page
+from planner_model import BUDGETS, FLOORS, LIMIT, PROBES, Data, ErrorModel, choose, fit_costs, leave_scenes_out, predict_ms, strengths
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+NEAR = 1.05  # of the least error that a view has in no more time: nearer than this is on the front, or as good
+NEEDS = {"rsms": 1, "radiance": 2, "camera": 4, "geometry": 8}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--lightwell", default=str(ROOT / "build/release/bin/lightwell"))
+    parser.add_argument("--work", type=pathlib.Path, default=ROOT / "build/planner")
+    parser.add_argument("--measure", action="store_true")
+    parser.add_argument("--collect", action="store_true")
+    parser.add_argument("--date", default=datetime.date.today().isoformat())
+    options = parser.parse_args()
+    if options.measure:
+        options.work.mkdir(parents=True, exist_ok=True)
+        planner_measure.measure(options.lightwell, options.work)
+    if options.measure or options.collect:
+        planner_measure.collect(options.work, options.date)
+    data = Data()
+    kept = rows_of_table(data)
+    heldOut = leave_scenes_out(data, kept)
+    everything = np.arange(len(data.views))
+    strength, ofView = strengths(data, everything, kept)
+    model, costs = ErrorModel(data, everything, *strength, ofView), fit_costs(data, everything)
+    sigma = spread(data, heldOut[1])
+    write_tables(data, kept, model, costs, sigma)
+    write_values(data, kept, model, costs)
+    planner_page.write(data, kept, heldOut, (strength, ofView), sigma, model, costs)
+
+
+def rows_of_table(data):
+    """What is near the front of a view's errors and times, among what asks for no more inputs: a frame without light maps or triangles has
+    a front of its own."""
+    kept = set()
+    needs = [needs_of(*c) for c in data.candidates]
+    for have in (15, 1 + 2 + 4, 9, 1, 2 + 4, 4):
+        able = [c for c in range(len(needs)) if needs[c] & ~have == 0]
+        for v in range(len(data.views)):
+            for c in able:
+                least = min(data.error[v, k] for k in able if data.ms[v, k] <= data.ms[v, c] * 1.02)
+                if data.error[v, c] <= NEAR * least:
+                    kept.add(c)
+    return np.array(sorted(kept))
+
+
+def needs_of(technique, settings):
+    if technique == "fallback":
+        parts = dict(s.split("=") for s in settings.split())
+        first, second = parts["first"], parts["second"]
+        return needs_of(first, "") | needs_of(second, f"visibility={parts.get('second.visibility', '')}")
+    light, shape = NEEDS["rsms"], NEEDS["geometry"]
+    if technique == "rsm":
+        return light | (shape if "voxel" in settings else 0)
+    return {"ssvp": light | shape, "lpv": light | shape, "cone_tracing": light | shape, "ao": NEEDS["camera"],
+            "screen_space": NEEDS["radiance"] | NEEDS["camera"], "horizon": NEEDS["radiance"] | NEEDS["camera"]}[technique]
+
+
+def spread(data, log):
+    """Standard deviation of what predictions of unseen scenes were off by: a candidate's own, drawn half towards that of all."""
+    off = (log - data.log) ** 2
+    return np.sqrt(0.5 * off.mean(axis=0) + 0.5 * off.mean())
+
+
+def numbers(values, digits=4):
+    return ", ".join(f"{float(v):.{digits}g}" for v in values)
+
+
+def write_tables(data, kept, model, costs, sigma):
+    rates = data.raw["rates"]
+    facing = data.probes[:, PROBES.index("facing")].mean()
+    order = sorted(kept, key=lambda c: np.median(data.ms[:, c]))
+    lines = ["// Written by docs/figures/planner.py; see plan_row.h for what it means.", "#pragma once", "", '#include "planner/plan_row.h"', "",
+             "namespace lightwell {", "",
+             f'constexpr PlanReference kPlanReference = {{"{data.raw["device"]}", {rates["multiply_add_gflops"]:.4g}, {rates["bandwidth_GBps"]:.4g}, '
+             f'{rates["launch_us"]:.3g}, {facing:.3g}}};', "", "constexpr PlanProbeScale kPlanScales[kPlanProbes] = {"]
+    for k, name in enumerate(PROBES):
+        lines.append(f'    {{"{name}", {FLOORS[k]:g}, {model.mean[k]:.4f}, {model.deviation[k]:.4f}, {-LIMIT}, {LIMIT}}},')
+    lines += ["};", "", "constexpr PlanRow kPlanRows[] = {"]
+    for c in order:
+        technique, settings = data.candidates[c]
+        launches = data.raw["candidates"][c]["launches"]
+        lines.append(f'    {{"{technique}", "{settings}", {needs_of(technique, settings)}, {launches:g}, {{{numbers(costs[c])}}}, {model.means[c]:.4f},\n'
+                     f"     {{{numbers(model.slopes[:, c])}}}, {sigma[c]:.4f}}},")
+    lines += ["};", "", "}  // namespace lightwell", ""]
+    path = ROOT / "src/planner/plan_tables.h"
+    path.write_text("\n".join(lines), encoding="utf-8")
+    print(path)
+
+
+def write_values(data, kept, model, costs):
+    """Predictions and choices for views as measured, by this script's arithmetic: tests/unit/planner_values_test.cpp."""
+    names = data.names()
+    lines = ["// Written by docs/figures/planner.py: what its own arithmetic predicts and chooses, from the unrounded fit.", "#pragma once", "",
+             "struct PlannerValue {", "    float probes[8];", "    double triangles;", "    const char* row;  // technique and settings",
+             "    double milliseconds, error;", "    const char* chosen[5];  // of budgets of 4, 8, 16, 33, 66 ms", "};", "",
+             "constexpr PlannerValue kPlannerValues[] = {"]
+    for v in range(0, len(data.views), 3):
+        ms = predict_ms(data, costs, np.array([v]))[0][kept]
+        log = model.predict(data.probes[[v]])[0][kept]
+        some = kept[v % len(kept)]
+        at = list(kept).index(some)
+        chosen = ", ".join(f'"{names[kept[choose(ms, log, budget)]]}"' for budget in BUDGETS)
+        probes = ", ".join(f"{p:.9g}f" if "." in f"{p:.9g}" or "e" in f"{p:.9g}" else f"{p:.1f}f" for p in data.probes[v])
+        lines.append(f'    {{{{{probes}}}, {data.views[v]["triangles"]}.0, "{names[some]}", {ms[at]:.6g}, {10 ** log[at]:.6g},\n     {{{chosen}}}}},')
+    lines += ["};", ""]
+    path = ROOT / "tests/reference/planner_values.h"
+    path.write_text("\n".join(lines), encoding="utf-8")
+    print(path)
+
+
+if __name__ == "__main__":
+    main()

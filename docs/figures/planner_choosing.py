@@ -1,0 +1,157 @@
+"""The part of docs/figures/planner_page.py that docs/choosing.md has: which technique for which inputs and budget, and against the rival."""
+import math
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+from planner_model import BUDGETS
+from planner_page import COLOURS, save, short, view_name
+
+# What a host may have, and which bits of PlanNeeds that is.
+INPUTS = [("RSMs, triangles, G-buffer with direct light", 15), ("RSMs and G-buffer, no triangles", 7), ("G-buffer with direct light alone", 6),
+          ("G-buffer without light", 4)]
+WANTED_TIMES = 20
+DRAWN_BUDGETS = np.geomspace(4, 100, 200)
+
+
+def best_by_budget(data, able, budget, rows=None):
+    """Of candidates that at the median keep the budget: the least geometric mean of errors."""
+    rows = np.arange(len(data.views)) if rows is None else rows
+    affordable = [c for c in able if np.median(data.ms[rows, c]) <= budget]
+    return min(affordable, key=lambda c: data.log[rows, c].mean()) if affordable else None
+
+
+def draw(data, needs):
+    figure, every = plt.subplots(len(INPUTS), 1, figsize=(9.2, 1.5 * len(INPUTS) + 0.8), dpi=100, sharex=True)
+    names = data.names()
+    for axes, (title, have) in zip(every, INPUTS):
+        able = [c for c in range(len(needs)) if needs[c] & ~have == 0]
+        picks = [best_by_budget(data, able, b) for b in DRAWN_BUDGETS]
+        start = 0
+        for i in range(1, len(picks) + 1):
+            if i < len(picks) and picks[i] == picks[start]:
+                continue
+            low, high = DRAWN_BUDGETS[start], DRAWN_BUDGETS[min(i, len(picks) - 1)]
+            c = picks[start]
+            axes.axvspan(low, high, color="#eeeeee" if c is None else COLOURS[data.candidates[c][0]], alpha=0.35 if c is not None else 1, linewidth=0)
+            axes.axvline(low, color="white", linewidth=1.5)
+            wide = math.log(high / low)
+            if wide > 0.12:
+                text = "nothing" if c is None else label_of(names[c], 10 ** data.log[:, c].mean())
+                axes.text(math.sqrt(low * high), 0.5, text, ha="center", va="center", fontsize=6.2 if wide > 0.3 else 5.2, rotation=0 if wide > 0.3 else 90)
+            start = i
+        axes.set_yticks([]), axes.set_ylim(0, 1)
+        axes.set_title(title, fontsize=8.5, loc="left", pad=2)
+        axes.set_xscale("log"), axes.set_xlim(DRAWN_BUDGETS[0], DRAWN_BUDGETS[-1])
+    every[-1].set_xticks([4, 8, 16, 33, 66, 100], ["4", "8", "16", "33", "66", "100"])
+    every[-1].minorticks_off()
+    every[-1].set_xlabel("budget, ms at 1280x720 on two CPU cores; number: geometric mean of relMSE over all views")
+    save(figure, "choosing.png")
+
+
+def label_of(name, error):
+    technique, _, settings = short(name).partition(" ")
+    words = settings.split()
+    lines = [technique] + [" ".join(words[i:i + 2]) for i in range(0, len(words), 2)]
+    return "\n".join(lines + [f"{error:.2g}"])
+
+
+def block(data, needs, found):
+    names = data.names()
+    lines = [f"Measured {data.raw['date']} at {data.raw['size'][0]}x{data.raw['size'][1]} on {data.raw['device']}, {data.raw['threads']} threads; see "
+             "[the planner](planner.md#how-good-it-is) for how. relMSE against all bounces, geometric mean over the views; in brackets the least and the "
+             "largest of them.", "", "![What to take for which inputs and budget](images/choosing.png)", "",
+             "| what the host has | " + " | ".join(f"{b} ms" for b in BUDGETS) + " |", "| --- |" + " --- |" * len(BUDGETS)]
+    for title, have in INPUTS:
+        able = [c for c in range(len(needs)) if needs[c] & ~have == 0]
+        cells = []
+        for budget in BUDGETS:
+            c = best_by_budget(data, able, budget)
+            if c is None:
+                cells.append("nothing")
+            else:
+                cells.append(f"`{short(names[c])}`: {10 ** data.log[:, c].mean():.2g} ({data.error[:, c].min():.2g} to {data.error[:, c].max():.2g})")
+        lines.append(f"| {title} | " + " | ".join(cells) + " |")
+    lines += ["", "View by view, what the planner chooses that did not know the scene: error, and in brackets that of the best that fits:", "",
+              "| view | " + " | ".join(f"{b} ms" for b in BUDGETS) + " |", "| --- |" + " --- |" * len(BUDGETS)]
+    for v, view in enumerate(data.views):
+        cells = []
+        for budget in BUDGETS:
+            f = next(f for f in found if f[0] == v and f[1] == budget)
+            cells.append(f"`{short(names[f[2]])}` {data.error[v, f[2]]:.2g} ({data.error[v, f[3]]:.2g})" if f[5] else "nothing fits")
+        lines.append(f"| {view_name(view)} | " + " | ".join(cells) + " |")
+    return lines + [""] + rival_lines(data, found)
+
+
+STEPS = [("bounces 2 to 4", "ssvp clusters=16 resolution=half", "ssvp clusters=16 bounces=4 resolution=half"),
+         ("clusters 8 to 16", "ssvp bounces=4 resolution=half", "ssvp clusters=16 bounces=4 resolution=half"),
+         ("clusters 16 to 32", "ssvp clusters=16 bounces=4 resolution=half", "ssvp clusters=32 bounces=4 resolution=half"),
+         ("VPLs 256 to 512", "ssvp clusters=16 bounces=4 resolution=half", "ssvp vpls=512 clusters=16 bounces=4 resolution=half"),
+         ("VPLs 256 to 1,024", "ssvp clusters=32 bounces=4 resolution=half", "ssvp vpls=1024 clusters=32 bounces=4 resolution=half"),
+         ("clusters 32 to 64", "ssvp vpls=1024 clusters=32 bounces=4 resolution=half", "ssvp vpls=1024 clusters=64 bounces=4 resolution=half"),
+         ("interleave 4 to 8", "ssvp vpls=1024 clusters=32 bounces=4 resolution=half", "ssvp vpls=1024 clusters=32 bounces=4 interleave=8 resolution=half"),
+         ("later bounces' light unshadowed", "ssvp clusters=16 bounces=4 resolution=half", "ssvp clusters=16 bounces=4 shadowed_bounces=1 resolution=half"),
+         ("half to full resolution", "ssvp clusters=16 bounces=4 resolution=half", "ssvp clusters=16 bounces=4")]
+
+
+def thrift_block(data):
+    names = data.names()
+    lines = ["| step | from | time | error | views where the error falls |", "| --- | --- | ---: | ---: | ---: |"]
+    for title, before, after in STEPS:
+        a, b = names.index(before), names.index(after)
+        change = data.log[:, b] - data.log[:, a]
+        lines.append(f"| {title} | `{short(before)}` | x {np.median(data.ms[:, b] / data.ms[:, a]):.2f} | x {10 ** change.mean():.2f} | "
+                     f"{(change < 0).sum()} of {len(change)} |")
+    return lines
+
+
+def rival_time(points, error):
+    """Milliseconds of the rival's line at an error, straight in logarithms: of its end where it never gets so far (it takes longer), None where
+    its beginning is better already."""
+    front = []
+    for p in sorted(points, key=lambda p: p["ms"]):
+        if not front or p["own"] < front[-1]["own"]:
+            front.append(p)
+    if error < front[-1]["own"]:
+        return front[-1]["ms"]
+    for a, b in zip(front, front[1:]):
+        if b["own"] <= error <= a["own"]:
+            share = math.log(error / a["own"]) / math.log(b["own"] / a["own"])
+            return math.exp(math.log(a["ms"]) + share * math.log(b["ms"] / a["ms"]))
+    return None
+
+
+def rival_lines(data, found):
+    rivals = data.raw["rival"]
+    if not rivals:
+        return []
+    names, reached = data.names(), []
+    lines = ["**Against path tracing.** The [rival](techniques/rival.md) with two bounces, filtered, traced at full and at half resolution, "
+             "judged against two bounces (its best case); the planner's choices against all. How many times longer the rival takes for the same error, at "
+             "the budget where that is most (>: no point of the rival's line is as accurate); `full`: its line without coarse resolution.", "",
+             "| scene | rival: errors of its line, paths a pixel | chosen | ms | relMSE | rival's ms (full) | times (full) |", "| --- | --- | --- | ---: | ---: | ---: | ---: |"]
+    for view in dict.fromkeys((r["scene"], r["camera"]) for r in rivals):
+        v = next(i for i, w in enumerate(data.views) if (w["scene"], w["camera"]) == view)
+        points = [r for r in rivals if (r["scene"], r["camera"]) == view]
+        full = [p for p in points if p["resolution"] == "full"]
+        rows = []
+        for f in found:
+            if f[0] == v and f[5]:
+                error, ms = data.error[v, f[2]], data.ms[v, f[2]]
+                both, alone = rival_time(points, error), rival_time(full, error)
+                if both or alone:
+                    rows.append(((both or 0) / ms, (alone or 0) / ms, f[2], ms, error, both, alone))
+        span = f"{max(p['own'] for p in points):.2g} to {min(p['own'] for p in points):.2g} (1 to {max(p['spp'] for p in points)} paths)"
+        if not rows:
+            errors = [data.error[v, f[2]] for f in found if f[0] == v and f[5]]
+            lines.append(f"| {view_name(data.views[v])} | {span} | none within that range: {max(errors):.2g} to {min(errors):.2g} | | | | |")
+            continue
+        _, _, c, ms, error, both, alone = max(rows)
+        if both and both >= WANTED_TIMES * ms:
+            reached.append(view_name(data.views[v]))
+        more = "> " if error < min(p["own"] for p in points) else ""
+        dash = lambda x, d=0: f"{more}{x:.{d}f}" if x else "none"  # noqa: E731
+        lines.append(f"| {view_name(data.views[v])} | {span} | `{short(names[c])}` | {ms:.1f} | {error:.2g} | {dash(both)} ({dash(alone)}) | "
+                     f"{dash(both / ms if both else None, 1)} ({dash(alone / ms if alone else None, 1)}) |")
+    count = len({(r["scene"], r["camera"]) for r in rivals})
+    return lines + ["", f"At least {WANTED_TIMES} times as quick in {len(reached)} of {count} scenes ({'; '.join(reached)}); wanted: 7."]

@@ -1,0 +1,229 @@
+"""The two models of the planner (docs/planner.md), fitted to planner_data.json: what a candidate takes, how wrong it is, and what is chosen.
+
+Arrays are views x candidates; `None` in the data (not measured) is NaN here.
+"""
+import json
+import math
+import pathlib
+
+import numpy as np
+
+DATA = pathlib.Path(__file__).with_name("planner_data.json")
+PROBES = ["indirectShare", "fluxOnScreen", "fluxConcentration", "depthComplexity", "extent", "albedo", "facing", "hidden"]
+FLOORS = np.array([1e-3, 1e-3, 1e-4, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3])
+FACING = PROBES.index("facing")
+LIMIT = 2.5  # deviations beyond which a probe counts no more
+SAME = 1.02  # as in src/planner/planner.cpp: of errors so near to each other the quickest is taken
+SAME_TIME = 1.15  # likewise: where nothing fits
+BUDGETS = [4, 8, 16, 33, 66]  # ms
+STRENGTHS = [(rank, ridge) for rank in (1, 2) for ridge in (3.0, 10.0, 30.0, 100.0)] + [(1, math.inf)]
+RIDGE_OF_VIEWS = [3.0, 10.0, 30.0, 100.0, math.inf]
+
+
+class Data:
+    def __init__(self, path=DATA):
+        raw = json.loads(path.read_text(encoding="utf-8"))
+        self.raw = raw
+        self.candidates = [(c["technique"], c["settings"]) for c in raw["candidates"]]
+        self.views = raw["views"]
+        self.error = np.array([[np.nan if e is None else e for e in row] for row in raw["errors"]])
+        self.ms = np.array([[np.nan if t is None else t for t in row] for row in raw["ms"]])
+        self.log = np.log10(self.error)
+        self.probes = np.array([[view["probes"][name] for name in PROBES] for view in self.views])
+        # A scene and its other edition hold out each other: a box seen in training is no unseen scene.
+        self.scene = np.array([{"cornell_original": "cornell"}.get(v["scene"], v["scene"]) for v in self.views])
+        self.mega = {"pixels": raw["size"][0] * raw["size"][1] * 1e-6, "texels": raw["rsm_texels"] * 1e-6}
+
+    def names(self):
+        return [technique + (" " + settings if settings else "") for technique, settings in self.candidates]
+
+    def scenes(self):
+        return list(dict.fromkeys(self.scene))
+
+
+# ------------------------------------------------------------------------------------------- time
+
+def non_negative(matrix, values):
+    """Least relative squares with no negative coefficient: columns whose coefficient would be negative leave one by one."""
+    matrix, values = matrix / values[:, None], np.ones(len(values))
+    active = list(range(matrix.shape[1]))
+    while True:
+        solution = np.linalg.lstsq(matrix[:, active], values, rcond=None)[0]
+        if (solution >= 0).all() or len(active) == 1:
+            break
+        del active[int(np.argmin(solution))]
+    result = np.zeros(matrix.shape[1])
+    result[active] = np.maximum(solution, 0.0)
+    return result
+
+
+def cost_columns(pixels, triangles, texels, facing):
+    """Fixed, pixels, triangles, texels of RSMs, and pixels times the share of pairs that face each other; millions."""
+    ones = np.ones_like(facing)
+    return np.stack([ones, pixels * ones, triangles, texels * ones, pixels * facing], axis=1)
+
+
+def fit_costs(data, rows):
+    """cost[5] of every candidate, from the views `rows`. What is fixed and what grows with pixels is parted by the candidates that were
+    measured at other sizes (the nearest in time of the same technique stands for the others); texels by the ones at other RSM sizes."""
+    facing = data.probes[rows, FACING]
+    triangles = np.array([data.views[v]["triangles"] * 1e-6 for v in rows])
+    fixed = fixed_shares(data)
+    texel = data.raw["ms_per_megatexel"]
+    costs = np.zeros((len(data.candidates), 5))
+    for c, (technique, _) in enumerate(data.candidates):
+        known = ~np.isnan(data.ms[rows, c])
+        if known.sum() < 3:
+            continue
+        perTexel = texel if needs_light(technique, data.candidates[c][1]) else 0.0
+        rest = data.ms[rows, c][known] - perTexel * data.mega["texels"]
+        share = fixed[c]
+        # One column for what is the same in all views: parted afterwards by `share`.
+        matrix = np.stack([np.ones(known.sum()), triangles[known] * draws_geometry(technique, data.candidates[c][1]), facing[known]], axis=1)
+        same, byTriangle, byFacing = robust(matrix, rest)
+        pixels = data.mega["pixels"]
+        costs[c] = [share * same, (1.0 - share) * same / pixels, byTriangle, perTexel, byFacing / pixels]
+    return costs
+
+
+def robust(matrix, values):
+    """Leaves out what lies more than half off: frames that other work fell into."""
+    kept = np.arange(len(values))
+    for _ in range(3):
+        solution = non_negative(matrix[kept], values[kept])
+        ratio = values / (matrix @ solution)
+        kept = np.where((ratio < 1.5) & (ratio > 1 / 1.5))[0]
+    return solution
+
+
+def fixed_shares(data):
+    """Of each candidate's time at the usual size what does not grow with the pixels."""
+    measured = {}
+    for entry in data.raw["sizes"]:
+        scale = entry["size"][0] * entry["size"][1] * 1e-6
+        view = next(v for v, w in enumerate(data.views) if (w["scene"], w["camera"]) == (entry["scene"], entry["camera"]))
+        for c, ms in enumerate(entry["ms"]):
+            if ms is not None:
+                measured.setdefault(c, []).append((view, scale, ms))
+    shares = {}
+    for c, points in measured.items():
+        # ms / ms(usual size) = speed (share + (1 - share) pixels / usual pixels); speed: of the machine at that hour
+        slope, intercept = np.polyfit([p[1] / data.mega["pixels"] for p in points], [p[2] / data.ms[p[0], c] for p in points], 1)
+        shares[c] = float(np.clip(intercept / (intercept + slope), 0.0, 0.9))
+    usual = np.nanmedian(data.ms, axis=0)
+    result = np.zeros(len(data.candidates))
+    for c, (technique, _) in enumerate(data.candidates):
+        kin = [k for k in shares if data.candidates[k][0] == technique] or list(shares)
+        result[c] = shares[c] if c in shares else shares[min(kin, key=lambda k: abs(math.log(usual[k] / usual[c])))]
+    return result
+
+
+def needs_light(technique, settings):
+    return technique in ("rsm", "ssvp", "lpv", "cone_tracing") or "second=" in settings
+
+
+def draws_geometry(technique, settings):
+    return technique in ("ssvp", "lpv", "cone_tracing") or "voxel" in settings or "second=" in settings and "second=rsm" not in settings
+
+
+def predict_ms(data, costs, rows):
+    facing = data.probes[rows, FACING]
+    triangles = np.array([data.views[v]["triangles"] * 1e-6 for v in rows])
+    return cost_columns(data.mega["pixels"], triangles, data.mega["texels"], facing) @ costs.T
+
+
+# ------------------------------------------------------------------------------------------ error
+
+class ErrorModel:
+    """log10 relMSE = mean + slopes . z. One part of the slopes is the view's, alike for all candidates (ridge `ofView`); the other tells
+    candidates from each other: ridge `ridge`, then reduced to the `rank` directions that explain most (Izenman 1975)."""
+
+    def __init__(self, data, rows, rank, ridge, ofView):
+        raw = np.log10(np.maximum(data.probes[rows], FLOORS))
+        self.mean, self.deviation = raw.mean(axis=0), np.maximum(raw.std(axis=0), 0.05)
+        z = self.standardised(data.probes[rows])
+        log = data.log[rows]
+        weights = self.weights(data, rows)
+        self.means = weights @ log / weights.sum()
+        rest = log - self.means
+        view = rest.mean(axis=1)
+        apart = rest - view[:, None]
+        self.slopes = np.zeros((len(PROBES), log.shape[1]))
+        weighted = z * weights[:, None]
+        if math.isfinite(ofView):
+            self.slopes += np.linalg.solve(weighted.T @ z + ofView * np.eye(len(PROBES)), weighted.T @ view)[:, None]
+        if math.isfinite(ridge):
+            slopes = np.linalg.solve(weighted.T @ z + ridge * np.eye(len(PROBES)), weighted.T @ apart)
+            directions = np.linalg.svd(z @ slopes, full_matrices=False)[2][:rank]
+            self.slopes += slopes @ directions.T @ directions
+
+    @staticmethod
+    def weights(data, rows):
+        """Scenes count alike, however many cameras they have."""
+        scenes = data.scene[rows]
+        return np.array([1.0 / math.sqrt((scenes == s).sum()) for s in scenes])
+
+    def standardised(self, probes):
+        z = (np.log10(np.maximum(probes, FLOORS)) - self.mean) / self.deviation
+        return np.clip(z, -LIMIT, LIMIT)
+
+    def predict(self, probes):
+        return self.means + self.standardised(probes) @ self.slopes
+
+
+def choose(ms, log, budget):
+    """Index of the candidate that planner.cpp chooses: predicted times and errors of one view."""
+    affordable = np.where(ms <= max(budget, SAME_TIME * ms.min() if ms.min() > budget else 0.0))[0]
+    near = affordable[log[affordable] <= log[affordable].min() + math.log10(SAME)]
+    return int(near[np.argmin(ms[near])])
+
+
+def outcomes(data, ms, log, rows, allowed):
+    """(view, budget, chosen, best, ratio of their errors) of each view of `rows`, by predictions `ms` and `log`."""
+    result = []
+    for i, v in enumerate(rows):
+        for budget in BUDGETS:
+            fits = np.where(data.ms[v] <= budget)[0]
+            chosen = allowed[choose(ms[i][allowed], log[i][allowed], budget)]
+            # Where nothing fits, the quickest is the best that can be had.
+            best = fits[np.argmin(data.log[v, fits])] if len(fits) else int(np.nanargmin(data.ms[v]))
+            result.append((v, budget, chosen, int(best), 10 ** (data.log[v, chosen] - data.log[v, best]), bool(len(fits))))
+    return result
+
+
+def held_out(data, rows, strength, ofView):
+    """Predictions of every view of `rows` by models that knew none of its scene."""
+    log = np.zeros((len(rows), len(data.candidates)))
+    ms = np.zeros_like(log)
+    for scene in dict.fromkeys(data.scene[rows]):
+        inside = np.array([r for r in rows if data.scene[r] != scene])
+        outside = [i for i, r in enumerate(rows) if data.scene[r] == scene]
+        log[outside] = ErrorModel(data, inside, *strength, ofView).predict(data.probes[rows[outside]])
+        ms[outside] = predict_ms(data, fit_costs(data, inside), rows[outside])
+    return ms, log
+
+
+def strengths(data, rows, allowed):
+    """What shrinks best by leaving out one scene of `rows` after the other: `ofView` by the errors' own prediction, rank and ridge by
+    what is chosen (the mean logarithm of the ratio of errors)."""
+    def loss(strength):
+        ms, log = held_out(data, rows, strength, math.inf)
+        return float(np.mean([math.log(o[4]) for o in outcomes(data, ms, log, rows, allowed)]))
+
+    def miss(ofView):
+        log = held_out(data, rows, (1, math.inf), ofView)[1]
+        return float(np.mean((log - data.log[rows]).mean(axis=1) ** 2))
+
+    return min(STRENGTHS, key=loss), min(RIDGE_OF_VIEWS, key=miss)
+
+
+def leave_scenes_out(data, allowed):
+    """Nested: the strengths of each held-out scene's models are chosen among the other scenes."""
+    everything = np.arange(len(data.views))
+    log, ms = np.zeros((len(everything), len(data.candidates))), np.zeros((len(everything), len(data.candidates)))
+    for scene in data.scenes():
+        inside, outside = everything[data.scene != scene], everything[data.scene == scene]
+        strength, ofView = strengths(data, inside, allowed)
+        log[outside] = ErrorModel(data, inside, *strength, ofView).predict(data.probes[outside])
+        ms[outside] = predict_ms(data, fit_costs(data, inside), outside)
+    return ms, log

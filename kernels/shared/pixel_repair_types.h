@@ -1,0 +1,15 @@
+// What the pass pixel_repair and its kernels share.
+#ifndef LW_PIXEL_REPAIR_TYPES_H
+#define LW_PIXEL_REPAIR_TYPES_H
+
+// Ints of its state: pixels that were marked, those of them that there was room for, and the others.
+#define LW_REPAIR_MARKED 0
+#define LW_REPAIR_TAKEN 1
+#define LW_REPAIR_LEFT 2
+#define LW_REPAIR_WORDS 3
+
+// Columns of the image that they are put into. A tile of a gather then holds pixels that lay near each other; fewer columns: gathers
+// of wide vectors leave most of a group idle.
+#define LW_REPAIR_COLUMNS 128
+
+#endif
