@@ -180,7 +180,7 @@ std::vector<Steering::Expected> Steering::possible(const std::vector<Prediction>
         for (const Prediction& prediction : predictions) {
             const auto found = known_.find(prediction.candidate);
             const bool isOut = found != known_.end() && isBarred(found->second) && (!all || found->second.hasFailed);
-            if (!isOut && isTime(prediction.milliseconds)) expected.push_back(expect(prediction));
+            if (!isOut && prediction.milliseconds >= 0.0 && std::isfinite(prediction.milliseconds)) expected.push_back(expect(prediction));
         }
         if (!expected.empty()) break;
     }

@@ -103,6 +103,7 @@ void Auto::prewarm(Executor& executor, const std::shared_ptr<View>& view) {
     }
     // What lies around them, with one that stands for all.
     FrameTraits made;
+    made.pixels = 1.0;
     made.hasRsms = made.hasDirectRadiance = made.hasCamera = true;
     const std::vector<Prediction> simple = planner_.predict(made, probes_);
     if (simple.empty()) return;
