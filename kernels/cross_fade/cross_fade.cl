@@ -12,13 +12,14 @@
 #include "shared/history_look_up.h"
 
 // One work-item = LW_WIDTH adjacent pixels. irradiance: 3 planes, validity: 1, both new; hasIrradiance, hasValidity: which of them are
-// wanted: the others' arguments are not touched, and stand as 0 in a picture. mode: LW_HISTORY_*. share: of the new, above 0. before,
+// wanted: the others' arguments are not touched, and stand as 0 in a picture. mode: LW_HISTORY_*. share: of the new, above 0. rounding: as
+// look_up's, above 0: bilinear mixing is four times the gathers, and a blur in every frame of a fade. before,
 // after: pictures, of the frame before at its size and of this one. shownIrradiance, shownValidity: what the view shows.
 // counts[0]: surfaces that the last picture did not show.
 __kernel void cross_fade_mix(__global const float* position, int4 positionLayout, __global const float* normal, int4 normalLayout,
                              int width, int height, __global const float* irradiance, int4 irradianceLayout,
                              __global const float* validity, int4 validityLayout, int hasIrradiance, int hasValidity,
-                             __global const float* motion, int4 motionLayout, int mode, LwReprojection r, float share,
+                             __global const float* motion, int4 motionLayout, int mode, LwReprojection r, float share, float rounding,
                              __global const float* before, int4 beforeLayout, __global float* after, int4 afterLayout,
                              __global float* shownIrradiance, int4 shownIrradianceLayout, __global float* shownValidity,
                              int4 shownValidityLayout, __global int* counts) {
@@ -38,7 +39,7 @@ __kernel void cross_fade_mix(__global const float* position, int4 positionLayout
     LW_UNROLL for (int c = 0; c < LW_MIXED; ++c) past[c] = (real)0.0f;
     if (mode != LW_HISTORY_NONE && any_(surface)) {
         real speed;
-        const lw_past found = look_up(s, surface, x, y, mode, r, motion, motionLayout, before, beforeLayout, &speed);
+        const lw_past found = look_up(s, surface, x, y, mode, r, motion, motionLayout, before, beforeLayout, rounding, &speed);
         known = and_(finite, found.weight > LW_LEAST_WEIGHT);
         const real scale = select_((real)0.0f, 1.0f / found.weight, known);
         LW_UNROLL for (int c = 0; c < LW_MIXED; ++c) past[c] = found.mixed[c] * scale;

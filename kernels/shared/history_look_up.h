@@ -63,10 +63,11 @@ LW_FN void add_taps(lw_past* past, const lw_surface s, real tolerance, __global 
 
 LW_FN real dot_row(float4 row, real x, real y, real z) { return fma_((real)row.x, x, fma_((real)row.y, y, fma_((real)row.z, z, (real)row.w))); }
 
-// The look-up of LW_WIDTH pixels from (x, y) on. `speed`: pixels of the history since the frame before.
+// The look-up of LW_WIDTH pixels from (x, y) on. `speed`: pixels of the history since the frame before. `rounding`, a constant or one
+// for all pixels: 0: bilinear; else one pixel, that at the floor of its coordinate plus this, which is a quarter of the work.
 LW_FN lw_past look_up(lw_surface s, mask wanted, int x, int y, int mode, const LwReprojection r,
                       __global const float* motion, int4 motionLayout, __global const float* before, int4 layout,
-                      real* speed) {
+                      float rounding, real* speed) {
     lw_past past;
     LW_UNROLL for (int c = 0; c < LW_MIXED; ++c) past.mixed[c] = (real)0.0f;
     past.age = past.learnt = past.weight = *speed = (real)0.0f;
@@ -100,11 +101,14 @@ LW_FN lw_past look_up(lw_surface s, mask wanted, int x, int y, int mode, const L
         placeX = select_(ownX, placeX, wanted);
         placeY = select_(ownY, placeY, wanted);
         *speed = fmax(fabs(placeX - ownX), fabs(placeY - ownY));
-        const real left = floor(placeX - (0.5f - LW_SNAP)), top = floor(placeY - (0.5f - LW_SNAP));
-        fx = placeX - 0.5f - left;
-        fy = placeY - 0.5f - top;
-        fx = select_((real)0.0f, fx, fx > LW_SNAP);
-        fy = select_((real)0.0f, fy, fy > LW_SNAP);
+        const float shift = rounding > 0.0f ? 0.5f - rounding : 0.5f - LW_SNAP;
+        const real left = floor(placeX - shift), top = floor(placeY - shift);
+        if (rounding == 0.0f) {
+            fx = placeX - 0.5f - left;
+            fy = placeY - 0.5f - top;
+            fx = select_((real)0.0f, fx, fx > LW_SNAP);
+            fy = select_((real)0.0f, fy, fy > LW_SNAP);
+        }
         column = to_lanei(left);
         row = to_lanei(top);
     }

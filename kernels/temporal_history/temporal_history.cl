@@ -69,7 +69,7 @@ __kernel void temporal_history_blend(__global const float* position, int4 positi
     LW_UNROLL for (int c = 0; c < LW_MIXED; ++c) past[c] = (real)0.0f;
     if (mode != LW_HISTORY_NONE && any_(surface)) {
         real speed;
-        const lw_past found = look_up(s, surface, x, y, mode, r, motion, motionLayout, before, beforeLayout, &speed);
+        const lw_past found = look_up(s, surface, x, y, mode, r, motion, motionLayout, before, beforeLayout, 0.0f, &speed);
         known = and_(surface, found.weight > LW_LEAST_WEIGHT);
         const real scale = select_((real)0.0f, 1.0f / found.weight, known);
         const real most = fmax(frames * LW_HALVING_SPEED / (LW_HALVING_SPEED + speed) - 1.0f, (real)0.0f);

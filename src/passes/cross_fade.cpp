@@ -1,6 +1,7 @@
 #include "passes/cross_fade.h"
 
 #include <cstring>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -14,6 +15,9 @@ namespace {
 
 constexpr std::uint32_t kPlanes = 3 + 1 + 3 + 1;  // irradiance, validity, position, a word
 constexpr std::size_t kCountBytes = sizeof(cl_int);
+// A place between pixels is rounded to one of them, from frame to frame by another of these: a slow pan takes the old light with it in
+// the mean, where always the nearest would leave it behind. None is near 0 or 1, so that rounding of places moves nothing at rest.
+constexpr float kRoundings[] = {0.5f, 0.25f, 0.75f, 0.125f, 0.625f, 0.375f, 0.875f};
 
 std::uint64_t imageFloats(std::uint32_t maxWidth, std::uint32_t maxHeight) {
     const std::uint64_t floats = historyPlaneStride(maxWidth) * maxHeight * kPlanes;
@@ -68,6 +72,7 @@ void CrossFade::record(Executor& executor, const FadeFrame& frame, const LWCamer
     // A picture that is drawn again in an update takes the place of the first, and begins from the same one.
     const std::size_t next = view.isDrawn_ ? view.last_ : 1 - view.last_;
     const std::uint32_t lead = view.isDrawn_ ? view.lead_ : view.updates_;
+    if (!view.isDrawn_) ++view.records_;
     const FadedView::Drawn& drawn = view.drawn_[1 - next];
     cl_int mode = LW_HISTORY_NONE;
     LwReprojection where = reprojection(own, now.width, now.height, now);
@@ -87,7 +92,7 @@ void CrossFade::record(Executor& executor, const FadeFrame& frame, const LWCamer
     executor.fill("cross_fade.counts", view.counts_, 0, 0, kCountBytes);
     executor.run("cross_fade.mix", mix_, rowGrid(executor.device(), now.width, now.height), rowGroup(executor.device()), now, frame.normal,
                  cl_int(now.width), cl_int(now.height), given(frame.irradiance), given(frame.validity), cl_int(hasIrradiance ? 1 : 0),
-                 cl_int(hasValidity ? 1 : 0), given(frame.motion), mode, where, cl_float(share), before, after,
+                 cl_int(hasValidity ? 1 : 0), given(frame.motion), mode, where, cl_float(share), cl_float(kRoundings[view.records_ % std::size(kRoundings)]), before, after,
                  written(frame.shownIrradiance), written(frame.shownValidity), view.counts_);
     view.drawn_[next] = {now.width, now.height, hasIrradiance, hasValidity, camera, std::move(own)};
     view.last_ = next;

@@ -60,6 +60,7 @@ private:
     std::size_t last_ = 0;       // image of the last record
     bool isDrawn_ = false;       // since the last update
     std::uint32_t updates_ = 0;  // since the last record
+    std::uint32_t records_ = 0;  // so far
     std::uint32_t lead_ = 0;     // from the image that the last record read to it, in updates
 };
 

@@ -35,6 +35,8 @@ const double kFirstSpread = std::log(1.15), kLeastSpread = std::log(1.03);
 constexpr double kUntried = 0.15, kCurious = 8.0;
 // What a candidate must be within to be entered, of the budget. Nearer to 1: those that just fit come and go.
 constexpr double kEnter = 0.95;
+// By how much one that does not fit either must be quicker. Nearer to 1: two of them swing.
+constexpr double kQuicker = 1.1;
 // First bar in patiences, and the longest. Shorter: what breaks the budget comes back as often. Longer: good ones are missed for as long.
 constexpr std::uint64_t kBar = 4, kLongestBar = 128;
 // Share of a frame in the mean of what lies beside candidates (fades, probes), for which room is left. Larger: a single fade sends a
@@ -144,6 +146,14 @@ bool Steering::reaches(const Expected& one) const {
     return !(options_.errorTarget > 0.0) || one.prediction.error <= options_.errorTarget;
 }
 
+// Where neither fits. One that has not run may be quicker than it seems.
+bool Steering::isQuicker(const Expected& one, const Expected& running) const {
+    const auto found = known_.find(one.prediction.candidate);
+    const bool tried = found != known_.end() && found->second.learnt > 0;
+    const bool isTold = known_.at(running.prediction.candidate).recent.size() >= kOverRow;  // what runs has shown how quick it is
+    return isTold && one.median * (tried ? kQuicker : 1.0 - kUntried) < running.median;
+}
+
 // Of two that fit the budget.
 bool Steering::isPreferred(const Expected& one, const Expected& other) const {
     if (options_.errorTarget > 0.0) {
@@ -233,7 +243,7 @@ void Steering::fail(std::size_t candidate) {
 const Steering::Expected* Steering::leaveFor(const Expected& running, const std::vector<Expected>& expected, SteeringCause& cause) {
     const bool isOver = breaksBudget();
     const Expected* other = best(expected, running_);
-    canLeave_ = other && (fits(*other) || other->median < running.median);
+    canLeave_ = other && (fits(*other) || isQuicker(*other, running));
     if (isOver || (options_.budgetMilliseconds > 0.0 && running.median > options_.budgetMilliseconds)) {
         better_ = 0;
         cause = isOver ? SteeringCause::kOverBudget : SteeringCause::kTooDear;
@@ -263,7 +273,7 @@ std::optional<SteeringStep> Steering::next(const std::vector<Prediction>& predic
         step.isLeaving = other != nullptr;
         return step;
     }
-    if (cause == SteeringCause::kOverBudget) bar(*running_, false);
+    if (cause == SteeringCause::kOverBudget && fits(*other)) bar(*running_, false);  // else it may yet be the quickest
     return start(*other, cause);
 }
 

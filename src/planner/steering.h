@@ -90,6 +90,7 @@ private:
     bool fits(const Expected& one) const;
     bool reaches(const Expected& one) const;
     bool isBetter(const Expected& one, const Expected& running) const;
+    bool isQuicker(const Expected& one, const Expected& running) const;
     bool isPreferred(const Expected& one, const Expected& other) const;
     const Expected* best(const std::vector<Expected>& expected, std::optional<std::size_t> without) const;
     // What to leave the running one for, and why; null: stay.

@@ -235,6 +235,14 @@ TEST_CASE("nothing fits: the quickest runs, is said to be over, and stays", "[st
     const Outcome outcome = drive(steering, machine, 300, 1.0, always, always);
     CHECK(outcome.switches.empty());
     CHECK(outcome.ran.back() == 0);
+    // Two that are predicted to be about as quick: the quicker is found out, and then nothing swings.
+    machine.milliseconds = {10, 10.5, 30};
+    machine.error = {0.5, 0.5, 0.1};
+    machine.bias = {2.0, 1.3, 1.0};
+    Steering both(within(8.0));
+    const Outcome found = drive(both, machine, 600, 8.0, always, always);
+    CHECK(found.ran.back() == 1);
+    CHECK(found.switches.size() <= 2);
     CHECK_FALSE(steering.next(machine.predict())->isWithinBudget);
 }
 
