@@ -802,7 +802,7 @@ LW_API void lwDefaultStaticVpl(LWStaticVplDesc* desc);
 #define LW_TECHNIQUE_AUTO "auto"
 
 /** Technique "auto": in each frame the technique and parameters that lwPlan finds best for what the frame brings, kept until
- *  another is clearly better or the budget is broken; changes are cross-faded. Stats say which, and why. */
+ *  another is clearly better or the budget is broken; changes are cross-faded. Stats say which, and why. The first on a device measures its rates, as lwPlan. */
 typedef struct LWAutoDesc {
     uint32_t structSize;
     float budgetMs;          /**< of a frame: lwUpdate and all of its lwRender, on the device's clock (the host's, where the device has none
@@ -978,7 +978,7 @@ typedef struct LWPlan {
 } LWPlan;
 
 /** Picks technique and parameters for what this frame brings and what may be spent: what is possible by the inputs given; how long it
- *  takes by a model calibrated on this device (in less than two seconds at the first call, then kept in the device's cache); how wrong it
+ *  takes by a model calibrated on this device (in less than two seconds at the first call, with the lock held, then kept in the device's cache); how wrong it
  *  is by a model fitted to `lightwell chart`'s results and probes of the frame. docs/planner.md says how, and how good it is.
  *  `view`, `gbuffer`: of the view that is to be lit, as for lwRender. Waits for the probes: a few milliseconds. Changes nothing.
  *  Errors: INVALID_*, as lwUpdate and lwRender, and where no technique can light such a frame; OUT_OF_MEMORY. */

@@ -82,11 +82,11 @@ void Auto::prewarm(Executor& executor, const std::shared_ptr<View>& view) {
     traits.hasRsms = true;
     if (!hasSeen_) traits.hasDirectRadiance = traits.hasAlbedo = traits.hasCamera = traits.hasMotion = traits.hasVpls = true;
     if (updates_ == 0) traits.triangles = traits.staticVpls = 1;
-    const std::vector<Prediction> possible = planner_.predict(traits, probes_);
+    std::vector<Prediction> quicker;  // that can be chosen
     int warmed = 0;
-    for (const Prediction& one : possible) {
+    for (const Prediction& one : planner_.predict(traits, probes_)) {
         // Dearer and worse than another is not chosen, as far as the frame is known.
-        const bool isDominated = std::any_of(possible.begin(), possible.end(), [&](const Prediction& other) {
+        const bool isDominated = std::any_of(quicker.begin(), quicker.end(), [&](const Prediction& other) {
             return other.milliseconds < one.milliseconds && other.error <= one.error;
         });
         const bool isTooDear = desc_.budgetMs > 0.0f && one.milliseconds > kBudgetsWarmed * double(desc_.budgetMs) && warmed > 0;
@@ -95,22 +95,31 @@ void Auto::prewarm(Executor& executor, const std::shared_ptr<View>& view) {
         const Candidate& candidate = planner_.candidates[one.candidate];
         try {
             makeTechnique(device_, candidate.technique, candidate.settings)->prewarm(executor, view);
+            quicker.push_back(one);
         } catch (const Error& error) {
             if (!isItsOwn(error.status())) throw;
             device_.log(LW_LOG_WARNING, "auto: " + nameOf(one.candidate) + " cannot be chosen on this device: " + error.what());
         }
         device_.finish();
     }
-    // What lies around them, with one that stands for all.
+    prewarmAround(executor);
+}
+
+// What lies around the candidates, with the first of them that can be had and asks for no geometry.
+void Auto::prewarmAround(Executor& executor) {
     FrameTraits made;
     made.pixels = 1.0;
     made.hasRsms = made.hasDirectRadiance = made.hasCamera = true;
-    const std::vector<Prediction> simple = planner_.predict(made, probes_);
-    if (simple.empty()) return;
-    AutoPlanner one = planner_;
-    one.predict = [only = simple.front()](const FrameTraits&, const LWPlanProbes&) { return std::vector<Prediction>{only}; };
-    Auto twin(device_, desc_, std::move(one));
-    exerciseTechnique(executor, twin);
+    for (const Prediction& simple : planner_.predict(made, probes_)) {
+        AutoPlanner one = planner_;
+        one.predict = [simple](const FrameTraits&, const LWPlanProbes&) { return std::vector<Prediction>{simple}; };
+        Auto twin(device_, desc_, std::move(one));
+        try {
+            return exerciseTechnique(executor, twin);
+        } catch (const Error& error) {
+            if (!isItsOwn(error.status())) throw;
+        }
+    }
 }
 
 std::unique_ptr<Technique> makeAuto(Device& device, const LWAutoDesc& desc, AutoPlanner planner) {

@@ -11,7 +11,7 @@ void AutoChild::update(Executor& executor, const LWFrame& frame, std::uint32_t i
     isBack_ = hasUpdated_ && hasMissed_;
     hasUpdated_ = true;
     hasMissed_ = hasMissedReset_ = false;
-    accepted_ = inputs;
+    inputs_ = inputs;
 }
 
 void AutoChild::render(Executor& executor, const std::shared_ptr<View>& view, const LWGBuffer& gbuffer, const LWOutput& output) {
@@ -20,6 +20,7 @@ void AutoChild::render(Executor& executor, const std::shared_ptr<View>& view, co
     if (isBack_) own.motion = LWImage{};
     technique_->render(executor, view, own, output);
     hasRendered_ = true;
+    accepted_ = inputs_;
 }
 
 void AutoChild::miss(bool isReset) {

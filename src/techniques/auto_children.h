@@ -15,20 +15,19 @@ public:
     std::size_t candidate() const { return candidate_; }
     Technique& technique() const { return *technique_; }
     bool hasRendered() const { return hasRendered_; }
-    std::uint32_t accepted() const { return accepted_; }
 
     // `inputs`: a word that says which inputs the frame brings.
     void update(Executor& executor, const LWFrame& frame, std::uint32_t inputs);
     void render(Executor& executor, const std::shared_ptr<View>& view, const LWGBuffer& gbuffer, const LWOutput& output);
     // A frame that it is not updated with.
     void miss(bool isReset);
-    // Whether it has been updated, rendered with frames that bring the same: what it then refuses is the host's mistake.
+    // Whether it has lit a view of frames that bring the same: what it then refuses is the host's mistake.
     bool knows(std::uint32_t inputs) const { return hasRendered_ && accepted_ == inputs; }
 
 private:
     std::size_t candidate_;
     std::unique_ptr<Technique> technique_;
-    std::uint32_t accepted_ = 0;
+    std::uint32_t inputs_ = 0, accepted_ = 0;  // of the last update; of the last one that a view was lit by
     bool hasUpdated_ = false, hasRendered_ = false;
     bool hasMissed_ = false, hasMissedReset_ = false;  // since its last update
     bool isBack_ = false;  // in the frame at hand, after some that it missed

@@ -47,7 +47,7 @@ void Auto::learn() {
 FrameTraits Auto::traitsNow(const LWFrame& frame) {
     FrameTraits traits = traitsOf(frame, seen_, pixels_, desc_.views);
     // Lamps that go out for a while ask for no other technique.
-    hasHadRsms_ |= traits.hasRsms;
+    hasHadRsms_ = traits.hasRsms || (hasHadRsms_ && !frame.reset);
     traits.hasRsms = hasHadRsms_;
     return traits;
 }
@@ -74,16 +74,17 @@ std::string Auto::nameOf(std::size_t candidate) const {
     return std::string(one.technique) + (*one.settings ? " " : "") + one.settings;
 }
 
-
 void Auto::update(Executor& executor, const LWFrame& frame) {
     RsmInput::check(device_, frame);  // the host's mistakes are no technique's
-    const bool forgets = continuity_.beginLost() || frame.reset;
+    const bool isLost = continuity_.beginLost();
+    forgets_ = forgets_ || isLost || frame.reset != 0;
+    probesDue_ = probesDue_ || frame.reset != 0 || updates_ % kProbeEvery == 0;
     learn();
     const FrameTraits traits = traitsNow(frame);
     const bool wasWhole = std::exchange(isWhole_, false);
     try {
         const SteeringStep step = choose(executor, frame, traits);
-        startFrame(frame, step, forgets);
+        startFrame(frame, step, std::exchange(forgets_, false));
     } catch (const Error& error) {
         times_.discard();
         // A frame that is refused as it is leaves the one before.
@@ -93,10 +94,11 @@ void Auto::update(Executor& executor, const LWFrame& frame) {
 }
 
 void Auto::startFrame(const LWFrame& frame, const SteeringStep& step, bool forgets) {
-    step_ = step;
+    const SteeringStep before = std::exchange(step_, step);
     const bool changes = hasBefore_ && before_ != step.prediction.candidate;
     if (changes) {
         ++switches_;
+        stepBefore_ = before;
         device_.log(LW_LOG_INFO, "auto: " + reason());
     }
     if (changes || !hasBefore_) lastCause_ = step.cause;
@@ -104,7 +106,7 @@ void Auto::startFrame(const LWFrame& frame, const SteeringStep& step, bool forge
     hasBefore_ = true;
     fadeLeft_ = forgets ? 0 : changes ? desc_.fade : fadeLeft_ > 0 ? fadeLeft_ - 1 : 0;
     // A change is told a frame ahead, so that only then the picture has to be kept; and the first choices are soon made again.
-    keeps_ = desc_.fade > 1 && (fadeLeft_ > 1 || step.isLeaving || steering_.mayLeave() || (planner_.usesProbes && !hasProbes_));
+    keeps_ = desc_.fade > 1 && (fadeLeft_ > 1 || step.isLeaving || steering_.mayLeave() || (planner_.usesProbes && !hasProbes_ && (probesDue_ || probing_.isReading())));
     states_.purge();
     states_.each([&](ViewState& state) {
         if (state.through) state.through->startFrame(forgets);
@@ -116,14 +118,9 @@ void Auto::startFrame(const LWFrame& frame, const SteeringStep& step, bool forge
 
 std::unique_ptr<AutoChild> Auto::obtain(std::size_t candidate) {
     if (std::unique_ptr<AutoChild> child = children_.takeResting(candidate)) return child;
+    children_.dropResting();  // two at once are enough for the device's memory
     const Candidate& one = planner_.candidates[candidate];
-    try {
-        return std::make_unique<AutoChild>(candidate, makeTechnique(device_, one.technique, one.settings));
-    } catch (const Error& error) {
-        if (error.status() != LW_ERROR_OUT_OF_MEMORY || !children_.resting()) throw;
-        children_.dropResting();
-        return std::make_unique<AutoChild>(candidate, makeTechnique(device_, one.technique, one.settings));
-    }
+    return std::make_unique<AutoChild>(candidate, makeTechnique(device_, one.technique, one.settings));
 }
 
 // Updates the step's candidate, which then is the one that runs.
@@ -144,7 +141,7 @@ void Auto::updateWith(Executor& executor, const LWFrame& frame, const SteeringSt
         // Should its first lwRender fail, the one before takes its place in the same frame.
         if (!children_.running()->hasRendered()) updateOther(executor, frame, inputs);
     }
-    wantsProbes_ = planner_.usesProbes && !probing_.isReading() && (!hasProbes_ || updates_ % kProbeEvery == 0);
+    wantsProbes_ = planner_.usesProbes && !probing_.isReading() && probesDue_;
     if (wantsProbes_) probe([&] { probing_.beginFrame(executor, frame); });
     times_.end(executor, false);
 }
@@ -160,13 +157,13 @@ void Auto::updateOther(Executor& executor, const LWFrame& frame, std::uint32_t i
     }
 }
 
-// Without memory for probes the choice is made without them.
+// Without memory for probes the choice is made without them, until they are due again.
 void Auto::probe(const std::function<void()>& record) {
     try {
         record();
     } catch (const Error& error) {
         if (!isItsOwn(error.status())) throw;
-        wantsProbes_ = false;
+        wantsProbes_ = probesDue_ = false;
         device_.log(LW_LOG_WARNING, std::string("auto: chooses without new probes of the frame: ") + error.what());
     }
 }
@@ -176,18 +173,21 @@ void Auto::noteFailure(std::size_t candidate, const Error& error) {
     device_.log(LW_LOG_WARNING, "auto: " + nameOf(candidate) + " is left out for a while, as it failed: " + error.what());
 }
 
-// All settings of a technique that refuses a frame's inputs would.
-void Auto::leaveOut(std::vector<Prediction>& possible, std::size_t candidate, LWStatus status) const {
-    const std::string technique = planner_.candidates[candidate].technique;
-    const auto isOut = [&](const Prediction& one) {
-        return one.candidate == candidate ||
-               (status == LW_ERROR_INVALID_ARGUMENT && planner_.candidates[one.candidate].technique == technique);
-    };
-    possible.erase(std::remove_if(possible.begin(), possible.end(), isOut), possible.end());
+// Whether a candidate would fail as another has: all settings of a technique that refuses a frame's inputs, or whose kernels do not build.
+bool Auto::failsWith(std::size_t candidate, std::size_t failed, LWStatus status) const {
+    const bool isAlike = status == LW_ERROR_INVALID_ARGUMENT || status == LW_ERROR_BUILD_FAILED;
+    return candidate == failed ||
+           (isAlike && std::string(planner_.candidates[candidate].technique) == planner_.candidates[failed].technique);
 }
 
-// The first of the candidates, best first, that takes the frame. Those before it are barred; where none does, none is, since then the
-// frame is to blame.
+// Kernels that do not build will not in the next frame either, whatever the settings.
+void Auto::bar(std::size_t failed, LWStatus status) {
+    for (std::size_t i = 0; i < planner_.candidates.size(); ++i)
+        if (i == failed || (status == LW_ERROR_BUILD_FAILED && failsWith(i, failed, status))) steering_.fail(i);
+}
+
+// The first of the candidates, best first, that takes the frame. Those before it are barred. Where none does, the frame is to blame for
+// what was refused, and all else is barred, so that others have their turn in the next frame.
 SteeringStep Auto::choose(Executor& executor, const LWFrame& frame, const FrameTraits& traits) {
     const std::uint32_t inputs = inputsOf(traits);
     std::vector<Prediction> possible = predictions(traits);
@@ -206,7 +206,7 @@ SteeringStep Auto::choose(Executor& executor, const LWFrame& frame, const FrameT
         try {
             updateWith(executor, frame, *step, inputs);
             for (const auto& [failed, error] : failures) {
-                steering_.fail(failed);
+                bar(failed, error.status());
                 noteFailure(failed, error);
             }
             return *step;
@@ -216,11 +216,17 @@ SteeringStep Auto::choose(Executor& executor, const LWFrame& frame, const FrameT
             if (!isItsOwn(error.status()) || (isKnown && error.status() == LW_ERROR_INVALID_ARGUMENT)) throw;
             failures.emplace_back(candidate, error);
             if (ran == candidate && error.status() != LW_ERROR_INVALID_ARGUMENT) children_.fallBack();  // half made
-            leaveOut(possible, candidate, error.status());
+            const auto isOut = [&](const Prediction& one) { return failsWith(one.candidate, candidate, error.status()); };
+            possible.erase(std::remove_if(possible.begin(), possible.end(), isOut), possible.end());
         }
     }
     if (children_.running()) steering_.resume(children_.running()->candidate());
     else steering_.forgetChoice();
+    for (const auto& [failed, error] : failures) {
+        if (error.status() == LW_ERROR_INVALID_ARGUMENT) continue;
+        bar(failed, error.status());
+        noteFailure(failed, error);
+    }
     if (failures.empty()) fail(LW_ERROR_UNSUPPORTED, "auto: all that the frame allows has failed before and is left out for a while; the log says why");
     throw failures.front().second;
 }

@@ -16,8 +16,10 @@ void Auto::render(Executor& executor, const std::shared_ptr<View>& view, const L
     times_.begin(executor, false);
     try {
         renderTimed(executor, view, gbuffer, output);
-        if (wantsProbes_) probe([&] { probing_.recordView(executor, *view, gbuffer); });
-        wantsProbes_ = false;
+        if (wantsProbes_) {
+            probe([&] { probing_.recordView(executor, *view, gbuffer); });
+            wantsProbes_ = probesDue_ = false;
+        }
     } catch (...) {
         times_.discard();
         throw;
@@ -68,7 +70,7 @@ void Auto::renderChild(Executor& executor, const std::shared_ptr<View>& view, co
             noteFailure(failed, error);
             times_.discard();
             before_ = children_.running()->candidate();
-            step_.prediction.candidate = before_;
+            step_ = stepBefore_;
             lastCause_ = SteeringCause::kNotPossible;
         } else if (!running.knows(inputs_) || error.status() != LW_ERROR_INVALID_ARGUMENT) {
             steering_.fail(running.candidate());
@@ -89,8 +91,8 @@ std::string Auto::reason() const {
     };
     add(", %.1f ms expected", step_.expected);
     if (desc_.budgetMs > 0.0f) add(" of %.1f (%.1f at most in 95 %% of frames)", double(desc_.budgetMs), step_.highest);
-    if (!step_.isWithinBudget) add("; nothing quicker is possible");
-    else if (!step_.reachesError) add("; nothing reaches %.2g", double(desc_.errorTarget));
+    if (!step_.isWithinBudget) add("; over the budget at present");
+    else if (!step_.reachesError) add("; does not reach %.2g", double(desc_.errorTarget));
     static const char* const causes[] = {"the best for the frame that it began with",
                                          "",
                                          "less error than the one before",

@@ -53,13 +53,15 @@ private:
         bool cannotKeep = false;
     };
 
+    void prewarmAround(Executor& executor);
     void learn();
     FrameTraits traitsNow(const LWFrame& frame);
     std::vector<Prediction> predictions(const FrameTraits& traits) const;
     std::unique_ptr<AutoChild> obtain(std::size_t candidate);
     void updateWith(Executor& executor, const LWFrame& frame, const SteeringStep& step, std::uint32_t inputs);
     SteeringStep choose(Executor& executor, const LWFrame& frame, const FrameTraits& traits);
-    void leaveOut(std::vector<Prediction>& possible, std::size_t candidate, LWStatus status) const;
+    bool failsWith(std::size_t candidate, std::size_t failed, LWStatus status) const;
+    void bar(std::size_t failed, LWStatus status);
     void updateOther(Executor& executor, const LWFrame& frame, std::uint32_t inputs);
     void startFrame(const LWFrame& frame, const SteeringStep& step, bool forgets);
     void renderChild(Executor& executor, const std::shared_ptr<View>& view, const LWGBuffer& gbuffer, const LWOutput& output);
@@ -90,9 +92,11 @@ private:
 
     // Of the frame at hand.
     bool isWhole_ = false, keeps_ = false, wantsProbes_ = false;
+    bool forgets_ = false;     // what earlier frames have left, since some frame that no candidate took
+    bool probesDue_ = true;    // for the first time, for another scene, or again
     bool hasOther_ = false;  // the resting technique has this frame too, should the new one fail
     std::uint32_t fadeLeft_ = 0, inputs_ = 0;
-    SteeringStep step_;
+    SteeringStep step_, stepBefore_;  // before the last change
     SteeringCause lastCause_ = SteeringCause::kStart;
     std::size_t before_ = 0;  // candidate
     bool hasBefore_ = false;

@@ -11,6 +11,7 @@
 #include "api/api_scene.h"
 #include "compute/device.h"
 #include "support/kernel_rig.h"
+#include "support/test_device.h"
 #include "techniques/auto_times.h"
 #include "techniques/from_text.h"
 
@@ -57,10 +58,12 @@ struct Scene : ApiScene {
 };
 
 struct AutoRig {
-    explicit AutoRig(const LWAutoDesc& desc, std::size_t count = 2, std::uint32_t width = 16) : device(sharedDevice(width)) {
+    explicit AutoRig(const LWAutoDesc& desc, std::size_t count = 2, std::uint32_t width = 16)
+        : AutoRig(desc, sharedDevice(width), kCandidates, count) {}
+    AutoRig(const LWAutoDesc& desc, Device& on, const std::vector<Candidate>& candidates, std::size_t count) : device(on) {
         for (std::size_t i = 0; i < count; ++i) plan.predictions.push_back({i, 1.0 + double(i), 1.0, 0.7});
         plan.prefer(0);
-        technique = makeAuto(device, desc, {kCandidates, [this](const FrameTraits&, const LWPlanProbes&) { return plan.predictions; }, false});
+        technique = makeAuto(device, desc, {candidates, [this](const FrameTraits&, const LWPlanProbes&) { return plan.predictions; }, false});
     }
     std::vector<double> frame(Scene& scene) {
         update(scene);
@@ -211,6 +214,29 @@ TEST_CASE("a candidate that refuses the view: the one before lights the same fra
     CHECK(rig.count("failed_candidates") == 1);
     CHECK(rig.count("barred_candidates") == 1);
     CHECK(rig.choice("auto.technique") == "rsm");
+}
+
+TEST_CASE("kernels that do not build: prewarming goes on, and however many settings need them another technique lights the frame", "[auto]") {
+    Scene scene;
+    scene.gbuffer.directRadiance = scene.gbuffer.normal;
+    const auto broken = freshDevice();
+    broken->programs().addSource("screen_gather/screen_gather", "__kernel void screen_gather_deal(__global int* p) { p[0] = ; }\n");
+    std::vector<Candidate> some;
+    // Ten settings without the program, each preferred to the one that works.
+    for (const char* settings : {"samples=8", "samples=16", "samples=32", "samples=64", "samples=128", "levels=1", "levels=2", "levels=3", "levels=4", "levels=5"})
+        some.push_back({"screen_space", settings});
+    some.push_back(kCandidates[0]);
+    AutoRig rig(describe(0), *broken, some, some.size());
+    for (Prediction& one : rig.plan.predictions) one.error = 0.1 * double(one.candidate + 1);
+    Profile profile;
+    Executor executor(*broken, profile);
+    rig.technique->prewarm(executor, rig.view);
+    const std::vector<double> first = alone(0, scene);
+    CHECK(rig.frame(scene) == first);
+    CHECK(rig.frame(scene) == first);
+    CHECK(rig.count("barred_candidates") == 10);
+    rig.plan.predictions.pop_back();  // nothing else is possible
+    CHECK_THROWS_WITH(rig.frame(scene), Catch::Contains("failed before"));
 }
 
 TEST_CASE("the host's mistakes are errors as any technique's, and nothing is barred for them", "[auto]") {
