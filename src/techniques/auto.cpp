@@ -22,8 +22,15 @@ LWPlanProbes unknownProbes() {
     return {kNone, kNone, kNone, kNone, kNone, kNone, kNone, kNone};
 }
 
-SteeringOptions steeringOptions(const LWAutoDesc& desc) {
-    return {double(desc.budgetMs), double(desc.errorTarget), desc.patience, double(desc.gain)};
+// Candidates of a technique are a group.
+SteeringOptions steeringOptions(const LWAutoDesc& desc, const std::vector<Candidate>& candidates) {
+    SteeringOptions options{double(desc.budgetMs), double(desc.errorTarget), desc.patience, double(desc.gain), {}};
+    for (const Candidate& candidate : candidates) {
+        const auto first = std::find_if(candidates.begin(), candidates.end(),
+                                        [&](const Candidate& other) { return std::string(other.technique) == candidate.technique; });
+        options.groups.push_back(std::size_t(first - candidates.begin()));
+    }
+    return options;
 }
 
 AutoPlanner realPlanner(Device& device) {
@@ -70,7 +77,7 @@ Auto::Auto(Device& device, const LWAutoDesc& desc, AutoPlanner planner)
     : device_(device),
       desc_(desc),
       planner_(std::move(planner)),
-      steering_(steeringOptions(desc)),
+      steering_(steeringOptions(desc, planner_.candidates)),
       fade_(device),
       probing_(device),
       continuity_(device),
