@@ -7,6 +7,7 @@ marks of docs/techniques/auto.md.
 """
 import json
 import multiprocessing
+import os
 import subprocess
 import threading
 import time
@@ -109,7 +110,7 @@ def main():
     load = Load(int(options.busy or multiprocessing.cpu_count()))
     scene = moving_scene(options.work)
     lines = ["| budget | load | within | switches | median | most |", "| ---: | --- | ---: | ---: | ---: | ---: |"]
-    runs = []
+    runs, loads = [], [os.getloadavg()[0]]
     for budget in budgets:
         quiet, seconds = run(options, scene, budget)
         loaded, _ = run(options, scene, budget, seconds, load)
@@ -117,7 +118,10 @@ def main():
             within, switches, median, most = figures_of(report, budget)
             lines.append(f"| {budget:g} ms | {name} | {100 * within:.0f} % | {switches} | {median:.1f} ms | {most:.1f} ms |")
         runs.append((budget, loaded))
+        loads.append(os.getloadavg()[0])
     draw(runs)
+    lines += ["", f"Measured on {runs[0][1]['device']}, {runs[0][1]['compute_units']} cores, at a load average of {min(loads):.1f} to {max(loads):.1f}, "
+                  f"{len(runs[0][1]['frame_ms'])} frames at {options.size}; the first two, which make what later ones have, are not counted."]
     program.write_between(PAGE, BEGIN, END, lines)
 
 

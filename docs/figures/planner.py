@@ -72,7 +72,7 @@ def needs_of(technique, settings):
     light, shape = NEEDS["rsms"], NEEDS["geometry"]
     if technique == "rsm":
         return light | (shape if "voxel" in settings else 0)
-    return {"ssvp": light | shape, "lpv": light | shape, "cone_tracing": light | shape, "ao": NEEDS["camera"],
+    return {"ssvp": light | shape, "lpv": light | shape, "cone_tracing": light | shape, "ao": NEEDS["radiance"] | NEEDS["camera"],
             "screen_space": NEEDS["radiance"] | NEEDS["camera"], "horizon": NEEDS["radiance"] | NEEDS["camera"]}[technique]
 
 

@@ -72,21 +72,29 @@ std::size_t Steering::barred() const {
     return std::size_t(std::count_if(known_.begin(), known_.end(), [&](const auto& one) { return isBarred(one.second); }));
 }
 
-// Of one that has not run: as those that have, in the mean.
-double Steering::meanBias() const {
-    double sum = 0.0, count = 0.0;
-    for (const auto& [candidate, known] : known_)
-        if (known.learnt > 0) {
-            sum += known.bias;
-            count += 1.0;
-        }
-    return count > 0.0 ? sum / count : 0.0;
+std::size_t Steering::groupOf(std::size_t candidate) const {
+    return candidate < options_.groups.size() ? options_.groups[candidate] : candidate;
+}
+
+// Of one that has not run: as those of its group that have, else as all that have: the lower of the two in the middle, for a wrong guess
+// upwards is never found out.
+double Steering::guessBias(std::size_t candidate) const {
+    std::vector<double> own, all;
+    for (const auto& [other, known] : known_) {
+        if (known.learnt == 0) continue;
+        all.push_back(known.bias);
+        if (groupOf(other) == groupOf(candidate)) own.push_back(known.bias);
+    }
+    std::vector<double>& biases = own.empty() ? all : own;
+    if (biases.empty()) return 0.0;
+    std::sort(biases.begin(), biases.end());
+    return biases[(biases.size() - 1) / 2];
 }
 
 Steering::Expected Steering::expect(const Prediction& prediction) const {
     const auto found = known_.find(prediction.candidate);
     const bool tried = found != known_.end() && found->second.learnt > 0;
-    const double middle = prediction.milliseconds * std::exp(load_ + (tried ? found->second.bias : meanBias()));
+    const double middle = prediction.milliseconds * std::exp(load_ + (tried ? found->second.bias : guessBias(prediction.candidate)));
     const double calm = running_ ? double(frame_ - startedAt_) / (kCurious * std::max(options_.patience, 1u)) : 0.0;
     return {prediction, middle, middle * std::exp(spread()) * (tried ? 1.0 : 1.0 + kUntried * (2.0 * std::exp(-calm) - 1.0))};
 }
@@ -180,7 +188,7 @@ std::vector<Steering::Expected> Steering::possible(const std::vector<Prediction>
         for (const Prediction& prediction : predictions) {
             const auto found = known_.find(prediction.candidate);
             const bool isOut = found != known_.end() && isBarred(found->second) && (!all || found->second.hasFailed);
-            if (!isOut && isTime(prediction.milliseconds)) expected.push_back(expect(prediction));
+            if (!isOut && prediction.milliseconds >= 0.0 && std::isfinite(prediction.milliseconds)) expected.push_back(expect(prediction));
         }
         if (!expected.empty()) break;
     }
@@ -210,6 +218,9 @@ SteeringStep Steering::stepOf(const Expected& one, SteeringCause cause) const {
 }
 
 void Steering::resume(std::size_t candidate) {
+    // However short the first one ran: what the next takes longer or shorter is then its own.
+    const auto before = running_ ? known_.find(*running_) : known_.end();
+    isAnchored_ |= before != known_.end() && before->second.learnt > 0 && running_ != candidate;
     running_ = candidate;
     startedAt_ = frame_;
     over_.clear();

@@ -22,6 +22,7 @@ struct SteeringOptions {
     double errorTarget = 0.0;         // 0: none
     std::uint32_t patience = 30;      // frames
     double gain = 0.1;
+    std::vector<std::size_t> groups;  // of each candidate: those of one are likely to be off alike; none: each is its own
 };
 
 // Why a candidate runs.
@@ -82,7 +83,8 @@ private:
 
     Expected expect(const Prediction& prediction) const;
     void learn(Known& known, double ratio);
-    double meanBias() const;
+    double guessBias(std::size_t candidate) const;
+    std::size_t groupOf(std::size_t candidate) const;
     double spread() const;
     bool breaksBudget() const;
     bool isBarred(const Known& known) const { return known.barredUntil > frame_; }

@@ -22,8 +22,15 @@ LWPlanProbes unknownProbes() {
     return {kNone, kNone, kNone, kNone, kNone, kNone, kNone, kNone};
 }
 
-SteeringOptions steeringOptions(const LWAutoDesc& desc) {
-    return {double(desc.budgetMs), double(desc.errorTarget), desc.patience, double(desc.gain)};
+// Candidates of a technique are a group.
+SteeringOptions steeringOptions(const LWAutoDesc& desc, const std::vector<Candidate>& candidates) {
+    SteeringOptions options{double(desc.budgetMs), double(desc.errorTarget), desc.patience, double(desc.gain), {}};
+    for (const Candidate& candidate : candidates) {
+        const auto first = std::find_if(candidates.begin(), candidates.end(),
+                                        [&](const Candidate& other) { return std::string(other.technique) == candidate.technique; });
+        options.groups.push_back(std::size_t(first - candidates.begin()));
+    }
+    return options;
 }
 
 AutoPlanner realPlanner(Device& device) {
@@ -70,7 +77,7 @@ Auto::Auto(Device& device, const LWAutoDesc& desc, AutoPlanner planner)
     : device_(device),
       desc_(desc),
       planner_(std::move(planner)),
-      steering_(steeringOptions(desc)),
+      steering_(steeringOptions(desc, planner_.candidates)),
       fade_(device),
       probing_(device),
       continuity_(device),
@@ -108,6 +115,7 @@ void Auto::prewarm(Executor& executor, const std::shared_ptr<View>& view) {
 // What lies around the candidates, with the first of them that can be had and asks for no geometry.
 void Auto::prewarmAround(Executor& executor) {
     FrameTraits made;
+    made.pixels = 1.0;
     made.hasRsms = made.hasDirectRadiance = made.hasCamera = true;
     for (const Prediction& simple : planner_.predict(made, probes_)) {
         AutoPlanner one = planner_;

@@ -229,6 +229,20 @@ TEST_CASE("with a target: the cheapest that reaches it, else the most accurate w
     CHECK_FALSE(unreachable.next(machine.predict())->reachesError);
 }
 
+TEST_CASE("what is off for one of a group is off for all of it: they are not tried one after the other", "[steering]") {
+    Machine machine;
+    machine.milliseconds = {3, 10, 10.5, 11, 11.5, 12};
+    machine.error = {1.0, 0.1, 0.099, 0.098, 0.097, 0.096};
+    machine.bias = {1.0, 5.0, 5.0, 5.0, 5.0, 5.0};
+    SteeringOptions options = within(16.0);
+    options.groups = {0, 1, 1, 1, 1, 1};
+    Steering steering(options);
+    const Outcome outcome = drive(steering, machine, 2000, 16.0, always, always);
+    CHECK(outcome.ran.back() == 0);
+    CHECK(outcome.switches.size() <= 3);
+    CHECK(outcome.share(0, 2000) >= 0.98);
+}
+
 TEST_CASE("nothing fits: the quickest runs, is said to be over, and stays", "[steering]") {
     Machine machine;
     Steering steering(within(1.0));
