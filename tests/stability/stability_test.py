@@ -174,6 +174,8 @@ class Stability(unittest.TestCase):
             data = json.load(file)
         self.assertEqual([w for w, _ in data["sequences"][0]["sizes"]], [80, 80, 64, 64, 40, 40, 64, 64])
         for result in data["results"]:
+            if result["technique"] == "auto":
+                continue  # what it chooses follows the times of frames before
             errors = [frame["relMSE"] for frame in result["frames"]]
             self.assertEqual(errors[2], errors[6])  # the same picture before and after a smaller one
             self.assertNotEqual(errors[2], errors[4])
