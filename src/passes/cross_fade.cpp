@@ -35,14 +35,7 @@ FadedView::FadedView(Device& device, std::uint32_t maxWidth, std::uint32_t maxHe
 }
 
 Planes FadedView::planes(std::size_t which, std::uint32_t width, std::uint32_t height) const {
-    Planes planes;
-    planes.memory = images_[which].get();
-    planes.planeStride = std::int64_t(historyPlaneStride(width));
-    planes.rowStride = planes.planeStride * kPlanes;
-    planes.width = width;
-    planes.height = height;
-    planes.count = kPlanes;
-    return planes;
+    return historyPlanes(images_[which], width, height, kPlanes);
 }
 
 void FadedView::startFrame(bool forget) {

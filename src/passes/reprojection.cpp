@@ -35,4 +35,15 @@ LwReprojection reprojection(const Camera& camera, std::uint32_t width, std::uint
     return result;
 }
 
+Planes historyPlanes(const Buffer& image, std::uint32_t width, std::uint32_t height, std::uint32_t count) {
+    Planes planes;
+    planes.memory = image.get();
+    planes.planeStride = std::int64_t(historyPlaneStride(width));
+    planes.rowStride = planes.planeStride * count;
+    planes.width = width;
+    planes.height = height;
+    planes.count = count;
+    return planes;
+}
+
 }  // namespace lightwell

@@ -40,14 +40,7 @@ ViewHistory::ViewHistory(Device& device, const TemporalHistoryOptions& options, 
 }
 
 Planes ViewHistory::planes(std::size_t which, std::uint32_t width, std::uint32_t height) const {
-    Planes planes;
-    planes.memory = images_[which].get();
-    planes.planeStride = std::int64_t(historyPlaneStride(width));
-    planes.rowStride = planes.planeStride * planes_;
-    planes.width = width;
-    planes.height = height;
-    planes.count = planes_;
-    return planes;
+    return historyPlanes(images_[which], width, height, planes_);
 }
 
 bool ViewHistory::Drawn::isOf(const LWCamera& from, std::uint32_t w, std::uint32_t h) const {

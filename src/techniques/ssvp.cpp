@@ -1,4 +1,5 @@
-// Frame part, report and registration; the table of parameters is ssvp_parameters.cpp's.
+// Frame part, report and registration; the table of parameters is ssvp_parameters.cpp's. Some lines over 300: `update` and `render` and
+// what they record are one algorithm, which is to be read in one place.
 #include "techniques/ssvp.h"
 
 #include <algorithm>

@@ -54,6 +54,20 @@ std::vector<Prediction> made(const std::vector<std::pair<double, double>>& figur
 
 std::string keyPath(Device& device) { return device.programs().store().path(rooflineKey(device)); }
 
+// Devices of one description, with a cache of their own.
+struct CachedDevices {
+    ScopedDirectory cache;
+    std::string directory = cache.string();
+    Log log;
+    LWDeviceDesc desc = plainDesc();
+
+    CachedDevices() {
+        desc.width = 16;
+        desc.cacheDirectory = directory.c_str();
+        log.attach(desc);
+    }
+};
+
 }  // namespace
 
 TEST_CASE("the planner's table holds techniques that can be made, each once, and figures that can be", "[planner]") {
@@ -254,13 +268,9 @@ TEST_CASE("traits are those of the frame", "[planner]") {
 }
 
 TEST_CASE("a device's rates are measured once, and kept on disk", "[planner][large]") {
-    const ScopedDirectory cache;
-    const std::string directory = cache.string();
-    Log log;
-    LWDeviceDesc desc = plainDesc();
-    desc.width = 16;
-    desc.cacheDirectory = directory.c_str();
-    log.attach(desc);
+    CachedDevices devices;
+    Log& log = devices.log;
+    LWDeviceDesc& desc = devices.desc;
     Device first(desc);
     const LWRoofline& measured = knownRoofline(first);
     CHECK(&knownRoofline(first) == &measured);
@@ -287,13 +297,9 @@ TEST_CASE("a device's rates are measured once, and kept on disk", "[planner][lar
 }
 
 TEST_CASE("a damaged file of rates is measured anew, and logged", "[planner][large]") {
-    const ScopedDirectory cache;
-    const std::string directory = cache.string();
-    Log log;
-    LWDeviceDesc desc = plainDesc();
-    desc.width = 16;
-    desc.cacheDirectory = directory.c_str();
-    log.attach(desc);
+    CachedDevices devices;
+    Log& log = devices.log;
+    LWDeviceDesc& desc = devices.desc;
     Device device(desc);
     // Whole, by its checksum, but of another size; or holding no rates.
     const std::string path = keyPath(device);
