@@ -24,8 +24,8 @@ LW_FN lw_pair load_pair(__global const float* image, int row, int x, int rowEnd)
 }
 
 LW_FN void store_pair(__global float* plane, int at, int hasSecond, real even, real odd) {
-    store(zip_lo_(even, odd), plane, at);
-    if (hasSecond) store(zip_hi_(even, odd), plane, at + LW_WIDTH);
+    store_past(zip_lo_(even, odd), plane, at);
+    if (hasSecond) store_past(zip_hi_(even, odd), plane, at + LW_WIDTH);
 }
 
 LW_FN lw_surface surface_of(const lw_pair* p, const lw_pair* n, int odd) {
@@ -90,11 +90,9 @@ typedef struct {
 
 typedef struct { real px, py, pz, nx, ny, nz, light[LW_CHANNELS]; mask valid; } lw_sample;
 
-// The samples i columns beside LW_WIDTH blocks, of row hy. `inside`, a constant: all of them exist, so that every load is contiguous.
-LW_FN void load_sample(lw_sample* q, const lw_coarse* coarse, int hx, int i, int hy, const int inside) {
-#define LW_TAP(image, layout, a)                                                                                    \
-    (inside ? load_whole(image + layout.x + (a) * layout.z + hy * layout.y + hx + i)                                \
-            : load_shifted(image, layout.x + (a) * layout.z + hy * layout.y, hx, i, coarse->width))
+// The samples i columns beside LW_WIDTH blocks, of row hy.
+LW_FN void load_sample(lw_sample* q, const lw_coarse* coarse, int hx, int i, int hy) {
+#define LW_TAP(image, layout, a) load_shifted(image, layout.x + (a) * layout.z + hy * layout.y, hx, i, coarse->width)
     q->px = LW_TAP(coarse->position, coarse->positionLayout, 0);
     q->py = LW_TAP(coarse->position, coarse->positionLayout, 1);
     q->pz = LW_TAP(coarse->position, coarse->positionLayout, 2);
@@ -104,10 +102,8 @@ LW_FN void load_sample(lw_sample* q, const lw_coarse* coarse, int hx, int i, int
     LW_UNROLL for (int a = 0; a < LW_CHANNELS; ++a) q->light[a] = LW_TAP(coarse->light, coarse->lightLayout, a);
 #undef LW_TAP
     q->valid = fma_(q->nx, q->nx, fma_(q->ny, q->ny, q->nz * q->nz)) > 0.5f;
-    if (!inside) {
-        const lanei column = lanei_iota() + (lanei)(hx + i);
-        q->valid = and_(q->valid, and_(column >= (lanei)0, column < (lanei)coarse->width));
-    }
+    const lanei column = lanei_iota() + (lanei)(hx + i);
+    q->valid = and_(q->valid, and_(column >= (lanei)0, column < (lanei)coarse->width));
 }
 
 typedef struct {
@@ -147,10 +143,10 @@ LW_FN real sample_weight(const lw_surface s, const lw_sample* q, int byLikeness)
 // sample stands two pixels from the next, so that an even pixel sees three of them at distances 2, 0, 2 and an odd one two at
 // distances 1, 1; rows alike, of which the second sees none above.
 LW_FN void add_sample(lw_sum* sum, const lw_surface* s, const lw_coarse* coarse, int hx, int i, int hy, int j, const int odd,
-                      const int inside, int byLikeness) {
+                      int byLikeness) {
     if (hy + j < 0 || hy + j >= coarse->height) return;
     lw_sample q;
-    load_sample(&q, coarse, hx, i, hy + j, inside);
+    load_sample(&q, coarse, hx, i, hy + j);
     const float columnTent = odd ? 2.0f / 3.0f : i == 0 ? 1.0f : 1.0f / 3.0f;
     LW_UNROLL for (int k = 0; k < 2; ++k) {
         if (k == 1 && j < 0) continue;
@@ -175,18 +171,42 @@ LW_FN void clear_sums(lw_sum* sum) {
     }
 }
 
-// Sums of all samples around the even (or odd) columns, all of which exist: every load is a plain one.
+// Sums of all samples around the even (or odd) columns, all of which exist: every load is a plain one. What down-sampling left empty
+// has no normal, and fails the edge test.
 LW_FN void sum_inside(lw_sum* sum, const lw_surface* s, const lw_coarse* coarse, int hx, int hy, const int odd) {
     clear_sums(sum);
-    LW_UNROLL for (int j = -1; j <= 1; ++j)
-        LW_UNROLL for (int i = odd ? 0 : -1; i <= 1; ++i) add_sample(sum, s, coarse, hx, i, hy, j, odd, 1, 0);
+    lw_edges edges[2];
+    LW_UNROLL for (int k = 0; k < 2; ++k) edges[k] = edges_of(s[k], (real)1.0f);
+    const int pz = coarse->positionLayout.z, nz = coarse->normalLayout.z, lz = coarse->lightLayout.z;
+    LW_UNROLL for (int j = -1; j <= 1; ++j) {
+        if (hy + j < 0 || hy + j >= coarse->height) continue;
+        __global const float* p = coarse->position + (coarse->positionLayout.x + (hy + j) * coarse->positionLayout.y + hx);
+        __global const float* n = coarse->normal + (coarse->normalLayout.x + (hy + j) * coarse->normalLayout.y + hx);
+        __global const float* l = coarse->light + (coarse->lightLayout.x + (hy + j) * coarse->lightLayout.y + hx);
+        LW_UNROLL for (int i = odd ? 0 : -1; i <= 1; ++i) {
+            const real px = load_whole(p + i), py = load_whole(p + pz + i), pzz = load_whole(p + 2 * pz + i);
+            const real nx = load_whole(n + i), ny = load_whole(n + nz + i), nzz = load_whole(n + 2 * nz + i);
+            real light[LW_CHANNELS];
+            LW_UNROLL for (int a = 0; a < LW_CHANNELS; ++a) light[a] = load_whole(l + a * lz + i);
+            const float columnTent = odd ? 2.0f / 3.0f : i == 0 ? 1.0f : 1.0f / 3.0f;
+            LW_UNROLL for (int k = 0; k < 2; ++k) {
+                if (k == 1 && j < 0) continue;
+                const float rowTent = 1.0f - (float)abs(2 * j - k) * (1.0f / 3.0f);
+                const real w = rowTent * columnTent * edge_weight(edges[k], px, py, pzz, nx, ny, nzz);
+                accumulate(&sum[k], w, light);
+#if LW_MARKS
+                if (k == 0 && !odd) widen(&sum[0], w, light);
+#endif
+            }
+        }
+    }
 }
 
 // The same beside borders, and by likeness: rare, so that code matters more.
 LW_FN void sum_any(lw_sum* sum, const lw_surface* s, const lw_coarse* coarse, int hx, int hy, const int odd, int byLikeness) {
     clear_sums(sum);
     for (int j = -1; j <= 1; ++j)
-        for (int i = odd ? 0 : -1; i <= 1; ++i) add_sample(sum, s, coarse, hx, i, hy, j, odd, 0, byLikeness);
+        for (int i = odd ? 0 : -1; i <= 1; ++i) add_sample(sum, s, coarse, hx, i, hy, j, odd, byLikeness);
 }
 
 // The light of the even (or odd) columns of two rows of pixels, and how many of those that exist have no sample on their own
