@@ -215,8 +215,9 @@ LW_FN void sum_any(lw_sum* sum, const lw_surface* s, const lw_coarse* coarse, in
 // marked, with LW_MARKS: 1 for pixels without such a sample, and for all of a block whose first one has samples that differ by more than
 // `share`: it sees all that the others do, if they are of its surface. `steep`: of that one; the even columns come first.
 LW_FN void light_columns(real out[2][LW_CHANNELS][2], int* lostPixels, int* badPixels, lw_pair p[2][3], lw_pair n[2][3],
+                         real surface[2][2],
 #if LW_MARKS
-                         real marked[2][2], real surface[2][2], mask* steep, float share,
+                         real marked[2][2], mask* steep, float share,
 #endif
                          const lw_coarse* coarse, int hx, int hy, int width, int rows, const int odd) {
     lw_surface s[2];
@@ -232,12 +233,9 @@ LW_FN void light_columns(real out[2][LW_CHANNELS][2], int* lostPixels, int* badP
     LW_UNROLL for (int k = 0; k < 2; ++k) lost[k] = and_(s[k].valid, not_(sum[k].weight > 1e-4f));
 #if LW_MARKS
     if (!odd) *steep = is_steep(sum[0], share);
-    LW_UNROLL for (int k = 0; k < 2; ++k)
-        {
-        marked[k][odd] = ones_(and_(s[k].valid, or_(lost[k], *steep)));
-        surface[k][odd] = ones_(s[k].valid);
-    }
+    LW_UNROLL for (int k = 0; k < 2; ++k) marked[k][odd] = ones_(and_(s[k].valid, or_(lost[k], *steep)));
 #endif
+    LW_UNROLL for (int k = 0; k < 2; ++k) surface[k][odd] = ones_(s[k].valid);
     if (any_(or_(lost[0], lost[1]))) {
         lw_sum rest[2];
         sum_any(rest, s, coarse, hx, hy, odd, 1);
@@ -258,8 +256,8 @@ LW_FN void light_columns(real out[2][LW_CHANNELS][2], int* lostPixels, int* badP
 // One work-item = 2 * LW_WIDTH pixels of two rows: the even and the odd columns of LW_WIDTH blocks.
 // half*: 3 planes each of the half-resolution image, the light LW_CHANNELS; with 5, `fourth` and `fifth` take the
 // scalars, and any of the three may be null. counts[0]: pixels that are
-// neither surface nor background; counts[1]: pixels lit without edge test. With LW_MARKS, a plane each: marks, see light_columns; validity,
-// unless not hasValidity: 1 on surfaces, 0 elsewhere.
+// neither surface nor background; counts[1]: pixels lit without edge test. validity, of irradiance only and unless not hasValidity: 1 on
+// surfaces, 0 elsewhere. marks, with LW_MARKS: see light_columns.
 __kernel void joint_bilateral_upsample(__global const float* position, int4 positionLayout,
                                        __global const float* normal, int4 normalLayout, int width, int height,
                                        __global const float* halfPosition, int4 halfPositionLayout,
@@ -269,9 +267,11 @@ __kernel void joint_bilateral_upsample(__global const float* position, int4 posi
 #if LW_CHANNELS == 5
                                        __global float* fourth, int4 fourthLayout, __global float* fifth, int4 fifthLayout,
 #endif
+#if LW_CHANNELS == 3
+                                       __global float* validity, int4 validityLayout, int hasValidity,
+#endif
 #if LW_MARKS
-                                       float share, __global float* marks, int4 marksLayout, __global float* validity,
-                                       int4 validityLayout, int hasValidity,
+                                       float share, __global float* marks, int4 marksLayout,
 #endif
                                        __global int* counts) {
     const int hx = (int)get_global_id(0) * LW_WIDTH, hy = (int)get_global_id(1);
@@ -294,22 +294,23 @@ __kernel void joint_bilateral_upsample(__global const float* position, int4 posi
             }
         }
 
-    real out[2][LW_CHANNELS][2];
+    real out[2][LW_CHANNELS][2], surface[2][2];
     int lost = 0, bad = 0;
 #if LW_MARKS
-    real marked[2][2], surface[2][2];
+    real marked[2][2];
     mask steep;
-    light_columns(out, &lost, &bad, p, n, marked, surface, &steep, share, &coarse, hx, hy, width, rows, 0);
-    light_columns(out, &lost, &bad, p, n, marked, surface, &steep, share, &coarse, hx, hy, width, rows, 1);
+    light_columns(out, &lost, &bad, p, n, surface, marked, &steep, share, &coarse, hx, hy, width, rows, 0);
+    light_columns(out, &lost, &bad, p, n, surface, marked, &steep, share, &coarse, hx, hy, width, rows, 1);
 #else
-    light_columns(out, &lost, &bad, p, n, &coarse, hx, hy, width, rows, 0);
-    light_columns(out, &lost, &bad, p, n, &coarse, hx, hy, width, rows, 1);
+    light_columns(out, &lost, &bad, p, n, surface, &coarse, hx, hy, width, rows, 0);
+    light_columns(out, &lost, &bad, p, n, surface, &coarse, hx, hy, width, rows, 1);
 #endif
     if (lost) atomic_add(counts + 1, lost);
     if (bad) atomic_add(counts, bad);
 
     for (int k = 0; k < rows; ++k) {
-#define LW_STORE(plane, at, a) store_pair(plane, at, x + LW_WIDTH < rowEnd, out[k][a][0], out[k][a][1])
+        const int hasSecond = x + LW_WIDTH < rowEnd;
+#define LW_STORE(plane, at, a) store_pair(plane, at, hasSecond, out[k][a][0], out[k][a][1])
 #if LW_CHANNELS == 5
         if (fourth) LW_STORE(fourth, fourthLayout.x + (y + k) * fourthLayout.y + x, 3);
         if (fifth) LW_STORE(fifth, fifthLayout.x + (y + k) * fifthLayout.y + x, 4);
@@ -318,10 +319,11 @@ __kernel void joint_bilateral_upsample(__global const float* position, int4 posi
             LW_UNROLL for (int a = 0; a < (LW_CHANNELS < 3 ? LW_CHANNELS : 3); ++a)
                 LW_STORE(irradiance, irradianceLayout.x + a * irradianceLayout.z + (y + k) * irradianceLayout.y + x, a);
 #undef LW_STORE
-#if LW_MARKS
-        const int hasSecond = x + LW_WIDTH < rowEnd;
-        store_pair(marks, marksLayout.x + (y + k) * marksLayout.y + x, hasSecond, marked[k][0], marked[k][1]);
+#if LW_CHANNELS == 3
         if (hasValidity) store_pair(validity, validityLayout.x + (y + k) * validityLayout.y + x, hasSecond, surface[k][0], surface[k][1]);
+#endif
+#if LW_MARKS
+        store_pair(marks, marksLayout.x + (y + k) * marksLayout.y + x, hasSecond, marked[k][0], marked[k][1]);
 #endif
     }
 }

@@ -103,6 +103,7 @@ void Auto::prewarm(Executor& executor, const std::shared_ptr<View>& view) {
         try {
             makeTechnique(device_, candidate.technique, candidate.settings)->prewarm(executor, view);
             quicker.push_back(one);
+            proven_.insert(one.candidate);
         } catch (const Error& error) {
             if (!isItsOwn(error.status())) throw;
             device_.log(LW_LOG_WARNING, "auto: " + nameOf(one.candidate) + " cannot be chosen on this device: " + error.what());

@@ -17,6 +17,10 @@ namespace {
 constexpr std::uint64_t kProbeEvery = 32;
 // Candidates that are tried in one frame at most: each that fails may have taken memory and time.
 constexpr int kMostTries = 8;
+// Frames of a fade that the budget has no room for. More: as many frames over it. Fewer: the change is seen.
+constexpr std::uint32_t kTightFade = 3;
+// Share of a frame in the mean of what fading takes. Larger: a hiccup shortens fades. Smaller: a load is known later.
+constexpr double kFadeShare = 0.25;
 constexpr std::size_t kNobody = ~std::size_t(0);
 
 // What decides which techniques are possible, as a word.
@@ -34,6 +38,10 @@ void Auto::learn() {
     while (const std::optional<AutoTimes::Frame> frame = times_.take()) {
         if (frame->whole > 0.0) ++measured_;
         if (desc_.budgetMs > 0.0f && frame->whole > double(desc_.budgetMs)) ++over_;
+        if (frame->isKept && frame->whole > frame->part) {
+            const double cost = frame->whole - frame->part;
+            fadeCost_ += (fadeCost_ > 0.0 ? kFadeShare : 1.0) * (cost - fadeCost_);
+        }
         steering_.ran(frame->candidate, frame->predicted, frame->part, frame->whole);
     }
     if (const LWPlanProbes* probes = probing_.take()) {
@@ -93,6 +101,12 @@ void Auto::update(Executor& executor, const LWFrame& frame) {
     }
 }
 
+// A fade costs as long as it lasts.
+std::uint32_t Auto::fadeFor(const SteeringStep& step) const {
+    const bool isTight = desc_.budgetMs > 0.0f && step.expected + fadeCost_ > double(desc_.budgetMs);
+    return isTight ? std::min(desc_.fade, kTightFade) : desc_.fade;
+}
+
 void Auto::startFrame(const LWFrame& frame, const SteeringStep& step, bool forgets) {
     const SteeringStep before = std::exchange(step_, step);
     const bool changes = hasBefore_ && before_ != step.prediction.candidate;
@@ -104,7 +118,7 @@ void Auto::startFrame(const LWFrame& frame, const SteeringStep& step, bool forge
     if (changes || !hasBefore_) lastCause_ = step.cause;
     before_ = step.prediction.candidate;
     hasBefore_ = true;
-    fadeLeft_ = forgets ? 0 : changes ? desc_.fade : fadeLeft_ > 0 ? fadeLeft_ - 1 : 0;
+    fadeLeft_ = forgets ? 0 : changes ? fadeFor(step) : fadeLeft_ > 0 ? fadeLeft_ - 1 : 0;
     // A change is told a frame ahead, so that only then the picture has to be kept; and the first choices are soon made again.
     keeps_ = desc_.fade > 1 && (fadeLeft_ > 1 || step.isLeaving || steering_.mayLeave() || (planner_.usesProbes && !hasProbes_ && (probesDue_ || probing_.isReading())));
     states_.purge();
@@ -138,8 +152,9 @@ void Auto::updateWith(Executor& executor, const LWFrame& frame, const SteeringSt
         child->update(executor, frame, inputs);
         times_.end(executor, true);
         children_.start(std::move(child));
-        // Should its first lwRender fail, the one before takes its place in the same frame.
-        if (!children_.running()->hasRendered()) updateOther(executor, frame, inputs);
+        // Should its first lwRender fail, the one before takes its place in the same frame; not where its programs are known to be there, for
+        // an update of two is a frame over the budget.
+        if (!children_.running()->hasRendered() && !proven_.count(step.prediction.candidate)) updateOther(executor, frame, inputs);
     }
     wantsProbes_ = planner_.usesProbes && !probing_.isReading() && probesDue_;
     if (wantsProbes_) probe([&] { probing_.beginFrame(executor, frame); });
