@@ -32,6 +32,25 @@ std::uint32_t inputsOf(const FrameTraits& traits) {
     return word;
 }
 
+// Where lights stand, and which geometry there is: what maps of a frame are drawn of. Light that only grows or fades moves nothing.
+std::vector<float> placesOf(const LWFrame& frame) {
+    std::vector<float> places;
+    const auto add = [&](const auto& values) { places.insert(places.end(), std::begin(values), std::end(values)); };
+    const std::uint64_t version = frame.geometry ? frame.geometry->version : 0;
+    places.push_back(float(version & 0xffff));
+    for (std::uint32_t l = 0; l < frame.lightCount; ++l) {
+        const LWLight& light = frame.lights[l];
+        add(light.position);
+        add(light.direction);
+        for (std::uint32_t r = 0; r < light.rsmCount; ++r) {
+            add(light.rsms[r].camera.view);
+            add(light.rsms[r].camera.projection);
+        }
+    }
+    for (std::uint32_t v = 0; v < frame.vplCount; ++v) add(frame.vpls[v].position);
+    return places;
+}
+
 }  // namespace
 
 void Auto::learn() {
@@ -57,16 +76,24 @@ FrameTraits Auto::traitsNow(const LWFrame& frame) {
     // Lamps that go out for a while ask for no other technique.
     hasHadRsms_ = traits.hasRsms || (hasHadRsms_ && !frame.reset);
     traits.hasRsms = hasHadRsms_;
+    std::vector<float> places = placesOf(frame);
+    traits.hasMoved = places != std::exchange(placed_, places);
     return traits;
 }
 
 std::vector<Prediction> Auto::predictions(const FrameTraits& traits) const {
     std::vector<Prediction> possible = planner_.predict(traits, probes_);
-    if (!possible.empty() || hasSeen_) return possible;
-    // Nothing is possible without what the first G-buffer has yet to show: it may have all.
-    FrameTraits all = traits;
-    all.hasDirectRadiance = all.hasAlbedo = all.hasCamera = all.hasMotion = true;
-    return planner_.predict(all, probes_);
+    if (possible.empty() && !hasSeen_) {
+        // Nothing is possible without what the first G-buffer has yet to show: it may have all.
+        FrameTraits all = traits;
+        all.hasDirectRadiance = all.hasAlbedo = all.hasCamera = all.hasMotion = true;
+        possible = planner_.predict(all, probes_);
+    }
+    // What prewarming left out would compile in the midst of frames: it is taken where there is nothing else.
+    std::vector<Prediction> prepared;
+    std::copy_if(possible.begin(), possible.end(), std::back_inserter(prepared),
+                 [&](const Prediction& one) { return proven_.count(one.candidate) || !skipped_.count(one.candidate); });
+    return prepared.empty() ? possible : prepared;
 }
 
 void Auto::noteView(const View& view, const LWGBuffer& gbuffer) {

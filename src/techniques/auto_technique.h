@@ -80,7 +80,8 @@ private:
     AutoPlanner planner_;
     Steering steering_;
     AutoChildren children_;
-    std::set<std::size_t> proven_;  // candidates that have been prewarmed, or have lit a view
+    std::set<std::size_t> proven_;   // candidates that have been prewarmed, or have lit a view
+    std::set<std::size_t> skipped_;  // that prewarming left out
     AutoTimes times_;
     CrossFade fade_;
     FrameProbing probing_;
@@ -90,6 +91,7 @@ private:
     // What is known of the host's frames.
     LWGBuffer seen_{};  // of the last lwRender: which images it has
     bool hasSeen_ = false, hasHadRsms_ = false, hasProbes_ = false;
+    std::vector<float> placed_;  // where the last frame's lights stood, and its geometry's version
     double pixels_ = kAutoPixels;
     LWPlanProbes probes_;
 
