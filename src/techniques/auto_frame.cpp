@@ -130,7 +130,7 @@ void Auto::update(Executor& executor, const LWFrame& frame) {
 
 // A fade costs as long as it lasts.
 std::uint32_t Auto::fadeFor(const SteeringStep& step) const {
-    const bool isTight = desc_.budgetMs > 0.0f && step.expected + fadeCost_ > double(desc_.budgetMs);
+    const bool isTight = desc_.budgetMs > 0.0f && step.highest + fadeCost_ > double(desc_.budgetMs);
     return isTight ? std::min(desc_.fade, kTightFade) : desc_.fade;
 }
 
