@@ -19,8 +19,9 @@ constexpr std::uint64_t kProbeEvery = 32;
 constexpr int kMostTries = 8;
 // Frames of a fade that the budget has no room for. More: as many frames over it. Fewer: the change is seen.
 constexpr std::uint32_t kTightFade = 3;
-// A frame's noise: so much longer than expected it may take without the fade. Larger: fades are shortened that would have fit.
-constexpr double kFadeMargin = 1.15;
+// So much longer than expected a frame is taken to last at most, when room is sought for its fade: what the first choice is doubted by is no
+// noise of frames. Larger: fades are shortened that would have fit.
+constexpr double kFadeMargin = 1.3;
 // Share of a frame in the mean of what fading takes. Larger: a hiccup shortens fades. Smaller: a load is known later.
 constexpr double kFadeShare = 0.25;
 constexpr std::size_t kNobody = ~std::size_t(0);
@@ -132,7 +133,8 @@ void Auto::update(Executor& executor, const LWFrame& frame) {
 
 // A fade costs as long as it lasts.
 std::uint32_t Auto::fadeFor(const SteeringStep& step) const {
-    const bool isTight = desc_.budgetMs > 0.0f && kFadeMargin * step.expected + fadeCost_ > double(desc_.budgetMs);
+    const double most = std::min(step.highest, kFadeMargin * step.expected);
+    const bool isTight = desc_.budgetMs > 0.0f && most + fadeCost_ > double(desc_.budgetMs);
     return isTight ? std::min(desc_.fade, kTightFade) : desc_.fade;
 }
 
