@@ -193,6 +193,9 @@ void LpvSweep::recordBounce(Executor& executor, Field field, const LpvRest* rest
 
 bool LpvSweep::begin(Executor& executor, bool restart) {
     reserve(executor);
+    if (kept_.moves(executor))
+        for (const Buffer* place : {&place_, &unitPlace_, &shownPlace_}) kept_.move(executor, *place, {});
+    kept_.arrive(executor);
     const bool all = restart || !isShown_ || options_.frames == 1;
     if (all) nextGroup_ = bounce_ = 0;
     step_ = all ? LW_SWEEP_GROUPS : LW_SWEEP_GROUPS / options_.frames;
