@@ -58,6 +58,10 @@ add_test(NAME getting_started_test COMMAND minimal)
 add_executable(points ${PROJECT_SOURCE_DIR}/samples/points.c)
 target_link_libraries(points PRIVATE lightwell lightwell_warnings m)
 add_test(NAME points_sample_test COMMAND points)
+# A host's own queue and images in OpenCL; docs/integration.md.
+add_executable(adopt_queue ${PROJECT_SOURCE_DIR}/samples/adopt_queue.cpp)
+target_link_libraries(adopt_queue PRIVATE lightwell lightwell_warnings OpenCL::OpenCL)
+add_test(NAME adopt_queue_test COMMAND adopt_queue)
 
 # --- a frame that shares no convention and no code with us
 lightwell_test(foreign_test SOURCES foreign/foreign_test.cpp LIBS lightwell LABELS images)
