@@ -3,6 +3,7 @@
 //
 // A sun shines on a white wall; the floor at its foot receives what the wall gives back (samples/minimal.c). The result has the same
 // bits as that of host memory, in a queue that keeps the order and in one that does not.
+#define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
 
 #include <cmath>

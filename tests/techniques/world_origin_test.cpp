@@ -1,0 +1,194 @@
+// Large worlds: light does not depend on where the world's origin is, nor on when the host moves the origin of its positions.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "support/cone_box.h"
+
+using namespace lightwell::test;
+using Catch::Matchers::Contains;
+
+namespace {
+
+constexpr std::uint32_t kWidth = 48, kHeight = 32, kTexels = 24;
+// Of the box: its walls lie on no border of cells, where a rounding decides.
+constexpr double kScale = 0.93;
+constexpr int kFrames = 7, kMoves = 4;  // the origin moves before this frame
+// By how much light may differ when the origin moves: positions are rounded elsewhere, and a few texels and samples then fall into other
+// cells. Root of the mean square, relative to the mean.
+constexpr double kMost = 1e-3;
+
+using Place = glm::dvec3;
+
+void shift(PlanarPixels& pixels, const Place& by) {
+    for (std::uint32_t y = 0; y < pixels.height(); ++y)
+        for (std::uint32_t x = 0; x < pixels.width(); ++x) {
+            const reference::Vec p = pixels.get(x, y);
+            pixels.set(x, y, {p.x + by.x, p.y + by.y, p.z + by.z});
+        }
+}
+void shift(LWCamera& camera, const Place& by) {
+    for (int row = 0; row < 3; ++row) {
+        float* r = camera.view + 4 * row;
+        r[3] = float(double(r[3]) - (double(r[0]) * by.x + double(r[1]) * by.y + double(r[2]) * by.z));
+    }
+}
+void shift(float (&p)[3], const Place& by) {
+    for (int a = 0; a < 3; ++a) p[a] = float(double(p[a]) + by[a]);
+}
+
+// Frame f of a box whose lights, a lamp and the camera move, with everything relative to an origin from which the box lies at `by`.
+struct MovingFrame {
+    ConeBox box;
+    DrawnView drawn;
+    std::vector<LWStaticVpl> places;
+    float hit[3], focus[3];
+    LWFrame frame{};
+
+    MovingFrame(int f, const Place& by, const Place& origin)
+        : box(1.0 + 0.3 * (f % 3), false, kScale, 0.5, kTexels),
+          drawn(box.walls, lookAt({0.2 + 0.02 * f, 0.1, 0.8 - 0.03 * f}, {0.01 * f, 0, -1}, 1.0), kWidth, kHeight, kScale) {
+        for (auto& wall : box.lit) {
+            shift(wall->position, by);
+            shift(wall->rsm.camera, by);
+        }
+        addLamp(f, by);
+        addPlaces(by);
+        shift(drawn.position, by);
+        shift(drawn.gbuffer.camera, by);
+        for (std::size_t i = 0; i < box.triangles.vertices.size(); ++i)
+            box.triangles.vertices[i] = float(double(box.triangles.vertices[i]) + by[int(i % 3)]);
+        const float middle[3] = {0.11f + 0.05f * float(f), 0.03f, -0.2f};
+        std::copy_n(middle, 3, focus);
+        shift(focus, by);
+        frame = box.frame;
+        frame.lights = box.lights.data();
+        frame.lightCount = std::uint32_t(box.lights.size());
+        frame.staticVpls = places.data();
+        frame.staticVplCount = std::uint32_t(places.size());
+        frame.focus = focus;
+        for (int a = 0; a < 3; ++a) frame.worldOrigin[a] = origin[a];
+    }
+    MovingFrame(const MovingFrame&) = delete;
+
+private:
+    void addLamp(int f, const Place& by) {
+        LWLight lamp{};
+        lamp.structSize = sizeof lamp;
+        lamp.kind = LW_LIGHT_SPOT;
+        const float at[3] = {0.1f, 0.2f, 0.15f}, way[3] = {0.1f + 0.04f * float(f), -0.05f, -1.0f};
+        for (int a = 0; a < 3; ++a) {
+            lamp.position[a] = at[a];
+            lamp.direction[a] = way[a];
+            lamp.radiantIntensity[a] = 2.0f;
+            hit[a] = at[a] + way[a] * float(kScale + 0.15);
+        }
+        lamp.innerConeAngle = 0.2f;
+        lamp.outerConeAngle = 0.4f;
+        shift(lamp.position, by);
+        shift(hit, by);
+        lamp.hit = hit;
+        box.lights.push_back(lamp);
+    }
+    void addPlaces(const Place& by) {
+        for (std::size_t q = 0; q < 6; ++q)
+            for (int k = 0; k < 9; ++k) {
+                const auto& wall = box.walls.quads[q];
+                const Place p = kScale * (wall.corner + wall.u * ((k % 3 + 0.5) / 3) + wall.v * ((k / 3 + 0.5) / 3));
+                LWStaticVpl place{};
+                for (int a = 0; a < 3; ++a) {
+                    place.position[a] = float(p[a] + by[a]);
+                    place.normal[a] = float(-p[a] > 0.9 ? 1 : -p[a] < -0.9 ? -1 : 0);
+                    place.reflectance[a] = 0.5f;
+                }
+                places.push_back(place);
+            }
+    }
+};
+
+// The last of some frames of a box at `place` of the world, of positions relative to origin(f).
+std::vector<float> lightAt(LWDevice device, const char* name, const char* settings, const Place& place, const std::function<Place(int)>& origin) {
+    LWTechnique raw = nullptr;
+    REQUIRE(lwCreateTechniqueFromText(device, name, settings, &raw) == LW_SUCCESS);
+    TestView view(device, kWidth, kHeight);
+    PlanarPixels irradiance(kWidth, kHeight, 3);
+    for (int f = 0; f < kFrames; ++f) {
+        const Place o = origin(f);
+        const MovingFrame moving(f, place - o, o);
+        LWOutput output{};
+        output.structSize = sizeof output;
+        output.irradiance = irradiance.image();
+        const bool isRight = lwUpdate(raw, &moving.frame) == LW_SUCCESS && lwRender(raw, view, &moving.drawn.gbuffer, &output) == LW_SUCCESS &&
+                             lwFinish(device) == LW_SUCCESS;
+        INFO(lastError(device));
+        REQUIRE(isRight);
+    }
+    lwReleaseTechnique(raw);
+    return irradiance.packed();
+}
+
+double rootMeanSquare(const std::vector<float>& a, const std::vector<float>& b) {
+    double sum = 0.0, mean = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        sum += std::pow(double(a[i]) - double(b[i]), 2.0) / double(a.size());
+        mean += double(b[i]) / double(b.size());
+    }
+    REQUIRE(mean > 0.0);
+    return std::sqrt(sum) / mean;
+}
+
+void compare(LWDevice device, const char* name, const char* settings) {
+    const Place far(1e5, -3e4, 2.5e5), odd(12.37, -4.71, 8.93);
+    const std::vector<float> here = lightAt(device, name, settings, Place(0), [](int) { return Place(0); });
+    // The same floats, elsewhere.
+    CHECK(lightAt(device, name, settings, far, [&](int) { return far; }) == here);
+    // By no multiple of any cell, and back: of what is kept nothing may be left where it was.
+    const std::vector<float> moved = lightAt(device, name, settings, far, [&](int f) { return f < kMoves ? far : far + odd; });
+    const double error = rootMeanSquare(moved, here);
+    UNSCOPED_INFO(name << " " << settings << ": " << error);
+    CHECK(error <= kMost);
+    CHECK(rootMeanSquare(lightAt(device, name, settings, far, [&](int f) { return far + odd * double(f); }), here) <= kMost);
+}
+
+}  // namespace
+
+TEST_CASE("light is the same at 1e5 m, and goes on where the origin of positions moves", "[world_origin]") {
+    TestDevice device(16);
+    compare(device, "rsm", "vpls=64 history=8");
+    compare(device, "lpv", "size=16 transport=sweep directions=24 bounces=2 frames=4");
+    compare(device, "lpv", "size=16 extent=3 cascades=2");
+    compare(device, "static_vpl", "variant=phantom bounces=2 smoothing=0.9");
+}
+
+TEST_CASE("so it is with all that keep something", "[world_origin][long]") {
+    TestDevice device(16);
+    compare(device, "rsm", "vpls=64 visibility=voxel voxels=32");
+    compare(device, "ssvp", "vpls=64 clusters=8 bounces=2 shadowed_bounces=2 history=8");
+    compare(device, "ssvp", "vpls=64 clusters=16 auto_error=0.2");
+    compare(device, "screen_space", "history=8");
+    compare(device, "horizon", "history=8");
+    compare(device, "lpv", "size=16 transport=coarse_to_fine");
+    compare(device, "lpv", "size=16 extent=3 cascades=3 transport=sweep directions=24 bounces=2 frames=4");
+    compare(device, "cone_tracing", "size=32 bounces=0");
+    compare(device, "cone_tracing", "size=32 bounces=0 extent=3 cascades=2");
+    compare(device, "static_vpl", "visibility=hard clusters=8");
+    compare(device, "fallback", "first=horizon first.history=8 second=rsm second.history=8");
+}
+
+TEST_CASE("origins that are no place are refused by name", "[world_origin]") {
+    TestDevice device(16);
+    TestTechnique technique(device, "rsm", nullptr);
+    LWFrame frame{};
+    frame.structSize = sizeof frame;
+    for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), -1.1e12}) {
+        frame.worldOrigin[2] = bad;
+        CHECK(lwUpdate(technique, &frame) == LW_ERROR_INVALID_ARGUMENT);
+        CHECK_THAT(lastError(device), Contains("frame.worldOrigin: expected finite numbers of at most 1e+12, got"));
+    }
+    // A host that was built before there was one.
+    frame.structSize = offsetof(LWFrame, worldOrigin);
+    CHECK(lwUpdate(technique, &frame) == LW_SUCCESS);
+    frame.structSize -= 8;
+    CHECK(lwUpdate(technique, &frame) == LW_ERROR_INVALID_ARGUMENT);
+}
