@@ -63,7 +63,7 @@ private:
     std::uint32_t lists_ = 1;
     std::uint32_t places_ = ~0u;  // whose states kept_ holds
     bool centresKnown_ = false;
-    KeptPlaces kept_;  // centres_
+    KeptPlaces follows_;  // centres_
 };
 
 }  // namespace lightwell

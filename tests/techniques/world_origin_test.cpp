@@ -4,6 +4,7 @@
 #include <functional>
 #include <limits>
 
+#include "../samples/large_world.h"
 #include "support/cone_box.h"
 
 using namespace lightwell::test;
@@ -28,11 +29,10 @@ void shift(PlanarPixels& pixels, const Place& by) {
             pixels.set(x, y, {p.x + by.x, p.y + by.y, p.z + by.z});
         }
 }
+// As docs/integration.md has it: what lies at `by` from the origin is seen from an origin at -by.
 void shift(LWCamera& camera, const Place& by) {
-    for (int row = 0; row < 3; ++row) {
-        float* r = camera.view + 4 * row;
-        r[3] = float(double(r[3]) - (double(r[0]) * by.x + double(r[1]) * by.y + double(r[2]) * by.z));
-    }
+    const double from[3] = {0.0, 0.0, 0.0}, to[3] = {-by.x, -by.y, -by.z};
+    moveCamera(&camera, from, to);
 }
 void shift(float (&p)[3], const Place& by) {
     for (int a = 0; a < 3; ++a) p[a] = float(double(p[a]) + by[a]);
@@ -128,16 +128,6 @@ std::vector<float> lightAt(LWDevice device, const char* name, const char* settin
     return irradiance.packed();
 }
 
-double rootMeanSquare(const std::vector<float>& a, const std::vector<float>& b) {
-    double sum = 0.0, mean = 0.0;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        sum += std::pow(double(a[i]) - double(b[i]), 2.0) / double(a.size());
-        mean += double(b[i]) / double(b.size());
-    }
-    REQUIRE(mean > 0.0);
-    return std::sqrt(sum) / mean;
-}
-
 void compare(LWDevice device, const char* name, const char* settings) {
     const Place far(1e5, -3e4, 2.5e5), odd(12.37, -4.71, 8.93);
     const std::vector<float> here = lightAt(device, name, settings, Place(0), [](int) { return Place(0); });
@@ -145,10 +135,10 @@ void compare(LWDevice device, const char* name, const char* settings) {
     CHECK(lightAt(device, name, settings, far, [&](int) { return far; }) == here);
     // By no multiple of any cell, and back: of what is kept nothing may be left where it was.
     const std::vector<float> moved = lightAt(device, name, settings, far, [&](int f) { return f < kMoves ? far : far + odd; });
-    const double error = rootMeanSquare(moved, here);
+    const double error = difference(moved, here);
     UNSCOPED_INFO(name << " " << settings << ": " << error);
     CHECK(error <= kMost);
-    CHECK(rootMeanSquare(lightAt(device, name, settings, far, [&](int f) { return far + odd * double(f); }), here) <= kMost);
+    CHECK(difference(lightAt(device, name, settings, far, [&](int f) { return far + odd * double(f); }), here) <= kMost);
 }
 
 }  // namespace
@@ -174,6 +164,20 @@ TEST_CASE("so it is with all that keep something", "[world_origin][long]") {
     compare(device, "cone_tracing", "size=32 bounces=0 extent=3 cascades=2");
     compare(device, "static_vpl", "visibility=hard clusters=8");
     compare(device, "fallback", "first=horizon first.history=8 second=rsm second.history=8");
+}
+
+TEST_CASE("the origin that docs/integration.md chooses stays near the eye, and seldom moves", "[world_origin]") {
+    double origin[3] = {0.0, 0.0, 0.0}, last = 0.0;
+    int moves = 0;
+    for (int step = 0; step < 1000; ++step) {
+        const double eye[3] = {100.0 * step, 5.0, -30.0 * step};
+        chooseOrigin(eye, origin);
+        for (int a = 0; a < 3; ++a) REQUIRE(std::abs(eye[a] - origin[a]) <= 1024.0);
+        moves += origin[0] != last;
+        last = origin[0];
+    }
+    CHECK(moves < 100);
+    CHECK(origin[1] == 0.0);
 }
 
 TEST_CASE("origins that are no place are refused by name", "[world_origin]") {
