@@ -53,6 +53,7 @@ endif()
 # docs/getting-started.md's program: exit code 0 means that its answer is right.
 add_executable(minimal ${PROJECT_SOURCE_DIR}/samples/minimal.c)
 target_link_libraries(minimal PRIVATE lightwell lightwell_warnings)
+set_target_properties(minimal PROPERTIES C_STANDARD 99 C_EXTENSIONS OFF)
 add_test(NAME getting_started_test COMMAND minimal)
 # The program of docs/points.md.
 add_executable(points ${PROJECT_SOURCE_DIR}/samples/points.c)
