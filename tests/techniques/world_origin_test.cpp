@@ -166,6 +166,39 @@ TEST_CASE("so it is with all that keep something", "[world_origin][long]") {
     compare(device, "fallback", "first=horizon first.history=8 second=rsm second.history=8");
 }
 
+TEST_CASE("listed lights keep their numbers and places where the origin moves", "[world_origin]") {
+    TestDevice device(16);
+    LWStaticVplDesc desc;
+    lwDefaultStaticVpl(&desc);
+    desc.lights = 5;
+    const auto listed = [&](const Place& odd) {
+        TestTechnique technique(device, "static_vpl", &desc);
+        std::vector<LWListedLight> lights(desc.lights);
+        for (int f = 0; f < kFrames; ++f) {
+            const Place origin = f < kMoves ? Place(0) : odd;
+            const MovingFrame moving(f, -origin, origin);
+            technique.update(moving.frame);
+            std::uint32_t count = 0;
+            REQUIRE(lwReadLightList(technique, lights.data(), desc.lights, &count) == LW_SUCCESS);
+            lights.resize(count);
+            if (f + 1 < kFrames) {
+                lights.resize(desc.lights);
+                continue;
+            }
+            for (LWListedLight& light : lights)
+                for (int a = 0; a < 3; ++a) light.position[a] = float(double(light.position[a]) + origin[a]);
+        }
+        return lights;
+    };
+    const std::vector<LWListedLight> stays = listed(Place(0)), moves = listed(Place(200.3, -14.71, 8.93));
+    REQUIRE(moves.size() == stays.size());
+    for (std::size_t i = 0; i < stays.size(); ++i) {
+        CHECK(moves[i].id == stays[i].id);
+        CHECK(moves[i].vpls == stays[i].vpls);
+        for (int a = 0; a < 3; ++a) CHECK(double(moves[i].position[a]) == Approx(double(stays[i].position[a])).margin(1e-3));
+    }
+}
+
 TEST_CASE("the origin that docs/integration.md chooses stays near the eye, and seldom moves", "[world_origin]") {
     double origin[3] = {0.0, 0.0, 0.0}, last = 0.0;
     int moves = 0;
