@@ -25,6 +25,8 @@ def check(binary, plant, technique):
 def cell(light):
     if "refusal" in light:
         return "refused"
+    if light["mean"] is None:
+        return "no number"
     return f"{light['mean']:.3g}, {100 * light['black']:.0f} %, {100 * light['off']:.0f} %"
 
 
