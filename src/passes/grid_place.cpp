@@ -29,6 +29,7 @@ LwGridFit fitOf(const GridPlacement& placement, const WorldStep& step, std::uint
     fit.high = at(placement.high, 0.0f);
     fit.stepHigh = step.high;
     fit.stepLow = step.low;
+    fit.stepLeast = step.least;
     fit.refit = placement.refit ? 1 : 0;
     fit.bits = bitsFor(lights);
     fit.size = cl_int(size);
@@ -46,10 +47,7 @@ GridPlace::GridPlace(Device& device, std::uint32_t size, std::uint32_t unit)
       fit_(device.programs().kernel(kProgram, "grid_place_fit")),
       nest_(device.programs().kernel(kProgram, "grid_place_nest")) {}
 
-void GridPlace::reserve(Executor& executor, bool refit) {
-    if (!isAnchored_ || refit) anchor_ = executor.worldOrigin();
-    isAnchored_ = true;
-    step_ = worldStep(anchor_, executor.worldOrigin());
+void GridPlace::reserve(Executor& executor) {
     state_.reserve(device_, LW_GRID_STATE * sizeof(cl_uint), "bounds of the light");
     if (!place_) {
         place_ = Buffer(device_, sizeof(LwGridPlace), "place of the grid");
@@ -62,7 +60,7 @@ void GridPlace::record(Executor& executor, const RsmInput& rsms, const LWVpl* au
                        const GridPlacement& placement) {
     static_assert(sizeof(LWVpl) == sizeof(lw_vpl), "LWVpl is uploaded as it is");
     authored_.reserve(device_, std::max(authoredCount, 1u) * sizeof(lw_vpl), "frame.vpls");
-    reserve(executor, placement.refit);
+    reserve(executor);
     if (kept_.moves(executor)) kept_.move(executor, place_, {});
     kept_.arrive(executor);
     if (authoredCount) executor.writeCopy("grid_place.upload", authored_, 0, authoredCount * sizeof(lw_vpl), authored);
@@ -73,14 +71,15 @@ void GridPlace::record(Executor& executor, const RsmInput& rsms, const LWVpl* au
     if (authoredCount)
         executor.run("grid_place.scan", scanVpls_, gridOver((authoredCount + kRun - 1) / kRun), kListGroup, authored_,
                      cl_int(authoredCount), state_);
-    executor.run("grid_place.fit", fit_, {1, 1}, {1, 1}, state_, fitOf(placement, step_, size_, unit_, texels + authoredCount), place_);
+    executor.run("grid_place.fit", fit_, {1, 1}, {1, 1}, state_, fitOf(placement, worldStep({}, executor.worldOrigin()), size_, unit_, texels + authoredCount), place_);
 }
 
 void GridPlace::recordNested(Executor& executor, const GridPlace& outer, const GridPlacement& placement) {
-    reserve(executor, placement.refit);
+    reserve(executor);
+    const WorldStep step = worldStep({}, executor.worldOrigin());
     const cl_float4 focus{{placement.focus[0], placement.focus[1], placement.focus[2], placement.hasFocus ? 1.0f : 0.0f}};
-    executor.run("grid_place.fit", nest_, {1, 1}, {1, 1}, outer.place_, focus, step_.high, step_.low, cl_int(size_),
-                 cl_int(unit_), place_);
+    executor.run("grid_place.fit", nest_, {1, 1}, {1, 1}, outer.place_, focus, step.high, step.low, step.least,
+                 cl_int(size_), cl_int(unit_), place_);
 }
 
 std::uint64_t GridPlace::estimateBytes(std::uint32_t authoredCount) {

@@ -33,8 +33,7 @@ public:
 
     // Passes "grid_place.*". `authored` is read before the call returns. A fitted grid stays as long as the box still fits and
     // is no smaller than three quarters of the grid's inside; then it moves by whole cells, or gets another size. Where the origin of
-    // positions moves (Executor::worldOrigin), grids stay where they are in the world: whole cells are counted from where that origin
-    // was in the first frame, or in the last that refits.
+    // positions moves (Executor::worldOrigin), grids stay where they are in the world.
     void record(Executor& executor, const RsmInput& rsms, const LWVpl* authored, std::uint32_t authoredCount,
                 const GridPlacement& placement);
     // In its place: with cells half as large as those of `outer`, which it lies in.
@@ -48,16 +47,13 @@ public:
     static std::uint64_t estimateNestedBytes();                       // of recordNested()
 
 private:
-    void reserve(Executor& executor, bool refit);
+    void reserve(Executor& executor);
 
     Device& device_;
     std::uint32_t size_, unit_;
     Kernel &scanTexels_, &scanVpls_, &fit_, &nest_;
     Buffer state_, place_, authored_;
-    KeptPlaces kept_;                 // place_
-    bool isAnchored_ = false;
-    WorldOrigin anchor_{};            // a corner of cells of the world, whatever their size
-    WorldStep step_;                  // from it to the frame's origin
+    KeptPlaces kept_;  // place_
 };
 
 class GridPlaces {

@@ -16,6 +16,7 @@ WorldStep worldStep(const WorldOrigin& from, const WorldOrigin& to) {
         const double whole = to[a] - from[a];
         step.high.s[a] = float(whole);
         step.low.s[a] = float(whole - double(step.high.s[a]));
+        step.least.s[a] = float(whole - double(step.high.s[a]) - double(step.low.s[a]));
     }
     return step;
 }

@@ -8,9 +8,10 @@
 
 namespace lightwell {
 
-// A difference of two points of the world, as two floats a coordinate.
+// A difference of two points of the world, as three floats a coordinate, which hold all of a double. The first two do where it is no
+// more than the world's places are apart.
 struct WorldStep {
-    cl_float4 high{}, low{};
+    cl_float4 high{}, low{}, least{};
 };
 WorldStep worldStep(const WorldOrigin& from, const WorldOrigin& to);  // from `from` to `to`
 

@@ -135,6 +135,7 @@ std::vector<float> lightAt(LWDevice device, const char* name, const char* settin
 }
 
 void compare(LWDevice device, const char* name, const char* settings, double most = kMost) {
+    // Whole cells of the grids below.
     const Place far(1e5, -3e4, 2.5e5), odd(12.37, -4.71, 8.93);
     const std::vector<float> here = lightAt(device, name, settings, Place(0), [](int) { return Place(0); });
     // The same floats, elsewhere.
@@ -162,11 +163,11 @@ TEST_CASE("so it is with all that keep something", "[world_origin][long]") {
     compare(device, "ssvp", "vpls=64 clusters=16 auto_error=0.2", kVisibility);
     compare(device, "screen_space", "history=8");
     compare(device, "horizon", "history=8", kScreen);
-    compare(device, "lpv", "size=16 extent=3 cascades=2");
+    compare(device, "lpv", "size=16 extent=4 cascades=2");
     compare(device, "lpv", "size=16 transport=coarse_to_fine");
-    compare(device, "lpv", "size=16 extent=3 cascades=3 transport=sweep directions=24 bounces=2 frames=4");
+    compare(device, "lpv", "size=16 extent=4 cascades=3 transport=sweep directions=24 bounces=2 frames=4");
     compare(device, "cone_tracing", "size=32 bounces=0");
-    compare(device, "cone_tracing", "size=32 bounces=0 extent=3 cascades=2", kNested);
+    compare(device, "cone_tracing", "size=32 bounces=0 extent=4 cascades=2", kNested);
     compare(device, "static_vpl", "visibility=hard clusters=8");
     compare(device, "fallback", "first=horizon first.history=8 second=rsm second.history=8");
 }
