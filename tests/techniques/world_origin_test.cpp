@@ -142,7 +142,7 @@ void compare(LWDevice device, const char* name, const char* settings, double mos
     CHECK(lightAt(device, name, settings, far, [&](int) { return far; }) == here);
     // By no multiple of any cell, once and in every frame: of what is kept nothing may be left where it was.
     const auto error = [&](const std::function<Place(int)>& origin) { return difference(lightAt(device, name, settings, far, origin), here); };
-    const double once = error([&](int f) { return f < kMoves ? far : far + odd; }), always = error([&](int f) { return far + odd * double(f); });
+    const double once = error([&](int f) { return f < kMoves ? far : far + odd; }), always = error([&](int f) { return far + odd * double(f + 1); });
     CAPTURE(name, settings, once, always);
     CHECK(std::max(once, always) <= most);
 }
