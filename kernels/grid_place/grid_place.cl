@@ -84,6 +84,9 @@ __kernel void grid_place_scan_vpls(__global const lw_vpl* vpls, int count, __glo
 // Sides of cells from which on their squares and the squares' inverses are finite.
 #define GRID_LEAST_CELL 1e-18f
 #define GRID_LARGEST_CELL 1e18f
+// Of a run of cells, how far off its border a corner lies on it: that of a grid around is often on one, but for rounding, and a run more
+// or less moves all of the grid within. More: grids come nearer to the border of the one around them.
+#define GRID_SAME 1e-3f
 // Cells from the world's origin to a place at most, so that no place is infinite.
 #define GRID_MOST_CELLS 1e18f
 
@@ -142,7 +145,8 @@ __kernel void grid_place_nest(__global const LwGridPlace* outer, float4 focus, f
         const float3 corner = (to.origin.xyz - world) / cell / units;  // in units
         const int border = max(unit, 2);
         const float3 from = snapped((focus.w > 0.0f ? focus.xyz : middle) - world, cell, size, unit);
-        to.origin.xyz = world + cell * clamp(from, ceil(corner) * units + (float)border, floor(corner) * units + (float)(size - border));
+        to.origin.xyz = world + cell * clamp(from, ceil(corner - GRID_SAME) * units + (float)border,
+                                             floor(corner + GRID_SAME) * units + (float)(size - border));
         to.origin.w = 1.0f / cell;
         to.cell.x = cell;
     } else {
