@@ -256,8 +256,7 @@ void LpvSweep::recordGather(Executor& executor, const Planes& position, const Pl
     const Range items{(position.width + gather_.width() - 1) / gather_.width(), position.height};
     executor.run("lpv_sweep.gather", gather_, items, gather_.width() == 1 ? Range{64, 1} : Range{8, 1}, position, normal,
                  cl_int(position.width), cl_int(position.height), places ? *places : shownPlace_, cl_int(layer.index),
-                 cl_int(layer.count), cl_int(options_.size),
-                 cells(), cl_int(irradiance ? 1 : 0), cl_int(validity ? 1 : 0),
+                 cl_int(layer.count), cl_int(options_.size), cells(), cl_int(irradiance ? 1 : 0), cl_int(validity ? 1 : 0),
                  orElse(irradiance), orElse(validity), counts);
 }
 
