@@ -25,6 +25,9 @@
  *  - the host composites L = L_d + albedo / pi * irradiance.
  *  - positions lie within 1e9 units of the origin: a VPL beyond refuses its frame, a pixel or an RSM texel
  *    counts as rejected and is no surface (a depth beyond is background).
+ *  - large worlds: a float has 24 bits, which are 8 mm at 1e5 m. All positions and matrices of a frame are
+ *    therefore relative to LWFrame::worldOrigin, a point of the host's world in double, which may move from frame to frame
+ *    (docs/integration.md). The light does not depend on it.
  *
  * VERSIONING: structs that may grow begin with `structSize`; set it to sizeof(struct), which lwDefault*
  * and the LW_INIT macro do. The others (LWImage, LWCamera, LWVpl, LWStaticVpl, LWBlocker, LWSourceView, and what the
@@ -268,7 +271,7 @@ typedef struct LWGBuffer {
     LWImage motion;          /**< 2 channels: this pixel's position of the previous frame less this
                                   frame's, in pixels, +x right, +y down */
     LWImage receiveMask;     /**< 1 channel: nonzero pixels receive indirect light but send none */
-    LWCamera camera, previousCamera;
+    LWCamera camera, previousCamera; /**< both relative to this frame's worldOrigin */
     LWImage bakedMask;       /**< 1 channel: nonzero pixels are LW_RECEIVERS_BAKED, others LW_RECEIVERS_UNBAKED (all, where it
                                   is absent); "static_vpl" */
 } LWGBuffer;
@@ -367,7 +370,7 @@ typedef struct LWGeometry {
     const float* triangleAlbedo;   /**< rgb per triangle, or null (0.5) */
     const float* triangleEmission; /**< rgb radiance per triangle, or null (0) */
     uint32_t vertexCount;
-    uint64_t version;           /**< raise it when anything above changes */
+    uint64_t version;           /**< raise it when anything above changes; a worldOrigin that moved counts as that */
 } LWGeometry;
 
 typedef struct LWSourceView {
@@ -392,6 +395,9 @@ typedef struct LWFrame {
     const LWStaticVpl* staticVpls; /**< "static_vpl": the same places in every frame in the same order, moved or not; another
                                     count is another scene */
     uint32_t staticVplCount;   /**< 4096 at most */
+    double worldOrigin[3];     /**< where the origin that all of the frame's positions and matrices are relative to lies in the world,
+                                    also those of G-buffers and points until the next lwUpdate: near what is lit, and 0 in worlds of a few
+                                    km. Finite, to 1e12. It may move from frame to frame: what is kept moves along */
 } LWFrame;
 
 /** Where results go; each image optional (format LW_FORMAT_NONE), at least one given. Writable host
@@ -661,7 +667,8 @@ typedef struct LWLpvDesc {
     float extent;     /**< length of the grid's sides, to 1e9; 0: fitted to the surfaces that RSMs see (lit or not), authored
                            VPLs and the vertices of the frame's triangles. A fitted grid stays from frame to frame as long as
                            they lie in it and fill three quarters of it; LWFrame::reset fits anew */
-    float center[3];  /**< of the grid where `extent` is above 0 and the frame has no focus */
+    float center[3];  /**< of the grid where `extent` is above 0 and the frame has no focus: a point of the world, not relative to
+                           LWFrame::worldOrigin */
     LWGeometryVolume geometryVolume; /**< what blocks light between cells, of propagation; sweeps choose as LWLpvTransport says */
     uint32_t damping; /**< 1: light that grows weaker away from a surface is taken for light from behind it, and damped */
     LWLpvTransport transport;
@@ -1031,7 +1038,9 @@ typedef enum LWInputFault {
     LW_FAULT_RSM_ELSEWHERE = 31,   /**< RSMs far from everything the camera sees */
     LW_FAULT_SPACES_DIFFER = 32,   /**< RSM and G-buffer do not lie in one space */
     LW_FAULT_UNITS_DIFFER = 33,    /**< RSM and G-buffer are in different units of length */
-    LW_FAULT_LIGHT_CAMERA = 34     /**< an RSM's camera is not where its point or spot light is */
+    LW_FAULT_LIGHT_CAMERA = 34,    /**< an RSM's camera is not where its point or spot light is */
+    LW_FAULT_FAR_FROM_ORIGIN = 35  /**< positions so far from their origin that they are coarser than what is seen:
+                                        LWFrame::worldOrigin cures it */
 } LWInputFault;
 
 typedef enum LWSeverity {

@@ -84,6 +84,9 @@ __kernel void grid_place_scan_vpls(__global const lw_vpl* vpls, int count, __glo
 // Sides of cells from which on their squares and the squares' inverses are finite.
 #define GRID_LEAST_CELL 1e-18f
 #define GRID_LARGEST_CELL 1e18f
+// Of a run of cells, how far off its border a corner lies on it: that of a grid around is often on one, but for rounding, and a run more
+// or less moves all of the grid within. More: grids come nearer to the border of the one around them.
+#define GRID_SAME 1e-3f
 // Cells from the world's origin to a place at most, so that no place is infinite.
 #define GRID_MOST_CELLS 1e18f
 
@@ -109,7 +112,18 @@ LW_FN LwGridPlace fitted(LwGridPlace last, LwGridFit fit, const float* low, cons
     return place;
 }
 
-// Where the grid around a place begins, in cells from the world's origin: at multiples of `unit`, so that it stays where it is while the
+// The corner of the world's runs of `run` (a length) that is nearest to the origin of positions, which lies a step from the world's:
+// exact, as remainders are, however far that is.
+LW_FN float nearest_run(float high, float low, float least, float run) {
+    const float rest = fmod(high, run) + fmod(low, run) + fmod(least, run);
+    return run * round(rest / run) - rest;
+}
+LW_FN float3 world_corner(float4 high, float4 low, float4 least, float run) {
+    return (float3)(nearest_run(high.x, low.x, least.x, run), nearest_run(high.y, low.y, least.y, run),
+                    nearest_run(high.z, low.z, least.z, run));
+}
+
+// Where the grid around a place begins, in cells from a corner of the world's runs of so many: at multiples of `unit`, so that it stays where it is while the
 // place moves within so many cells, and all of its cells are cells of the world that light and blockers find again when it moves.
 // A unit of size / 8 keeps all levels but the top three of a pyramid of cells where they are in the world.
 LW_FN float3 snapped(float3 centre, float cell, int size, int unit) {
@@ -119,17 +133,20 @@ LW_FN float3 snapped(float3 centre, float cell, int size, int unit) {
 
 // One work-item in all: a grid of cells half as large around a place, or around the middle of the one that it lies in; between its
 // border and the other's is a cell of the other at least, so that what lies in it lies in the other as well.
-__kernel void grid_place_nest(__global const LwGridPlace* outer, float4 focus, int size, int unit, __global LwGridPlace* place) {
+__kernel void grid_place_nest(__global const LwGridPlace* outer, float4 focus, float4 stepHigh, float4 stepLow, float4 stepLeast, int size,
+                              int unit, __global LwGridPlace* place) {
     if (get_global_id(0) != 0) return;
     LwGridPlace to = *outer;
     const float cell = 0.5f * to.cell.x;
     if (to.origin.w > 0.0f && cell > GRID_LEAST_CELL) {
-        const float3 middle = to.origin.xyz + to.cell.x * (float)(size / 2);
-        const float3 corner = to.origin.xyz / cell / (float)unit;  // in units
         const float units = (float)unit;
+        const float3 world = world_corner(stepHigh, stepLow, stepLeast, cell * units);
+        const float3 middle = to.origin.xyz + to.cell.x * (float)(size / 2);
+        const float3 corner = (to.origin.xyz - world) / cell / units;  // in units
         const int border = max(unit, 2);
-        const float3 from = snapped(focus.w > 0.0f ? focus.xyz : middle, cell, size, unit);
-        to.origin.xyz = cell * clamp(from, ceil(corner) * units + (float)border, floor(corner) * units + (float)(size - border));
+        const float3 from = snapped((focus.w > 0.0f ? focus.xyz : middle) - world, cell, size, unit);
+        to.origin.xyz = world + cell * clamp(from, ceil(corner - GRID_SAME) * units + (float)border,
+                                             floor(corner + GRID_SAME) * units + (float)(size - border));
         to.origin.w = 1.0f / cell;
         to.cell.x = cell;
     } else {
@@ -146,7 +163,10 @@ __kernel void grid_place_fit(__global const uint* state, LwGridFit fit, __global
         const float half_ = 0.5f * fit.centre.w;
         to.cell.x = fit.centre.w / (float)fit.size;
         to.origin = (float4)(fit.centre.x - half_, fit.centre.y - half_, fit.centre.z - half_, 0.0f);
-        if (fit.unit) to.origin.xyz = to.cell.x * snapped(fit.centre.xyz, to.cell.x, fit.size, fit.unit);
+        if (fit.unit) {
+            const float3 world = world_corner(fit.stepHigh, fit.stepLow, fit.stepLeast, to.cell.x * (float)fit.unit);
+            to.origin.xyz = world + to.cell.x * snapped(fit.centre.xyz - world, to.cell.x, fit.size, fit.unit);
+        }
     } else {
         float low[3] = {fit.low.x, fit.low.y, fit.low.z}, high[3] = {fit.high.x, fit.high.y, fit.high.z};
         int some = fit.low.w > 0.0f;

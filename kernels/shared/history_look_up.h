@@ -76,6 +76,10 @@ LW_FN lw_past look_up(lw_surface s, mask wanted, int x, int y, int mode, const L
     const real ox = s.px - r.origin.x, oy = s.py - r.origin.y, oz = s.pz - r.origin.z;
     const real depth = dot_row(r.depth, ox, oy, oz);
     real tolerance = LW_PLANE_TOLERANCE * r.origin.w * fabs(depth);
+    // From here on as the history has positions, whose origin may be another.
+    s.px = (s.px + r.shiftHigh.x) + r.shiftLow.x;
+    s.py = (s.py + r.shiftHigh.y) + r.shiftLow.y;
+    s.pz = (s.pz + r.shiftHigh.z) + r.shiftLow.z;
     if (mode >= LW_HISTORY_REPROJECT) {
         const real w = dot_row(r.w, ox, oy, oz), scale = 1.0f / select_((real)1.0f, w, w > 0.0f);
         const real seenX = dot_row(r.x, ox, oy, oz) * scale, seenY = dot_row(r.y, ox, oy, oz) * scale;

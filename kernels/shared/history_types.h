@@ -16,9 +16,10 @@ typedef struct LwReprojection {
     lw_float4 depth;             // along the axis; 1 for an orthographic camera
     lw_float4 acrossX, acrossY;  // world vectors of a pixel to the right and down, at depth 1
     lw_float4 origin;            // at or near the eye; w: a pixel's width at depth 1
+    lw_float4 shiftHigh, shiftLow;  // from this frame's positions to the history's, in two parts
     lw_float scaleX, scaleY;     // the history's pixels to one of this frame's
     lw_int width, height;        // of the history
 } LwReprojection;
-LW_SIZE_CHECK(LwReprojection, 128);
+LW_SIZE_CHECK(LwReprojection, 160);
 
 #endif

@@ -16,8 +16,10 @@
 // rooms hear one of their walls alone. Smaller: what is left of two sheets' rounding decides.
 #define RECEIVER_SIDED 0.25f
 
-LW_FN int same_place(float4 a, float4 b) {
-    return a.x == b.x && a.y == b.y && a.z == b.z && a.w == b.w;
+// tolerance: in voxels.
+LW_FN int same_place(float4 a, float4 b, float tolerance) {
+    const float4 off = fabs(a - b);
+    return a.w == b.w && fmax(fmax(off.x, off.y), off.z) <= tolerance * a.w;
 }
 
 // One work-item = one brick: how many of its voxels hold surfaces.
@@ -36,9 +38,10 @@ __kernel void voxel_receivers_count(LwVoxelContents contents, __global const int
     counts[brick] = count;
 }
 
-// One work-item in all: each brick's first receiver. last: where the grid lay when the list was made.
+// One work-item in all: each brick's first receiver. last: where the grid lay when the list was made; tolerance: by how many voxels it
+// may be off that and be the same.
 __kernel void voxel_receivers_scan(__global const LwGridPlace* grid, __global float4* last, int bricks,
-                                   int room, int all, __global const LwVoxelWork* work,
+                                   int room, int all, float tolerance, __global const LwVoxelWork* work,
                                    __global int* counts, __global LwVoxelReceivers* state) {
     if (get_global_id(0) != 0 || !work->stale) return;
     int sum = 0;
@@ -50,7 +53,7 @@ __kernel void voxel_receivers_scan(__global const LwGridPlace* grid, __global fl
     state->receivers = min(sum, room);
     state->missing = sum - min(sum, room);
     const float4 place = (float4)(grid->origin.xyz, grid->cell.x);
-    state->moved = all || !same_place(*last, place);
+    state->moved = all || !same_place(*last, place, tolerance);
     *last = place;
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "check_light.h"
 #include "check_plant.h"
 #include "cli.h"
 #include "image.h"
@@ -17,7 +18,7 @@ namespace {
 
 struct CheckOptions {
     ViewOptions view;
-    std::string plant, overlay, device;
+    std::string plant, overlay, device, light;
     int rsmSize = 256, cascades = 1;
     bool asJson = false;
 };
@@ -71,8 +72,21 @@ nlohmann::ordered_json toJson(const LWInputFinding& f) {
             {"colour", colourText(f.colour)}, {"message", f.message}};
 }
 
+nlohmann::ordered_json toJson(const std::string& technique, const LightChange& change) {
+    if (!change.refusal.empty()) return {{"technique", technique}, {"refusal", change.refusal}};
+    return {{"technique", technique}, {"mean", change.mean}, {"black", change.black}, {"off", change.off}};
+}
+
+void printLight(const std::string& technique, const LightChange& change) {
+    if (!change.refusal.empty())
+        fmt::print("{}: refused, {}\n", technique, change.refusal);
+    else
+        fmt::print("{}: mean light {:.4g} times that of sound inputs; of the lit pixels {:.1f} % are black and {:.1f} % off by more than a tenth\n",
+                   technique, change.mean, 100.0 * change.black, 100.0 * change.off);
+}
+
 void print(const CheckOptions& options, const std::string& scene, const std::string& camera,
-           const Size& size, const std::vector<LWInputFinding>& findings) {
+           const Size& size, const std::vector<LWInputFinding>& findings, const LightChange* change) {
     if (options.asJson) {
         nlohmann::ordered_json document{{"scene", scene},
                                         {"camera", camera},
@@ -80,6 +94,7 @@ void print(const CheckOptions& options, const std::string& scene, const std::str
                                         {"planted", options.plant}};
         document["findings"] = nlohmann::ordered_json::array();
         for (const LWInputFinding& f : findings) document["findings"].push_back(toJson(f));
+        if (change) document["light"] = toJson(options.light, *change);
         // A figure may be infinite in spoilt inputs; JSON has no word for that and gets null.
         fmt::print("{}\n", document.dump(2));
         return;
@@ -91,6 +106,7 @@ void print(const CheckOptions& options, const std::string& scene, const std::str
                    f.affected, f.examined, f.measured, f.expected, f.confidence,
                    options.overlay.empty() ? "" : ", in the overlay " + colourText(f.colour));
     }
+    if (change) printLight(options.light, *change);
     if (findings.empty()) fmt::print("nothing wrong found in {}, camera {}\n", scene, camera);
     if (!options.overlay.empty()) fmt::print("overlay: {}\n", options.overlay);
 }
@@ -149,7 +165,13 @@ void checkScene(const CheckOptions& options) {
     const std::vector<LWInputFinding> findings = lightwell::checkInputs(
         view, &frame, &planted.gbuffer, options.overlay.empty() ? nullptr : &overlay);
     if (!options.overlay.empty()) writeOverlay(options.overlay, pixels, size);
-    print(options, scene->name, camera.name, size, findings);
+    LightChange change;
+    if (!options.light.empty()) {
+        const PlantedInputs sound(inputs);
+        const LWFrame soundFrame = sound.frame();
+        change = asUsage([&] { return changeOfLight(device, view, options.light, soundFrame, sound.gbuffer, frame, planted.gbuffer); });
+    }
+    print(options, scene->name, camera.name, size, findings, options.light.empty() ? nullptr : &change);
     const auto errors = std::count_if(findings.begin(), findings.end(), [](const LWInputFinding& f) {
         return f.severity == LW_SEVERITY_ERROR;
     });
@@ -176,6 +198,8 @@ void addCheck(CLI::App& app) {
     command->add_option("--plant", options->plant, "Spoil the inputs in one way (below)");
     command->add_option("--overlay", options->overlay,
                         "FILE.png: the view in grey, affected pixels in their finding's colour");
+    command->add_option("--light", options->light,
+                        "Technique and settings, as \"ssvp clusters=16\": what the fault does to its light");
     command->add_option("--rsm-size", options->rsmSize, "Texels along each side of an RSM")
         ->check(CLI::Range(1, kMaxSize))
         ->capture_default_str();

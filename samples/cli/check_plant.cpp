@@ -226,6 +226,7 @@ const std::vector<Plant>& plants() {
                      for (float& v : m.flux.values)
                          v *= in.lights[l].kind == LW_LIGHT_DIRECTIONAL ? 1e4f : 1.0f;
          }},
+        {"far-from-origin", "far-from-origin", "all of the world far from its origin, in floats", false, false, false, moveFar},
         {"light-position", "light-camera", "a lamp's position in centimetres", true, false, true,
          [](In& in) {
              for (LWLight& light : in.lights)

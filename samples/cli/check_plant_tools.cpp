@@ -67,6 +67,31 @@ float middleDistance(PlantedInputs& in) {
     return distances[distances.size() / 2];
 }
 
+namespace {
+
+void moveCamera(LWCamera& camera, const glm::vec3& by) {
+    glm::mat4 view = matrixOf(camera.view);
+    view[3] -= glm::vec4(glm::mat3(view) * by, 0.0f);
+    storeMatrix(view, camera.view);
+}
+
+}  // namespace
+
+void moveFar(PlantedInputs& in) {
+    const float width = 2.0f * middleDistance(in) /
+                        (in.gbuffer.camera.projection[5] * float(in.position.height));
+    const glm::vec3 by(float(1 << 23) * width, 0.0f, 0.0f);
+    const auto move = [&](const glm::vec3& p) { return p + by; };
+    changePlaces(in.position, in.normal, move);
+    moveCamera(in.gbuffer.camera, by);
+    moveCamera(in.gbuffer.previousCamera, by);
+    eachMap(in, [&](PlantedInputs::Map& map, LWRsm& rsm) {
+        changePlaces(map.position, map.normal, move);
+        moveCamera(rsm.camera, by);
+    });
+    for (LWLight& light : in.lights) light.position[0] += by.x;
+}
+
 void useDepth(PlantedInputs& in, bool openGl, bool reversedMatrix) {
     const float middle = middleDistance(in), nearPlane = 0.02f * middle, farPlane = 50.0f * middle;
     glm::mat4 projection = matrixOf(in.gbuffer.camera.projection);

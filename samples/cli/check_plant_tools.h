@@ -15,6 +15,8 @@ glm::vec3 eyeOf(const LWCamera& camera);
 glm::mat3 rotationOf(const LWCamera& camera);
 glm::vec3 toView(const LWCamera& camera, const glm::vec3& p);
 float middleDistance(PlantedInputs& in);
+// All positions and cameras moved so far from the origin that positions are rounded to half a pixel's width.
+void moveFar(PlantedInputs& in);
 // The G-buffer with depth instead of positions, drawn with clip planes that suit the picture.
 void useDepth(PlantedInputs& in, bool openGl, bool reversedMatrix);
 void flipRows(PlantedInputs::Pixels& pixels);

@@ -22,6 +22,7 @@ constexpr std::uint32_t kMaxProfile = 1024;
 constexpr std::uint32_t kMaxBlockers = 1u << 20;
 constexpr std::uint32_t kMaxSourceViews = 64;
 constexpr std::uint32_t kMaxWaitEvents = 1024;
+constexpr double kMostOrigin = 1e12;  // there a double's step is 1e-4
 
 void checkCount(std::uint32_t count, const void* array, std::uint32_t most, const std::string& name,
                 const char* countField, const char* arrayField) {
@@ -161,6 +162,9 @@ void FrameArgument::copySourceViews(Call& call) {
 void FrameArgument::checkNumbers() const {
     checkFinite(frame_.environment, 3, "frame.environment", true);
     if (frame_.focus) checkFinite(frame_.focus, 3, "frame.focus");
+    for (const double at : frame_.worldOrigin)
+        if (!(std::abs(at) <= kMostOrigin))
+            fail(LW_ERROR_INVALID_ARGUMENT, "frame.worldOrigin: expected finite numbers of at most ", kMostOrigin, ", got ", at);
     for (std::uint32_t i = 0; i < frame_.vplCount; ++i) {
         const LWVpl& vpl = frame_.vpls[i];
         const auto name = [i] { return "frame.vpls[" + std::to_string(i) + "]"; };

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <string>
@@ -17,6 +18,8 @@ namespace lightwell {
 // it had before.
 template <class T>
 constexpr std::uint32_t kFirstSize = sizeof(T);
+template <>
+inline constexpr std::uint32_t kFirstSize<LWFrame> = offsetof(LWFrame, worldOrigin);
 
 template <class T>
 std::uint32_t checkedStructSize(const T* from, const std::string& name) {

@@ -216,6 +216,8 @@ LWStatus lwUpdate(LWTechnique technique, const LWFrame* frame) {
         auto record = std::make_unique<FrameRecord>(device);
         object->begun = true;
         try {
+            const double(&origin)[3] = own.get().worldOrigin;
+            record->executor.setWorldOrigin({origin[0], origin[1], origin[2]});
             record->executor.waitFor(sync.get());
             object->technique->update(record->executor, own.get());
             record->executor.signal(sync.get());

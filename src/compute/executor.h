@@ -55,6 +55,8 @@ private:
 };
 
 using Range = std::array<std::size_t, 2>;
+// Where the origin of a frame's positions lies in the host's world (LWFrame::worldOrigin).
+using WorldOrigin = std::array<double, 3>;
 
 class Executor {
 public:
@@ -62,6 +64,9 @@ public:
 
     Device& device() { return device_; }
     const Profile& profile() const { return profile_; }
+    // All positions that are recorded are relative to this.
+    const WorldOrigin& worldOrigin() const { return worldOrigin_; }
+    void setWorldOrigin(const WorldOrigin& origin) { worldOrigin_ = origin; }
 
     // Enqueues `kernel` over `global` work-items, rounded up to `local` (the kernel must leave surplus
     // items idle). `pass` is a string literal "<pass>.<verb>". Arguments in the kernel's order: cl_mem,
@@ -116,6 +121,7 @@ private:
     Profile& profile_;
     std::vector<cl_event> waits_;
     std::uint64_t copiedBytes_ = 0;
+    WorldOrigin worldOrigin_{};
 };
 
 }  // namespace lightwell

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <tuple>
@@ -11,13 +12,14 @@
 
 namespace lightwell {
 
-// Of all triangles' vertices that are not too far away to count; read again when the geometry's version, a pointer or a count
-// changes. A vertex that no triangle has is none of the scene's: hosts share buffers among meshes.
+// Of all triangles' vertices that are not too far away to count; read again when the geometry's version, a pointer, a count or
+// the frame's origin changes. A vertex that no triangle has is none of the scene's: hosts share buffers among meshes.
 class GeometryBox {
 public:
     // Throws what GeometryInput says of such triangles.
-    void look(const LWGeometry* geometry) {
-        const Key key = keyOf(geometry);
+    void look(const LWFrame& frame) {
+        const LWGeometry* geometry = frame.geometry;
+        const Key key = keyOf(frame);
         if (key == key_) return;
         GeometryInput().check(geometry);
         key_ = key;
@@ -32,10 +34,12 @@ public:
     float longest() const { return isSome_ ? std::max({high_[0] - low_[0], high_[1] - low_[1], high_[2] - low_[2]}) : 0.0f; }
 
 private:
-    // Vertices, indices, numbers of triangles and vertices, version.
-    using Key = std::tuple<const float*, const std::uint32_t*, std::uint32_t, std::uint32_t, std::uint64_t>;
-    static Key keyOf(const LWGeometry* g) {
-        return g && g->triangleCount ? Key{g->vertices, g->indices, g->triangleCount, g->vertexCount, g->version} : Key{};
+    // Vertices, indices, numbers of triangles and vertices, version, the origin.
+    using Key = std::tuple<const float*, const std::uint32_t*, std::uint32_t, std::uint32_t, std::uint64_t, std::array<double, 3>>;
+    static Key keyOf(const LWFrame& frame) {
+        const LWGeometry* g = frame.geometry;
+        const double(&o)[3] = frame.worldOrigin;
+        return g && g->triangleCount ? Key{g->vertices, g->indices, g->triangleCount, g->vertexCount, g->version, {o[0], o[1], o[2]}} : Key{};
     }
     void add(const float* p) {
         if (!(std::hypot(p[0], p[1], p[2]) <= LW_LARGEST_DISTANCE)) return;

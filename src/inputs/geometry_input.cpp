@@ -187,8 +187,8 @@ void GeometryInput::forget() {
 
 void GeometryInput::import(Executor& executor, const LWGeometry* geometry, bool withEmission) {
     const Key key = keyOf(geometry, withEmission);
-    if (key == key_ && !isForgotten_) return;
-    check(geometry, withEmission);
+    if (key == key_ && executor.worldOrigin() == origin_ && !isForgotten_) return;
+    if (key.triangleCount) checkArrays(*geometry, withEmission);
     Bounds bounds;
     std::uint32_t rejected = 0;
     std::vector<Triangle> drawn;
@@ -214,6 +214,7 @@ void GeometryInput::import(Executor& executor, const LWGeometry* geometry, bool 
         drawn_ = std::move(drawn);
     }
     key_ = key;
+    origin_ = executor.worldOrigin();
     rejected_ = rejected;
 }
 

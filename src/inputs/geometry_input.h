@@ -34,7 +34,7 @@ public:
     // Throws what import() would say of this geometry (null: none). Of what is in force already nothing is read.
     void check(const LWGeometry* geometry, bool withEmission = false) const;
 
-    // Brings the geometry to the device (pass "geometry_input.upload") when its version, a pointer or a count
+    // Brings the geometry to the device (pass "geometry_input.upload") when its version, a pointer, a count or the executor's origin
     // differs from the last and some triangle does; host memory is read during the call only. Triangles are ordered by
     // place, by their own values alone: their order in the host's arrays does not matter. Those with a vertex that is not
     // finite or beyond LW_LARGEST_DISTANCE are left out and counted, those without area left out. Refused
@@ -77,6 +77,7 @@ private:
     Key key_;
     std::uint32_t rejected_ = 0;
     bool isForgotten_ = false;
+    WorldOrigin origin_{};  // of the last import
 };
 
 }  // namespace lightwell

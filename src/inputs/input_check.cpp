@@ -40,6 +40,7 @@ LightMaps readLight(Executor& executor, const LWLight& light, std::uint32_t inde
 
 void checkView(Surfaces& g, bool reset, Findings& findings) {
     checkValues(g, findings);
+    if (checkFar(g, &findings)) return;  // what follows would judge roundings
     checkPlaces(g, {}, findings);
     const bool placed = g.trusted;  // wrong normals leave places right
     checkNormals(g, {}, findings);
@@ -53,6 +54,7 @@ void checkLight(std::vector<Surfaces>& views, LightMaps& light, Findings& findin
         if (g.camera) cameras.push_back({g.name + ".camera", &*g.camera});
     for (Surfaces& map : light.maps) {
         checkValues(map, findings);
+        if (checkFar(map, views.empty() ? &findings : nullptr)) continue;
         checkPlaces(map, cameras, findings);
         checkNormals(map, cameras, findings);
     }

@@ -18,6 +18,9 @@ struct NamedCamera {
 
 // input_check_values.cpp: NaN, negative values, albedo above 1, normals' length and encoding.
 void checkValues(Surfaces& surfaces, Findings& findings);
+// input_check_far.cpp: true where the places are too far from their origin for floats, and untrusted then. findings: null where others
+// have said so.
+bool checkFar(Surfaces& surfaces, Findings* findings);
 // input_check_places.cpp: positions against the camera.
 void checkPlaces(Surfaces& surfaces, const std::vector<NamedCamera>& others, Findings& findings);
 // The same file: surfaces that were given no normal. After the other checks of a trusted buffer.

@@ -52,6 +52,7 @@ constexpr FaultText kFaults[] = {
     {LW_FAULT_SPACES_DIFFER, "spaces-differ", "RSM and G-buffer do not lie in one space"},
     {LW_FAULT_UNITS_DIFFER, "units-differ", "RSM and G-buffer are in different units of length"},
     {LW_FAULT_LIGHT_CAMERA, "light-camera", "an RSM's camera is not where its light is"},
+    {LW_FAULT_FAR_FROM_ORIGIN, "far-from-origin", "positions coarser than what is seen, far from their origin"},
 };
 
 // Hues a golden section apart: neighbours in the list differ most.

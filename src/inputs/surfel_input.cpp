@@ -66,7 +66,7 @@ void SurfelInput::check(Device& device, const LWGeometry* geometry, bool withEmi
 
 void SurfelInput::import(Executor& executor, const LWGeometry* geometry, bool withEmission) {
     const Key key = keyOf(geometry, withEmission);
-    if (key == key_) return;
+    if (key == key_ && executor.worldOrigin() == origin_) return;
     Device& device = executor.device();
     if (key.count == 0) {
         memory_.reset(executor, 0, LW_SURFEL_RAW_PLANES);
@@ -95,6 +95,7 @@ void SurfelInput::import(Executor& executor, const LWGeometry* geometry, bool wi
     memory_.noteChange();
     device_ = &device;
     key_ = key;
+    origin_ = executor.worldOrigin();
 }
 
 void SurfelInput::report(Report& report) const {

@@ -16,8 +16,8 @@ public:
     // Throws what import() would say of this geometry (null: none) when it is new.
     static void check(Device& device, const LWGeometry* geometry, bool withEmission = false);
 
-    // Brings the surfels to the device (passes "surfel_input.*") when the geometry's version, an image or the count
-    // differs from the last. Surfels without a normal are none; those with a position out of reach, a normal that cannot be
+    // Brings the surfels to the device (passes "surfel_input.*") when the geometry's version, an image, the count or the
+    // executor's origin differs from the last. Surfels without a normal are none; those with a position out of reach, a normal that cannot be
     // normalised, an area that is not above 0 or an albedo beyond 0 .. 1 are left out and counted. withEmission: what they
     // emit too, if the host says so; those whose emission is below 0, above LW_LARGEST_EMISSION or no number are left out.
     void import(Executor& executor, const LWGeometry* geometry, bool withEmission = false);
@@ -42,6 +42,7 @@ private:
     SurfelMemory memory_;
     std::array<Buffer, 5> staging_;  // uploads
     Key key_;
+    WorldOrigin origin_{};  // of the last import
     Device* device_ = nullptr;  // of the last import that had surfels
 };
 

@@ -60,6 +60,7 @@ CrossFade::CrossFade(Device& device) : mix_(device.programs().kernel("cross_fade
 
 void CrossFade::record(Executor& executor, const FadeFrame& frame, const LWCamera& camera, float share, FadedView& view) {
     const Planes& now = frame.position;
+    const WorldOrigin& origin = executor.worldOrigin();
     Camera own(camera, now.width, now.height, "gbuffer.camera");
     const bool hasIrradiance = bool(frame.irradiance), hasValidity = bool(frame.validity);
     // A picture that is drawn again in an update takes the place of the first, and begins from the same one.
@@ -71,11 +72,11 @@ void CrossFade::record(Executor& executor, const FadeFrame& frame, const LWCamer
     LwReprojection where = reprojection(own, now.width, now.height, now);
     // With nothing of the last picture in it there is no need to look that up.
     if (share < 1.0f && drawn.camera && drawn.hasIrradiance == hasIrradiance && drawn.hasValidity == hasValidity) {
-        const bool isStill = drawn.width == now.width && drawn.height == now.height &&
+        const bool isStill = drawn.origin == origin && drawn.width == now.width && drawn.height == now.height &&
                              std::memcmp(&drawn.matrices, &camera, sizeof camera) == 0;
         // Motion vectors lead one frame back: across more, and within one, a view goes by its cameras.
         mode = frame.motion && lead == 1 ? LW_HISTORY_MOTION : isStill ? LW_HISTORY_STILL : LW_HISTORY_REPROJECT;
-        where = reprojection(*drawn.camera, drawn.width, drawn.height, now);
+        where = reprojection(*drawn.camera, drawn.width, drawn.height, now, drawn.origin, origin);
     }
     const Planes before = view.planes(1 - next, std::uint32_t(where.width), std::uint32_t(where.height));
     const Planes after = view.planes(next, now.width, now.height);
@@ -87,7 +88,7 @@ void CrossFade::record(Executor& executor, const FadeFrame& frame, const LWCamer
                  cl_int(now.width), cl_int(now.height), given(frame.irradiance), given(frame.validity), cl_int(hasIrradiance ? 1 : 0),
                  cl_int(hasValidity ? 1 : 0), given(frame.motion), mode, where, cl_float(share), cl_float(kRoundings[view.records_ % std::size(kRoundings)]), before, after,
                  written(frame.shownIrradiance), written(frame.shownValidity), view.counts_);
-    view.drawn_[next] = {now.width, now.height, hasIrradiance, hasValidity, camera, std::move(own)};
+    view.drawn_[next] = {now.width, now.height, hasIrradiance, hasValidity, camera, std::move(own), origin};
     view.last_ = next;
     view.isDrawn_ = true;
     view.lead_ = lead;

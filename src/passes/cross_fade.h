@@ -55,6 +55,7 @@ private:
         bool hasIrradiance = false, hasValidity = false;
         LWCamera matrices{};
         std::optional<Camera> camera;  // none: nothing to begin from
+        WorldOrigin origin{};          // of its positions
     };
     std::array<Drawn, 2> drawn_;
     std::size_t last_ = 0;       // image of the last record

@@ -20,13 +20,16 @@ cl_int bitsFor(std::uint64_t lights) {
     return bits;
 }
 
-LwGridFit fitOf(const GridPlacement& placement, std::uint32_t size, std::uint32_t unit, std::uint64_t lights) {
+LwGridFit fitOf(const GridPlacement& placement, const WorldStep& step, std::uint32_t size, std::uint32_t unit, std::uint64_t lights) {
     const auto at = [](const float* p, float w) { return cl_float4{{p[0], p[1], p[2], w}}; };
     LwGridFit fit{};
     fit.centre = at(placement.hasFocus ? placement.focus : placement.centre, placement.extent);
     fit.unit = placement.hasFocus ? cl_int(unit) : 0;
     fit.low = at(placement.low, placement.hasBox ? 1.0f : 0.0f);
     fit.high = at(placement.high, 0.0f);
+    fit.stepHigh = step.high;
+    fit.stepLow = step.low;
+    fit.stepLeast = step.least;
     fit.refit = placement.refit ? 1 : 0;
     fit.bits = bitsFor(lights);
     fit.size = cl_int(size);
@@ -58,6 +61,8 @@ void GridPlace::record(Executor& executor, const RsmInput& rsms, const LWVpl* au
     static_assert(sizeof(LWVpl) == sizeof(lw_vpl), "LWVpl is uploaded as it is");
     authored_.reserve(device_, std::max(authoredCount, 1u) * sizeof(lw_vpl), "frame.vpls");
     reserve(executor);
+    if (kept_.moves(executor)) kept_.move(executor, place_, {});
+    kept_.arrive(executor);
     if (authoredCount) executor.writeCopy("grid_place.upload", authored_, 0, authoredCount * sizeof(lw_vpl), authored);
     const std::uint64_t texels = rsms.texels ? rsms.texels.width : 0;
     if (texels)
@@ -66,13 +71,15 @@ void GridPlace::record(Executor& executor, const RsmInput& rsms, const LWVpl* au
     if (authoredCount)
         executor.run("grid_place.scan", scanVpls_, gridOver((authoredCount + kRun - 1) / kRun), kListGroup, authored_,
                      cl_int(authoredCount), state_);
-    executor.run("grid_place.fit", fit_, {1, 1}, {1, 1}, state_, fitOf(placement, size_, unit_, texels + authoredCount), place_);
+    executor.run("grid_place.fit", fit_, {1, 1}, {1, 1}, state_, fitOf(placement, worldStep({}, executor.worldOrigin()), size_, unit_, texels + authoredCount), place_);
 }
 
 void GridPlace::recordNested(Executor& executor, const GridPlace& outer, const GridPlacement& placement) {
     reserve(executor);
+    const WorldStep step = worldStep({}, executor.worldOrigin());
     const cl_float4 focus{{placement.focus[0], placement.focus[1], placement.focus[2], placement.hasFocus ? 1.0f : 0.0f}};
-    executor.run("grid_place.fit", nest_, {1, 1}, {1, 1}, outer.place_, focus, cl_int(size_), cl_int(unit_), place_);
+    executor.run("grid_place.fit", nest_, {1, 1}, {1, 1}, outer.place_, focus, step.high, step.low, step.least,
+                 cl_int(size_), cl_int(unit_), place_);
 }
 
 std::uint64_t GridPlace::estimateBytes(std::uint32_t authoredCount) {

@@ -8,13 +8,14 @@
 #include "compute/buffer.h"
 #include "compute/executor.h"
 #include "inputs/rsm_input.h"
+#include "passes/world_shift.h"
 #include "shared/grid_types.h"
 
 namespace lightwell {
 
 // Where a frame's grid shall lie: a cube of this side about a centre, or fitted.
 struct GridPlacement {
-    float centre[3] = {0.0f, 0.0f, 0.0f};
+    float centre[3] = {0.0f, 0.0f, 0.0f};  // relative to the frame's origin
     float extent = 0.0f;  // 0: fitted to the surfaces that RSMs see, VPLs with flux, and this box
     bool hasBox = false;
     float low[3] = {0.0f, 0.0f, 0.0f}, high[3] = {0.0f, 0.0f, 0.0f};
@@ -31,7 +32,8 @@ public:
     GridPlace(Device& device, std::uint32_t size, std::uint32_t unit);
 
     // Passes "grid_place.*". `authored` is read before the call returns. A fitted grid stays as long as the box still fits and
-    // is no smaller than three quarters of the grid's inside; then it moves by whole cells, or gets another size.
+    // is no smaller than three quarters of the grid's inside; then it moves by whole cells, or gets another size. Where the origin of
+    // positions moves (Executor::worldOrigin), grids stay where they are in the world.
     void record(Executor& executor, const RsmInput& rsms, const LWVpl* authored, std::uint32_t authoredCount,
                 const GridPlacement& placement);
     // In its place: with cells half as large as those of `outer`, which it lies in.
@@ -51,6 +53,7 @@ private:
     std::uint32_t size_, unit_;
     Kernel &scanTexels_, &scanVpls_, &fit_, &nest_;
     Buffer state_, place_, authored_;
+    KeptPlaces kept_;  // place_
 };
 
 class GridPlaces {

@@ -1,6 +1,7 @@
 #include "passes/kmeans.h"
 
 #include <algorithm>
+#include <cstddef>
 
 #include "compute/device.h"
 #include "compute/error.h"
@@ -58,6 +59,11 @@ const KMeansOptions& checked(const KMeansOptions& options) {
 
 }  // namespace
 
+void moveClusters(Executor& executor, const Buffer& clusters, std::uint32_t count, const KeptPlaces& kept) {
+    for (const std::size_t at : {offsetof(lw_cluster, position), offsetof(lw_cluster, medoidPosition)})
+        kept.move(executor, clusters, {count, std::uint32_t(at / sizeof(float)), LW_CLUSTER_FLOATS});
+}
+
 KMeans::KMeans(Device& device, const KMeansOptions& options)
     : device_(device),
       options_(checked(options)),
@@ -95,6 +101,8 @@ void KMeans::record(Executor& executor, const Buffer& vpls, std::uint32_t count,
                          clusters_);
         return;
     }
+    if (warm_ && kept_.moves(executor)) moveClusters(executor, clusters_, clusterCount_, kept_);
+    kept_.arrive(executor);
     const std::uint32_t stride = strideOf(count);
     const cl_int clusters = cl_int(clusterCount_), keep = warm_ && options_.warmStart && !restart ? 1 : 0;
     const cl_float2 weights = this->weights();

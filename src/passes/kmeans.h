@@ -6,6 +6,7 @@
 
 #include "compute/buffer.h"
 #include "compute/executor.h"
+#include "passes/world_shift.h"
 #include "shared/cluster_types.h"
 #include "shared/kmeans_types.h"
 #include "shared/vpl_types.h"
@@ -28,6 +29,9 @@ struct ClusterSeeds {
     const Buffer& clusters;
     const Buffer& dead;
 };
+
+// Brings clusters (lw_cluster each) of an earlier frame to this one's origin.
+void moveClusters(Executor& executor, const Buffer& clusters, std::uint32_t count, const KeptPlaces& kept);
 
 class KMeans {
 public:
@@ -66,6 +70,7 @@ private:
     Buffer sites_, partials_, means_, frameBuffer_, clusters_, assignment_;
     std::uint32_t clusterCount_ = 0;
     bool warm_ = false;
+    KeptPlaces kept_;
 };
 
 }  // namespace lightwell

@@ -78,6 +78,9 @@ void LightList::recordLights(Executor& executor, double diagonal) {
     losses_.reserve(device_, count * sizeof(float), "losses of VPLs");
     if (!centresKnown_)
         executor.fill("light_list.restart", centres_, 0, 0, most * sizeof(lw_listed_centre));
+    else if (follows_.moves(executor))
+        follows_.move(executor, centres_, {most, 0, sizeof(lw_listed_centre) / sizeof(float)});
+    follows_.arrive(executor);
     const cl_int lists = cl_int(lists_), alone = order_.count <= cl_int(most) ? 1 : 0;
     const float scale = diagonal > 0.0 ? float(std::min(1.0 / (diagonal * diagonal), kMostScale)) : 0.0f;
     const auto assign = [&] {

@@ -6,6 +6,7 @@
 #include "compute/buffer.h"
 #include "compute/executor.h"
 #include "compute/report.h"
+#include "passes/world_shift.h"
 #include "shared/static_vpl_types.h"
 #include "shared/subset_order.h"
 
@@ -62,6 +63,7 @@ private:
     std::uint32_t lists_ = 1;
     std::uint32_t places_ = ~0u;  // whose states kept_ holds
     bool centresKnown_ = false;
+    KeptPlaces follows_;  // centres_
 };
 
 }  // namespace lightwell

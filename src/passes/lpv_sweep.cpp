@@ -193,6 +193,9 @@ void LpvSweep::recordBounce(Executor& executor, Field field, const LpvRest* rest
 
 bool LpvSweep::begin(Executor& executor, bool restart) {
     reserve(executor);
+    if (kept_.moves(executor))
+        for (const Buffer* place : {&place_, &unitPlace_, &shownPlace_}) kept_.move(executor, *place, {});
+    kept_.arrive(executor);
     const bool all = restart || !isShown_ || options_.frames == 1;
     if (all) nextGroup_ = bounce_ = 0;
     step_ = all ? LW_SWEEP_GROUPS : LW_SWEEP_GROUPS / options_.frames;
@@ -253,8 +256,7 @@ void LpvSweep::recordGather(Executor& executor, const Planes& position, const Pl
     const Range items{(position.width + gather_.width() - 1) / gather_.width(), position.height};
     executor.run("lpv_sweep.gather", gather_, items, gather_.width() == 1 ? Range{64, 1} : Range{8, 1}, position, normal,
                  cl_int(position.width), cl_int(position.height), places ? *places : shownPlace_, cl_int(layer.index),
-                 cl_int(layer.count), cl_int(options_.size),
-                 cells(), cl_int(irradiance ? 1 : 0), cl_int(validity ? 1 : 0),
+                 cl_int(layer.count), cl_int(options_.size), cells(), cl_int(irradiance ? 1 : 0), cl_int(validity ? 1 : 0),
                  orElse(irradiance), orElse(validity), counts);
 }
 

@@ -13,6 +13,7 @@
 #include "passes/harmonics.h"
 #include "passes/lpv_cascades.h"
 #include "passes/lpv_rest.h"
+#include "passes/world_shift.h"
 #include "shared/lpv_types.h"
 
 namespace lightwell {
@@ -63,6 +64,7 @@ public:
     // whether all shall be done; while not done: of all grids recordStart() where isAtStart(), recordPart(), then recordEnd() once.
     bool begin(Executor& executor, bool restart);
     bool isAtStart() const { return nextGroup_ == 0 && bounce_ == 0; }
+    bool isShown() const { return isShown_; }  // there is a result
     bool isDone() const { return bounce_ == options_.bounces; }
     void recordStart(Executor& executor, const LpvSweepInput& input);
     // True once a bounce is complete. inner: place() of the grid within this one, with options.hasInner.
@@ -123,6 +125,7 @@ private:
     std::shared_ptr<Flight> flights_[kFields];
     bool ownsScratch_, ownsFlights_;
     Buffer areas_, cover_, outside_, largest_, outerLargest_;
+    KeptPlaces kept_;                        // the next three
     Buffer place_, unitPlace_, shownPlace_;  // of the light that is under way, in the last bounce's unit, of what is shown
     Buffer bounceCells_, totalCells_, shownCells_, outerCells_;
     std::uint32_t step_ = 0;  // groups of directions that a call does

@@ -1,5 +1,7 @@
 #include "passes/phantom_vpl.h"
 
+#include <cstddef>
+
 #include "compute/device.h"
 
 namespace lightwell {
@@ -15,6 +17,9 @@ void PhantomVpl::record(Executor& executor, const Buffer& inputs, const lw_stati
     const auto phantoms = std::uint32_t(frame.phantomCount);
     options.lists = cl_int(list.lists());
     options.keep = known_ == phantoms ? 1 : 0;
+    if (kept_.moves(executor))
+        kept_.move(executor, states_, {known_, offsetof(lw_phantom_state, position) / sizeof(float), sizeof(lw_phantom_state) / sizeof(float)});
+    kept_.arrive(executor);
     if (phantoms) {
         states_.reserve(device_, phantoms * sizeof(lw_phantom_state), "states of phantom VPLs");
         Planes known = texels;

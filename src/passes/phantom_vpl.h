@@ -6,6 +6,7 @@
 #include "compute/buffer.h"
 #include "compute/executor.h"
 #include "passes/light_list.h"
+#include "passes/world_shift.h"
 #include "shared/static_vpl_types.h"
 
 namespace lightwell {
@@ -37,6 +38,7 @@ private:
     Kernel &make_, &opposite_;
     Buffer states_;
     std::uint32_t known_ = 0;
+    KeptPlaces kept_;
 };
 
 }  // namespace lightwell

@@ -70,6 +70,10 @@ void SsvpPlan::begin(Executor& executor, bool restart) {
         executor.fill("ssvp_plan.begin", plan_, 1, 0, std::size_t(kPlanBytes));  // every bounce is used
     }
     for (Stage& stage : stages_) stage.isKnown = stage.isKnown && !restart_;
+    if (kept_.moves(executor))
+        for (const Stage& stage : stages_)
+            if (stage.isKnown) moveClusters(executor, stage.clusters, options_.clusters, kept_);
+    kept_.arrive(executor);
 }
 
 void SsvpPlan::recordVpls(Executor& executor, const RsmInput& rsms, const Buffer& texelSums,

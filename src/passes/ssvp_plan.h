@@ -64,6 +64,7 @@ private:
     Buffer plan_, rowSquares_;
     std::deque<Stage> stages_;
     bool restart_ = true, hasTexels_ = false, isBegun_ = false;
+    KeptPlaces kept_;
 };
 
 }  // namespace lightwell

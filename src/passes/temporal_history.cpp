@@ -76,6 +76,7 @@ void TemporalHistory::checkCamera(const LWGBuffer& gbuffer, std::uint32_t width,
 
 void TemporalHistory::record(Executor& executor, const HistoryFrame& frame, const LWCamera& camera, ViewHistory& view) {
     const Planes& now = frame.position;
+    const WorldOrigin& origin = executor.worldOrigin();
     Camera own(camera, now.width, now.height, "gbuffer.camera");
     // The same picture once more in an update, such as after an lwRender that failed late, takes the place of the first: counted
     // twice, its samples would outweigh those of other frames.
@@ -88,8 +89,8 @@ void TemporalHistory::record(Executor& executor, const HistoryFrame& frame, cons
     if (drawn.camera) {
         // Motion vectors lead one frame back: across more, and within one, a view goes by its cameras.
         const bool moves = frame.motion && lead == 1;
-        mode = moves ? LW_HISTORY_MOTION : drawn.isOf(camera, now.width, now.height) ? LW_HISTORY_STILL : LW_HISTORY_REPROJECT;
-        where = reprojection(*drawn.camera, drawn.width, drawn.height, now);
+        mode = moves ? LW_HISTORY_MOTION : drawn.origin == origin && drawn.isOf(camera, now.width, now.height) ? LW_HISTORY_STILL : LW_HISTORY_REPROJECT;
+        where = reprojection(*drawn.camera, drawn.width, drawn.height, now, drawn.origin, origin);
     }
     const Planes before = view.planes(1 - next, std::uint32_t(where.width), std::uint32_t(where.height));
     const Planes after = view.planes(next, now.width, now.height);
@@ -101,7 +102,7 @@ void TemporalHistory::record(Executor& executor, const HistoryFrame& frame, cons
     executor.run("temporal_history.blend", blend_, itemsOver(now, blend_), groupOf(blend_), now, frame.normal, cl_int(now.width),
                  cl_int(now.height), frame.current, motion, mode, where, cl_float(options_.frames), cl_float(options_.clamp),
                  before, after, frame.irradiance, first, second, view.counts_);
-    view.drawn_[next] = {now.width, now.height, camera, std::move(own)};
+    view.drawn_[next] = {now.width, now.height, camera, std::move(own), origin};
     view.last_ = next;
     view.isDrawn_ = true;
     view.lead_ = lead;

@@ -64,6 +64,7 @@ private:
         std::uint32_t width = 0, height = 0;
         LWCamera matrices{};
         std::optional<Camera> camera;
+        WorldOrigin origin{};  // of its positions
         bool isOf(const LWCamera& from, std::uint32_t w, std::uint32_t h) const;
     };
     std::array<Drawn, 2> drawn_;

@@ -12,6 +12,9 @@ constexpr const char* kProgram = "voxel_light/voxel_receivers";
 constexpr std::size_t kRun = 64;  // RECEIVER_RUN of the kernels
 constexpr Range kListGroup{16, 1};
 constexpr Range kBrickGroup{4, 1};
+// How far off its last place, in voxels, a grid is the same one where the origin of positions has moved: what that rounds. More: a grid
+// that moves as well hears what another place has heard.
+constexpr float kSamePlace = 0.01f;
 
 std::size_t bricksOf(std::uint32_t size) {
     return std::size_t(voxel_table(cl_int(size), 1));
@@ -51,6 +54,10 @@ void VoxelReceivers::record(Executor& executor, const VoxelSurfaces& surfaces, c
         room_ = room;
         slots_ = surfaces.slots;
     }
+    const bool moves = kept_.moves(executor);
+    if (moves) kept_.move(executor, points_, {room_, 0, 1, room_});
+    if (moves) kept_.move(executor, place_, {});
+    kept_.arrive(executor);
     light.reserveHeard(executor, surfaces.slots);
     LwVoxelContents contents{};
     contents.size = cl_int(size_);
@@ -60,7 +67,7 @@ void VoxelReceivers::record(Executor& executor, const VoxelSurfaces& surfaces, c
     executor.run(pass, count_, bricks, kBrickGroup, contents, surfaces.bricks, surfaces.surfaces,
                  mips.work(), counts_);
     executor.run(pass, scan_, {1, 1}, {1, 1}, place, place_, cl_int(bricksOf(size_)), cl_int(room_),
-                 cl_int(isNew ? 1 : 0), mips.work(), counts_, state_);
+                 cl_int(isNew ? 1 : 0), cl_float(moves ? kSamePlace : 0.0f), mips.work(), counts_, state_);
     executor.run(pass, list_, bricks, kBrickGroup, place, contents, surfaces.bricks, surfaces.surfaces,
                  mips.work(), counts_, cl_int(room_), state_, before_, light.irradiance(), points_,
                  voxels_);

@@ -6,6 +6,7 @@
 #include "compute/buffer.h"
 #include "compute/executor.h"
 #include "passes/voxel_light.h"
+#include "passes/world_shift.h"
 
 namespace lightwell {
 
@@ -45,6 +46,7 @@ private:
     std::uint32_t size_, slots_ = 0, room_ = 0;
     Kernel &count_, &scan_, &list_, &end_, &hear_;
     Buffer counts_, before_, points_, gathered_, voxels_, place_, state_;
+    KeptPlaces kept_;  // points_, place_
 };
 
 }  // namespace lightwell

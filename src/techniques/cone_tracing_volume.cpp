@@ -68,7 +68,7 @@ ConeTracingVolume::ConeTracingVolume(Device& device, const LWConeTracingDesc& de
 void ConeTracingVolume::check(const LWFrame& frame) {
     surfaces_.check(frame);
     RsmInput::check(device_, frame);
-    box_.look(frame.geometry);
+    box_.look(frame);
 }
 
 GridPlacement ConeTracingVolume::placementOf(const LWFrame& frame, bool refit) const {
@@ -78,7 +78,7 @@ GridPlacement ConeTracingVolume::placementOf(const LWFrame& frame, bool refit) c
     placement.refit = refit;
     placement.hasFocus = frame.focus != nullptr;
     for (int a = 0; a < 3; ++a) {
-        placement.centre[a] = desc_.center[a];
+        placement.centre[a] = float(double(desc_.center[a]) - frame.worldOrigin[a]);
         placement.low[a] = box_.low()[a];
         placement.high[a] = box_.high()[a];
         placement.focus[a] = frame.focus ? frame.focus[a] : 0.0f;

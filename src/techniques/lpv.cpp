@@ -52,14 +52,13 @@ public:
     LpvTechnique(Device& device, const LWLpvDesc& desc, int hidden = 0)
         : device_(device), desc_(desc), hidden_(hidden), volume_(makeLpvVolume(device, desc, hidden)) {
         if (isHalf(desc)) bilateral_.emplace(device);
-        for (int a = 0; a < 3; ++a) placement_.centre[a] = desc.center[a];
         placement_.extent = desc.extent;
     }
 
     void update(Executor& executor, const LWFrame& frame) override {
         checkEnvironment(frame);
         volume_->check(frame);
-        box_.look(frame.geometry);
+        box_.look(frame);
         rsms_.import(executor, frame);
         const bool lost = continuity_.beginLost();
         if (lost) remake();
@@ -117,7 +116,10 @@ private:
         }
         placement_.refit = frame.reset != 0 || lost;
         placement_.hasFocus = frame.focus != nullptr;
-        for (int a = 0; a < 3; ++a) placement_.focus[a] = frame.focus ? frame.focus[a] : 0.0f;
+        for (int a = 0; a < 3; ++a) {
+            placement_.centre[a] = float(double(desc_.center[a]) - frame.worldOrigin[a]);
+            placement_.focus[a] = frame.focus ? frame.focus[a] : 0.0f;
+        }
     }
 
     // Frames may bring all of the sources or none, and `auto` takes the first there is.

@@ -26,6 +26,9 @@ void LpvSweepCascades::record(Executor& executor, const LWFrame& frame, const Rs
         all = sweeps_[c]->begin(executor, inputs[c].restart);
     }
     const LpvSweep& any = *sweeps_[0];
+    // What is shown may lie elsewhere than when it was made: the origin of positions may have moved.
+    if (any.isShown() && !all)
+        for (std::size_t c = 0; c < sweeps_.size(); ++c) places_.recordTable(executor, c, sweeps_[c]->shownPlace());
     do {
         if (any.isAtStart())
             for (std::size_t c = 0; c < sweeps_.size(); ++c) sweeps_[c]->recordStart(executor, inputs[c]);

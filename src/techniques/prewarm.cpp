@@ -161,6 +161,9 @@ void exerciseTechnique(Executor& executor, Technique& technique, std::uint32_t k
         LWFrame dark{};
         dark.structSize = sizeof dark;
         dark.geometry = &geometry;
+        // From another origin: what was kept has to be brought there.
+        dark.worldOrigin[0] = 1.0;
+        executor.setWorldOrigin({1.0, 0.0, 0.0});
         technique.update(executor, dark);
         output.shadow = LWImage{};  // of which light?
         technique.render(executor, view, gbuffer, output);
@@ -175,6 +178,7 @@ void exerciseTechnique(Executor& executor, Technique& technique, std::uint32_t k
             alone.validity = imageOf(inputs.validity, LW_FORMAT_FLOAT1);
             technique.render(executor, view, gbuffer, alone);
         }
+        executor.setWorldOrigin({});
         executor.device().finish();
     }
 }

@@ -207,9 +207,14 @@ void StaticVplTechnique::prewarm(Executor& executor, const std::shared_ptr<View>
     frame.structSize = sizeof frame;
     frame.staticVpls = places;
     frame.staticVplCount = 2;
-    twin.update(executor, frame);
     LWListedLight light;
-    twin.readLightList(executor, &light);
+    for (const double x : {0.0, 1.0}) {  // and from another origin
+        frame.worldOrigin[0] = x;
+        executor.setWorldOrigin({x, 0.0, 0.0});
+        twin.update(executor, frame);
+        twin.readLightList(executor, &light);
+    }
+    executor.setWorldOrigin({});
     device_.finish();
 }
 

@@ -11,7 +11,7 @@ VoxelShadows::VoxelShadows(Device& device, std::uint32_t size)
 
 void VoxelShadows::recordVoxels(Executor& executor, const LWFrame& frame, const RsmInput& rsms, const VoxelSurfaces& surfaces,
                                 bool forget) {
-    box_.look(frame.geometry);
+    box_.look(frame);
     if (forget || surfaces.isOther) grid_.forget();
     if (forget) visibility_.forget();
     GridPlacement placement;

@@ -29,7 +29,7 @@ public:
     VoxelShadows(Device& device, std::uint32_t size);
 
     // Throws what recordVoxels() would say of this frame's triangles, which the grid reaches around also where voxels are made of others.
-    void check(const LWFrame& frame) { box_.look(frame.geometry); }
+    void check(const LWFrame& frame) { box_.look(frame); }
     // Passes "grid_place.*" and "voxel_grid.*". forget: of what was left of earlier frames nothing counts.
     void recordVoxels(Executor& executor, const LWFrame& frame, const RsmInput& rsms, const VoxelSurfaces& surfaces, bool forget);
     // Passes "voxel_visibility.*", of those voxels.

@@ -171,7 +171,7 @@ TEST_CASE("motion may hold the jitter of the matrices or not, and means nothing 
 TEST_CASE("positions far from the origin are rounded, which is no fault of motion or space", "[check]") {
     const lightwell::Device device;
     const bool half = GENERATE(true, false);
-    for (const double offset : {1e3, half ? 2e4 : 1e8}) {
+    for (const double offset : {1e3, half ? 2e4 : 1e5, half ? 1e3 : 1e8}) {
         const glm::dvec3 origin(offset, 0.0, offset / 2);
         DrawnFrame f;
         f.positionFormat = half ? LW_FORMAT_HALF4 : LW_FORMAT_FLOAT3;
@@ -182,7 +182,10 @@ TEST_CASE("positions far from the origin are rounded, which is no fault of motio
         camera.eye += origin;
         f.draw(camera, kWidth, kHeight);
         INFO("offset " << offset);
-        expectClean(check(device, f));
+        if (offset < 1e8)
+            expectClean(check(device, f));
+        else
+            expectOne(check(device, f), "far-from-origin", "gbuffer.position", LW_SEVERITY_WARNING);
     }
 }
 

@@ -310,7 +310,7 @@ TEST_CASE("abuse of lwCheckInputs is refused and named", "[check]") {
 
 TEST_CASE("every fault has a name, a summary and a colour of its own", "[check]") {
     const std::uint32_t count = lwCountInputFaults();
-    CHECK(count == LW_FAULT_LIGHT_CAMERA + 1u);
+    CHECK(count == LW_FAULT_FAR_FROM_ORIGIN + 1u);
     std::vector<std::string> names, colours;
     for (std::uint32_t i = 0; i < count; ++i) {
         auto info = lightwell::make<LWInputFaultInfo>();

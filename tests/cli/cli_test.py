@@ -439,6 +439,10 @@ class Check(CommandLine):
         self.assertIn("warning motion-static", text)
 
     def test_wrong_arguments(self):
+        spoilt = json.loads(run("check", "cornell", *SIZE, "--rsm-size", "64", "--plant", "flux-pi", "--light", "rsm vpls=64", "--json").stdout)
+        self.assertAlmostEqual(spoilt["light"]["mean"], 0.31831, places=4)  # all is linear in flux
+        self.assertEqual((spoilt["light"]["black"], spoilt["light"]["off"]), (0, 1))
+        self.refused(["check", "cornell", *SIZE, "--light", "rms"], "rms", "static_vpl")
         self.refused(["check"], "SCENE")
         self.refused(["check", "cornell", *SIZE, "--plant", "flux-pie"], "flux-pie", "flux-pi", "motion-sign")
         self.refused(["check", "basic", *SIZE, "--plant", "light-position"], "light-position", "spot or point light")

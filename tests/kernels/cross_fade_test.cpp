@@ -236,3 +236,23 @@ TEST_CASE("motion vectors lead to what a moving surface showed", "[cross_fade]")
     for (std::uint32_t x = 2; x < w; ++x) CHECK(double(shown.irradiance[x]) == Approx(0.5 * (x - 2.0) + 50.0).epsilon(1e-5));
     for (std::uint32_t x = 0; x < 2; ++x) CHECK(shown.irradiance[x] == 100.0f);
 }
+
+TEST_CASE("a fade goes on where the origin of positions moves", "[cross_fade]") {
+    KernelRig rig(GENERATE(1u, 16u));
+    const auto [w, h] = testSize({67, 33});
+    FadeRig fade(rig, w, h);
+    Frame frame = still(w, h), moved(w, h);
+    const WorldOrigin first{1e6, 0.0, -2e5}, second{1e6 + 12.37, -40.1, -2e5 + 3000.0};
+    TestCamera camera = pixelCamera(w, h);
+    for (int a = 0; a < 3; ++a) camera.eye[a] = first[std::size_t(a)] - second[std::size_t(a)];
+    moved.look(camera, flat);
+    frame.shine(noise);
+    moved.shine([](std::uint32_t x, std::uint32_t y) { return noise(x, y) * 3.0; });
+    rig.executor().setWorldOrigin(first);
+    fade.render(frame, 1.0f);
+    rig.executor().setWorldOrigin(second);
+    const Shown shown = fade.render(moved, 0.5f);
+    CHECK(fade.fresh() == 0);
+    for (std::size_t i = 0; i < shown.irradiance.size(); ++i)
+        REQUIRE(double(shown.irradiance[i]) == Approx(2.0 * double(frame.light.planes[i])).epsilon(1e-6));
+}

@@ -102,6 +102,36 @@ TEST_CASE("grids within a fitted one begin at multiples of the unit wherever the
     }
 }
 
+TEST_CASE("grids stay on the cells of the world where the origin of positions moves", "[grid_place]") {
+    PlacesRig rig(GENERATE(1u, 16u));
+    const bool isFitted = GENERATE(false, true);
+    const double focus[3] = {0.3, -7.9, 2.4};
+    const WorldOrigin first{1e7, -3e5, 0.0}, moves[] = {{1e7 + 12.37, -3e5 - 4.71, 8.93}, {1e7 - 700.0, -3e5 + 0.1, 1e3}, {1e7, -3e5, 0.0}};
+    const auto placed = [&](const WorldOrigin& origin) {
+        rig.executor().setWorldOrigin(origin);
+        std::vector<LWVpl> vpls = corners(-9.0f, 11.0f);
+        double at[3];
+        for (std::size_t a = 0; a < 3; ++a) {
+            const double by = first[a] - origin[a];
+            at[a] = focus[a] + by;
+            for (LWVpl& vpl : vpls) vpl.position[a] = float(double(vpl.position[a]) + by);
+        }
+        rig.place(around(at[0], at[1], at[2], isFitted ? 0 : 13.3), vpls);
+        return rig.table();
+    };
+    const std::vector<LwGridPlace> before = placed(first);
+    for (const WorldOrigin& origin : moves) {
+        const std::vector<LwGridPlace> now = placed(origin);
+        for (std::size_t l = 0; l < kLevels; ++l)
+            for (std::size_t a = 0; a < 3; ++a) {
+                INFO("level " << l << ", axis " << a);
+                // Rounding of coordinates up to 1000; a cell is 0.1 and more.
+                CHECK(double(now[l].origin.s[a]) + origin[a] - first[a] == Approx(double(before[l].origin.s[a])).margin(3e-4));
+                CHECK(now[l].cell.s[0] == before[l].cell.s[0]);
+            }
+    }
+}
+
 TEST_CASE("what places take is what is estimated", "[grid_place]") {
     PlacesRig rig(16);
     rig.place(around(0, 0, 0, 8), corners(-1.0f, 1.0f));

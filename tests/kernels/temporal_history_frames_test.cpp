@@ -225,3 +225,29 @@ TEST_CASE("rare bright frames keep their mean", "[temporal_history][large]") {
     CHECK(sum / own == Approx(1.0).margin(0.02));
     CHECK(square - sum * sum / count < 0.75 * (ownSquare - own * own / count));
 }
+
+TEST_CASE("a history goes on where the origin of positions moves, with the camera at rest and in motion", "[temporal_history]") {
+    KernelRig rig(GENERATE(1u, 16u));
+    const double step = GENERATE(0.0, 1.3);
+    const auto byMotion = GENERATE(false, true);
+    HistoryRig stays(rig, frames(16), kWidth, kHeight), moves(rig, frames(16), kWidth, kHeight);
+    const WorldOrigin place{1e6 + 0.3, -70.0, 2e5};
+    TestCamera camera = pixelCamera(kWidth, kHeight);
+    for (std::uint32_t f = 0; f < 5; ++f) {
+        CAPTURE(step, byMotion, f);
+        const WorldOrigin origin{place[0] + 12.37 * f, place[1] - 4.7 * f, place[2] + (f > 2 ? 1000.0 : 0.0)};
+        TestCamera elsewhere = camera;
+        for (int a = 0; a < 3; ++a) elsewhere.eye[a] += place[std::size_t(a)] - origin[std::size_t(a)];
+        Frame expected = frameOf(camera, f), moved = frameOf(elsewhere, f);
+        for (Frame* frame : {&expected, &moved})
+            if (byMotion) frame->move([=](std::uint32_t, std::uint32_t) { return Vec{step, 0, 0}; });
+        rig.executor().setWorldOrigin(place);
+        const Image still = stays.render(expected);
+        rig.executor().setWorldOrigin(origin);
+        const Image shown = moves.render(moved);
+        CHECK(moves.fresh() == stays.fresh());
+        // A place between pixels, by 1e-4 of one, of light between 0 and 1.
+        for (std::size_t i = 0; i < shown.planes.size(); ++i) REQUIRE(double(shown.planes[i]) == Approx(double(still.planes[i])).margin(3e-4));
+        camera.eye = camera.eye + camera.right * step;
+    }
+}
