@@ -5,6 +5,7 @@ docs/accuracy.md, their pictures, and what tests hold the C++ to.
     docs/figures/planner.py                                    from planner_data.json alone: a minute
     docs/figures/planner.py --measure [--lightwell PROGRAM]    measures first: hours where truths are not cached
     docs/figures/planner.py --collect --work DIR               takes what was measured below DIR
+    docs/figures/planner.py --maps [--lightwell PROGRAM]       measures what maps take to draw, and nothing else
 
 The models are in planner_model.py, the measuring in planner_measure.py, the pages in planner_page.py and planner_choosing.py.
 """
@@ -30,6 +31,7 @@ def main():
     parser.add_argument("--work", type=pathlib.Path, default=ROOT / "build/planner")
     parser.add_argument("--measure", action="store_true")
     parser.add_argument("--collect", action="store_true")
+    parser.add_argument("--maps", action="store_true")
     parser.add_argument("--date", default=datetime.date.today().isoformat())
     options = parser.parse_args()
     if options.measure:
@@ -37,6 +39,8 @@ def main():
         planner_measure.measure(options.lightwell, options.work)
     if options.measure or options.collect:
         planner_measure.collect(options.work, options.date)
+    if options.maps:
+        planner_measure.put_maps(options.lightwell)
     data = Data()
     kept = rows_of_table(data)
     heldOut = leave_scenes_out(data, kept)
@@ -76,6 +80,29 @@ def needs_of(technique, settings):
             "screen_space": NEEDS["radiance"] | NEEDS["camera"], "horizon": NEEDS["radiance"] | NEEDS["camera"]}[technique]
 
 
+def maps_of(technique, settings):
+    """Maps of 128 x 128 texels that a frame draws whose lights have moved: each bounce but the last is drawn out of maps, and light is shadowed
+    by maps of the first bounce and, unless shadowed_bounces=1, of the second."""
+    if technique == "fallback":
+        parts = [s for s in settings.split() if s.startswith("second.")]
+        return maps_of(dict(s.split("=") for s in settings.split())["second"], " ".join(s[7:] for s in parts))
+    if technique != "ssvp":
+        return 0.0
+    value = {"clusters": 8, "map_size": 128, "bounces": 2, "shadowed_bounces": 2}
+    value |= {k: int(v) for k, v in (s.split("=") for s in settings.split()) if k in value}
+    sets = max(value["bounces"] - 1, min(value["bounces"], value["shadowed_bounces"]))
+    return sets * value["clusters"] * (value["map_size"] / 128) ** 2
+
+
+def fit_maps(data):
+    """ms of a map, fixed and by a million triangles; neither is negative. Scenes lie a decade apart: by what is off relative to what it is."""
+    measured = data.raw["maps"]
+    ms = np.array([m["ms"] / m["maps"] for m in measured])
+    columns = np.array([[1.0, m["triangles"] * 1e-6] for m in measured])
+    fit = np.linalg.lstsq(columns / ms[:, None], np.ones(len(ms)), rcond=None)[0]
+    return fit if fit.min() >= 0.0 else np.array([ms.mean(), 0.0])
+
+
 def spread(data, log):
     """Standard deviation of what predictions of unseen scenes were off by: a candidate's own, drawn half towards that of all."""
     off = (log - data.log) ** 2
@@ -93,14 +120,15 @@ def write_tables(data, kept, model, costs, sigma):
     lines = ["// Written by docs/figures/planner.py; see plan_row.h for what it means.", "#pragma once", "", '#include "planner/plan_row.h"', "",
              "namespace lightwell {", "",
              f'constexpr PlanReference kPlanReference = {{"{data.raw["device"]}", {rates["multiply_add_gflops"]:.4g}, {rates["bandwidth_GBps"]:.4g}, '
-             f'{rates["launch_us"]:.3g}, {facing:.3g}}};', "", "constexpr PlanProbeScale kPlanScales[kPlanProbes] = {"]
+             f'{rates["launch_us"]:.3g}, {facing:.3g}}};', "",
+             f"constexpr PlanMaps kPlanMaps = {{{numbers(fit_maps(data))}}};", "", "constexpr PlanProbeScale kPlanScales[kPlanProbes] = {"]
     for k, name in enumerate(PROBES):
         lines.append(f'    {{"{name}", {FLOORS[k]:g}, {model.mean[k]:.4f}, {model.deviation[k]:.4f}, {-LIMIT}, {LIMIT}}},')
     lines += ["};", "", "constexpr PlanRow kPlanRows[] = {"]
     for c in order:
         technique, settings = data.candidates[c]
         launches = data.raw["candidates"][c]["launches"]
-        lines.append(f'    {{"{technique}", "{settings}", {needs_of(technique, settings)}, {launches:g}, {{{numbers(costs[c])}}}, {model.means[c]:.4f},\n'
+        lines.append(f'    {{"{technique}", "{settings}", {needs_of(technique, settings)}, {launches:g}, {maps_of(technique, settings):g}, {{{numbers(costs[c])}}}, {model.means[c]:.4f},\n'
                      f"     {{{numbers(model.slopes[:, c])}}}, {sigma[c]:.4f}}},")
     lines += ["};", "", "}  // namespace lightwell", ""]
     path = ROOT / "src/planner/plan_tables.h"

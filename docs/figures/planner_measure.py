@@ -74,6 +74,8 @@ fallback first=horizon second=ssvp first.directions=8 second.bounces=3 second.re
 fallback first=screen_space second=cone_tracing first.samples=16 second.size=32 second.cones=6 second.bounces=0 second.resolution=quarter
 fallback first=screen_space second=rsm first.samples=16 second.visibility=voxel second.resolution=half
 """.strip().splitlines()
+# Scenes of few triangles and of many, for what a map takes to draw; of how many maps.
+MAPPED, MAPS = ["rooms", "bunny_corner", "sibenik", "sponza_crytek"], 16
 # A point alone needs a parameter: one at its default.
 ALONE = {"rsm": "vpls=256", "ssvp": "vpls=256", "screen_space": "samples=64", "horizon": "steps=2"}
 RIVALS = [f"rival,bounces=2,spp={spp},resolution={resolution}" for spp in (1, 2, 4, 8) for resolution in ("full", "half", "quarter")]
@@ -112,6 +114,7 @@ def measure(program, work):
         {"technique": t, "rsm_size": n, "ms": json.loads(lightwell("render", "cornell", "--technique", t, "--set", "resolution=half", "--rsm-size", n,
                                                                    "--size", "1280x720", "--frames", 11, "--json"))["wall_ms"]}
         for t in ("rsm", "ssvp") for n in RSM_SIZES]))
+    (work / "maps.json").write_text(json.dumps(maps(program)))
     (work / "launches.json").write_text(json.dumps({c: launches(lightwell, c) for c in CANDIDATES}))
     (work / "rates.json").write_text(json.dumps([json.loads(lightwell("devices", "--probe", "--json"))[0] for _ in range(4)]))
 
@@ -120,6 +123,25 @@ def probe(lightwell, view):
     plan = json.loads(lightwell("plan", view["scene"], "--camera", view["camera"], "--budget-ms", 33, "--json"))
     named = {name: plan["probes"][re.sub("[A-Z]", lambda letter: "_" + letter.group().lower(), name)] for name in PROBES}
     return {"scene": view["scene"], "camera": view["camera"], "probes": named, "triangles": plan["triangles"]}
+
+
+def maps(program):
+    """Milliseconds that a first frame's maps take, of 128 x 128 texels each: the least of three."""
+    def lightwell(*arguments):
+        return json.loads(subprocess.run([program, *map(str, arguments), "--json"], capture_output=True, text=True, check=True).stdout)
+
+    def once(scene):
+        frame = lightwell("render", scene, "--technique", "ssvp", "--set", f"clusters={MAPS}", "bounces=1", "--size", "320x180", "--frames", 1, "--warmup", 0)
+        return sum(p["ms"] for p in frame["passes"] if p["name"].startswith("paraboloid_map."))
+
+    return [{"scene": scene, "triangles": lightwell("plan", scene, "--budget-ms", 33)["triangles"], "maps": MAPS,
+             "ms": rounded(min(once(scene) for _ in range(3)))} for scene in MAPPED]
+
+
+def put_maps(program):
+    data = json.loads(DATA.read_text())
+    data["maps"] = maps(program)
+    DATA.write_text(compact(data), encoding="utf-8")
 
 
 def launches(lightwell, candidate):
@@ -191,7 +213,7 @@ def collect(work, date):
               "candidates": [{"technique": parted(c)[0], "settings": parted(c)[1], "launches": launched.get(c, 0)} for c in pick(CANDIDATES)],
               "views": [{**v, "noise": noise_of(charts, v)} for v in probed],
               "errors": list(map(pick, errors)), "ms": list(map(pick, ms)),
-              "sizes": [{**entry, "ms": pick(entry["ms"])} for entry in sizes(work, threads, beyond)], "ms_per_megatexel": per_megatexel(work), "rival": rivals(work, threads, beyond)}
+              "sizes": [{**entry, "ms": pick(entry["ms"])} for entry in sizes(work, threads, beyond)], "ms_per_megatexel": per_megatexel(work), "maps": json.loads((work / "maps.json").read_text()), "rival": rivals(work, threads, beyond)}
     DATA.write_text(compact(result), encoding="utf-8")
     print(DATA)
 

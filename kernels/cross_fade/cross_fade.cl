@@ -51,17 +51,17 @@ __kernel void cross_fade_mix(__global const float* position, int4 positionLayout
     real shown[LW_MIXED];
     LW_UNROLL for (int c = 0; c < LW_MIXED; ++c) {
         shown[c] = select_(own[c], fma_(own[c] - past[c], (real)share, past[c]), mixes);
-        store(select_((real)0.0f, shown[c], finite), after, o + c * plane);
+        store_past(select_((real)0.0f, shown[c], finite), after, o + c * plane);
     }
     if (hasIrradiance)
         LW_UNROLL for (int c = 0; c < 3; ++c)
-            store(shown[c], shownIrradiance, shownIrradianceLayout.x + c * shownIrradianceLayout.z + y * shownIrradianceLayout.y + x);
-    if (hasValidity) store(shown[3], shownValidity, shownValidityLayout.x + y * shownValidityLayout.y + x);
-    store(s.px, after, o + LW_POSITION_PLANE * plane);
-    store(s.py, after, o + (LW_POSITION_PLANE + 1) * plane);
-    store(s.pz, after, o + (LW_POSITION_PLANE + 2) * plane);
+            store_past(shown[c], shownIrradiance, shownIrradianceLayout.x + c * shownIrradianceLayout.z + y * shownIrradianceLayout.y + x);
+    if (hasValidity) store_past(shown[3], shownValidity, shownValidityLayout.x + y * shownValidityLayout.y + x);
+    store_past(s.px, after, o + LW_POSITION_PLANE * plane);
+    store_past(s.py, after, o + (LW_POSITION_PLANE + 1) * plane);
+    store_past(s.pz, after, o + (LW_POSITION_PLANE + 2) * plane);
     const lanei age = selecti_((lanei)0, (lanei)1, finite);
-    store(pack_word(s.nx, s.ny, s.nz, age, splat_mask(0)), (__global uint*)after, o + LW_WORD_PLANE * plane);
+    store_past(as_real_(pack_word(s.nx, s.ny, s.nz, age, splat_mask(0))), after, o + LW_WORD_PLANE * plane);
     const mask fresh = and_(surface, not_(known));
-    if (any_(fresh)) atomic_add(counts, count_(fresh));
+    if (share < 1.0f && any_(fresh)) atomic_add(counts, count_(fresh));
 }

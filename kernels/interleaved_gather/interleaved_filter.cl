@@ -50,10 +50,10 @@ LW_FN void store_mean(const lw_window_sum sum, mask valid, __global float* filte
     // The pixel itself has weight 1 up to rounding, so the sum is never small.
     const real scale = select_((real)0.0f, 1.0f / sum.weight, and_(valid, sum.weight > 0.0f));
     const int o = filteredLayout.x + y * filteredLayout.y + x;
-    store(sum.r * scale, filtered, o);
-    store(sum.g * scale, filtered, o + filteredLayout.z);
-    store(sum.b * scale, filtered, o + 2 * filteredLayout.z);
-    if (hasValidity) store(ones_(valid), validity, validityLayout.x + y * validityLayout.y + x);
+    store_past(sum.r * scale, filtered, o);
+    store_past(sum.g * scale, filtered, o + filteredLayout.z);
+    store_past(sum.b * scale, filtered, o + 2 * filteredLayout.z);
+    if (hasValidity) store_past(ones_(valid), validity, validityLayout.x + y * validityLayout.y + x);
 }
 
 // One work-item = LW_WIDTH adjacent pixels of LW_FILTER_ROWS rows. irradiance -> filtered: 3 planes, W/m^2. validity: 1 on

@@ -24,8 +24,8 @@ LW_FN lw_pair load_pair(__global const float* image, int row, int x, int rowEnd)
 }
 
 LW_FN void store_pair(__global float* plane, int at, int hasSecond, real even, real odd) {
-    store(zip_lo_(even, odd), plane, at);
-    if (hasSecond) store(zip_hi_(even, odd), plane, at + LW_WIDTH);
+    store_past(zip_lo_(even, odd), plane, at);
+    if (hasSecond) store_past(zip_hi_(even, odd), plane, at + LW_WIDTH);
 }
 
 LW_FN lw_surface surface_of(const lw_pair* p, const lw_pair* n, int odd) {
@@ -90,11 +90,9 @@ typedef struct {
 
 typedef struct { real px, py, pz, nx, ny, nz, light[LW_CHANNELS]; mask valid; } lw_sample;
 
-// The samples i columns beside LW_WIDTH blocks, of row hy. `inside`, a constant: all of them exist, so that every load is contiguous.
-LW_FN void load_sample(lw_sample* q, const lw_coarse* coarse, int hx, int i, int hy, const int inside) {
-#define LW_TAP(image, layout, a)                                                                                    \
-    (inside ? load_whole(image + layout.x + (a) * layout.z + hy * layout.y + hx + i)                                \
-            : load_shifted(image, layout.x + (a) * layout.z + hy * layout.y, hx, i, coarse->width))
+// The samples i columns beside LW_WIDTH blocks, of row hy.
+LW_FN void load_sample(lw_sample* q, const lw_coarse* coarse, int hx, int i, int hy) {
+#define LW_TAP(image, layout, a) load_shifted(image, layout.x + (a) * layout.z + hy * layout.y, hx, i, coarse->width)
     q->px = LW_TAP(coarse->position, coarse->positionLayout, 0);
     q->py = LW_TAP(coarse->position, coarse->positionLayout, 1);
     q->pz = LW_TAP(coarse->position, coarse->positionLayout, 2);
@@ -104,10 +102,8 @@ LW_FN void load_sample(lw_sample* q, const lw_coarse* coarse, int hx, int i, int
     LW_UNROLL for (int a = 0; a < LW_CHANNELS; ++a) q->light[a] = LW_TAP(coarse->light, coarse->lightLayout, a);
 #undef LW_TAP
     q->valid = fma_(q->nx, q->nx, fma_(q->ny, q->ny, q->nz * q->nz)) > 0.5f;
-    if (!inside) {
-        const lanei column = lanei_iota() + (lanei)(hx + i);
-        q->valid = and_(q->valid, and_(column >= (lanei)0, column < (lanei)coarse->width));
-    }
+    const lanei column = lanei_iota() + (lanei)(hx + i);
+    q->valid = and_(q->valid, and_(column >= (lanei)0, column < (lanei)coarse->width));
 }
 
 typedef struct {
@@ -147,10 +143,10 @@ LW_FN real sample_weight(const lw_surface s, const lw_sample* q, int byLikeness)
 // sample stands two pixels from the next, so that an even pixel sees three of them at distances 2, 0, 2 and an odd one two at
 // distances 1, 1; rows alike, of which the second sees none above.
 LW_FN void add_sample(lw_sum* sum, const lw_surface* s, const lw_coarse* coarse, int hx, int i, int hy, int j, const int odd,
-                      const int inside, int byLikeness) {
+                      int byLikeness) {
     if (hy + j < 0 || hy + j >= coarse->height) return;
     lw_sample q;
-    load_sample(&q, coarse, hx, i, hy + j, inside);
+    load_sample(&q, coarse, hx, i, hy + j);
     const float columnTent = odd ? 2.0f / 3.0f : i == 0 ? 1.0f : 1.0f / 3.0f;
     LW_UNROLL for (int k = 0; k < 2; ++k) {
         if (k == 1 && j < 0) continue;
@@ -175,18 +171,42 @@ LW_FN void clear_sums(lw_sum* sum) {
     }
 }
 
-// Sums of all samples around the even (or odd) columns, all of which exist: every load is a plain one.
+// Sums of all samples around the even (or odd) columns, all of which exist: every load is a plain one. What down-sampling left empty
+// has no normal, and fails the edge test.
 LW_FN void sum_inside(lw_sum* sum, const lw_surface* s, const lw_coarse* coarse, int hx, int hy, const int odd) {
     clear_sums(sum);
-    LW_UNROLL for (int j = -1; j <= 1; ++j)
-        LW_UNROLL for (int i = odd ? 0 : -1; i <= 1; ++i) add_sample(sum, s, coarse, hx, i, hy, j, odd, 1, 0);
+    lw_edges edges[2];
+    LW_UNROLL for (int k = 0; k < 2; ++k) edges[k] = edges_of(s[k], (real)1.0f);
+    const int pz = coarse->positionLayout.z, nz = coarse->normalLayout.z, lz = coarse->lightLayout.z;
+    LW_UNROLL for (int j = -1; j <= 1; ++j) {
+        if (hy + j < 0 || hy + j >= coarse->height) continue;
+        __global const float* p = coarse->position + (coarse->positionLayout.x + (hy + j) * coarse->positionLayout.y + hx);
+        __global const float* n = coarse->normal + (coarse->normalLayout.x + (hy + j) * coarse->normalLayout.y + hx);
+        __global const float* l = coarse->light + (coarse->lightLayout.x + (hy + j) * coarse->lightLayout.y + hx);
+        LW_UNROLL for (int i = odd ? 0 : -1; i <= 1; ++i) {
+            const real px = load_whole(p + i), py = load_whole(p + pz + i), pzz = load_whole(p + 2 * pz + i);
+            const real nx = load_whole(n + i), ny = load_whole(n + nz + i), nzz = load_whole(n + 2 * nz + i);
+            real light[LW_CHANNELS];
+            LW_UNROLL for (int a = 0; a < LW_CHANNELS; ++a) light[a] = load_whole(l + a * lz + i);
+            const float columnTent = odd ? 2.0f / 3.0f : i == 0 ? 1.0f : 1.0f / 3.0f;
+            LW_UNROLL for (int k = 0; k < 2; ++k) {
+                if (k == 1 && j < 0) continue;
+                const float rowTent = 1.0f - (float)abs(2 * j - k) * (1.0f / 3.0f);
+                const real w = rowTent * columnTent * edge_weight(edges[k], px, py, pzz, nx, ny, nzz);
+                accumulate(&sum[k], w, light);
+#if LW_MARKS
+                if (k == 0 && !odd) widen(&sum[0], w, light);
+#endif
+            }
+        }
+    }
 }
 
 // The same beside borders, and by likeness: rare, so that code matters more.
 LW_FN void sum_any(lw_sum* sum, const lw_surface* s, const lw_coarse* coarse, int hx, int hy, const int odd, int byLikeness) {
     clear_sums(sum);
     for (int j = -1; j <= 1; ++j)
-        for (int i = odd ? 0 : -1; i <= 1; ++i) add_sample(sum, s, coarse, hx, i, hy, j, odd, 0, byLikeness);
+        for (int i = odd ? 0 : -1; i <= 1; ++i) add_sample(sum, s, coarse, hx, i, hy, j, odd, byLikeness);
 }
 
 // The light of the even (or odd) columns of two rows of pixels, and how many of those that exist have no sample on their own
@@ -195,8 +215,9 @@ LW_FN void sum_any(lw_sum* sum, const lw_surface* s, const lw_coarse* coarse, in
 // marked, with LW_MARKS: 1 for pixels without such a sample, and for all of a block whose first one has samples that differ by more than
 // `share`: it sees all that the others do, if they are of its surface. `steep`: of that one; the even columns come first.
 LW_FN void light_columns(real out[2][LW_CHANNELS][2], int* lostPixels, int* badPixels, lw_pair p[2][3], lw_pair n[2][3],
+                         real surface[2][2],
 #if LW_MARKS
-                         real marked[2][2], real surface[2][2], mask* steep, float share,
+                         real marked[2][2], mask* steep, float share,
 #endif
                          const lw_coarse* coarse, int hx, int hy, int width, int rows, const int odd) {
     lw_surface s[2];
@@ -212,12 +233,9 @@ LW_FN void light_columns(real out[2][LW_CHANNELS][2], int* lostPixels, int* badP
     LW_UNROLL for (int k = 0; k < 2; ++k) lost[k] = and_(s[k].valid, not_(sum[k].weight > 1e-4f));
 #if LW_MARKS
     if (!odd) *steep = is_steep(sum[0], share);
-    LW_UNROLL for (int k = 0; k < 2; ++k)
-        {
-        marked[k][odd] = ones_(and_(s[k].valid, or_(lost[k], *steep)));
-        surface[k][odd] = ones_(s[k].valid);
-    }
+    LW_UNROLL for (int k = 0; k < 2; ++k) marked[k][odd] = ones_(and_(s[k].valid, or_(lost[k], *steep)));
 #endif
+    LW_UNROLL for (int k = 0; k < 2; ++k) surface[k][odd] = ones_(s[k].valid);
     if (any_(or_(lost[0], lost[1]))) {
         lw_sum rest[2];
         sum_any(rest, s, coarse, hx, hy, odd, 1);
@@ -238,8 +256,8 @@ LW_FN void light_columns(real out[2][LW_CHANNELS][2], int* lostPixels, int* badP
 // One work-item = 2 * LW_WIDTH pixels of two rows: the even and the odd columns of LW_WIDTH blocks.
 // half*: 3 planes each of the half-resolution image, the light LW_CHANNELS; with 5, `fourth` and `fifth` take the
 // scalars, and any of the three may be null. counts[0]: pixels that are
-// neither surface nor background; counts[1]: pixels lit without edge test. With LW_MARKS, a plane each: marks, see light_columns; validity,
-// unless not hasValidity: 1 on surfaces, 0 elsewhere.
+// neither surface nor background; counts[1]: pixels lit without edge test. validity, of irradiance only and unless not hasValidity: 1 on
+// surfaces, 0 elsewhere. marks, with LW_MARKS: see light_columns.
 __kernel void joint_bilateral_upsample(__global const float* position, int4 positionLayout,
                                        __global const float* normal, int4 normalLayout, int width, int height,
                                        __global const float* halfPosition, int4 halfPositionLayout,
@@ -249,9 +267,11 @@ __kernel void joint_bilateral_upsample(__global const float* position, int4 posi
 #if LW_CHANNELS == 5
                                        __global float* fourth, int4 fourthLayout, __global float* fifth, int4 fifthLayout,
 #endif
+#if LW_CHANNELS == 3
+                                       __global float* validity, int4 validityLayout, int hasValidity,
+#endif
 #if LW_MARKS
-                                       float share, __global float* marks, int4 marksLayout, __global float* validity,
-                                       int4 validityLayout, int hasValidity,
+                                       float share, __global float* marks, int4 marksLayout,
 #endif
                                        __global int* counts) {
     const int hx = (int)get_global_id(0) * LW_WIDTH, hy = (int)get_global_id(1);
@@ -274,22 +294,23 @@ __kernel void joint_bilateral_upsample(__global const float* position, int4 posi
             }
         }
 
-    real out[2][LW_CHANNELS][2];
+    real out[2][LW_CHANNELS][2], surface[2][2];
     int lost = 0, bad = 0;
 #if LW_MARKS
-    real marked[2][2], surface[2][2];
+    real marked[2][2];
     mask steep;
-    light_columns(out, &lost, &bad, p, n, marked, surface, &steep, share, &coarse, hx, hy, width, rows, 0);
-    light_columns(out, &lost, &bad, p, n, marked, surface, &steep, share, &coarse, hx, hy, width, rows, 1);
+    light_columns(out, &lost, &bad, p, n, surface, marked, &steep, share, &coarse, hx, hy, width, rows, 0);
+    light_columns(out, &lost, &bad, p, n, surface, marked, &steep, share, &coarse, hx, hy, width, rows, 1);
 #else
-    light_columns(out, &lost, &bad, p, n, &coarse, hx, hy, width, rows, 0);
-    light_columns(out, &lost, &bad, p, n, &coarse, hx, hy, width, rows, 1);
+    light_columns(out, &lost, &bad, p, n, surface, &coarse, hx, hy, width, rows, 0);
+    light_columns(out, &lost, &bad, p, n, surface, &coarse, hx, hy, width, rows, 1);
 #endif
     if (lost) atomic_add(counts + 1, lost);
     if (bad) atomic_add(counts, bad);
 
     for (int k = 0; k < rows; ++k) {
-#define LW_STORE(plane, at, a) store_pair(plane, at, x + LW_WIDTH < rowEnd, out[k][a][0], out[k][a][1])
+        const int hasSecond = x + LW_WIDTH < rowEnd;
+#define LW_STORE(plane, at, a) store_pair(plane, at, hasSecond, out[k][a][0], out[k][a][1])
 #if LW_CHANNELS == 5
         if (fourth) LW_STORE(fourth, fourthLayout.x + (y + k) * fourthLayout.y + x, 3);
         if (fifth) LW_STORE(fifth, fifthLayout.x + (y + k) * fifthLayout.y + x, 4);
@@ -298,10 +319,11 @@ __kernel void joint_bilateral_upsample(__global const float* position, int4 posi
             LW_UNROLL for (int a = 0; a < (LW_CHANNELS < 3 ? LW_CHANNELS : 3); ++a)
                 LW_STORE(irradiance, irradianceLayout.x + a * irradianceLayout.z + (y + k) * irradianceLayout.y + x, a);
 #undef LW_STORE
-#if LW_MARKS
-        const int hasSecond = x + LW_WIDTH < rowEnd;
-        store_pair(marks, marksLayout.x + (y + k) * marksLayout.y + x, hasSecond, marked[k][0], marked[k][1]);
+#if LW_CHANNELS == 3
         if (hasValidity) store_pair(validity, validityLayout.x + (y + k) * validityLayout.y + x, hasSecond, surface[k][0], surface[k][1]);
+#endif
+#if LW_MARKS
+        store_pair(marks, marksLayout.x + (y + k) * marksLayout.y + x, hasSecond, marked[k][0], marked[k][1]);
 #endif
     }
 }

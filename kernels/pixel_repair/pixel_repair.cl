@@ -37,7 +37,8 @@ __kernel void pixel_repair_share(__global int* rows, int height, int room, __glo
 }
 
 // The place of the i-th marked pixel among those taken; it is one of them where the next one's place is another.
-LW_FN int place_of(int i, int taken, int marked) { return (int)((long)i * (long)taken / (long)marked); }
+// Where there is room for all, as a rule, without the division.
+LW_FN int place_of(int i, int taken, int marked) { return taken == marked ? i : (int)((long)i * (long)taken / (long)marked); }
 
 // One work-item = one row: its marked pixels' surfaces as the host gave them, 3 planes each, and where they are (y * width + x) by
 // place. Normals of places that none takes are 0 before.
@@ -47,13 +48,13 @@ __kernel void pixel_repair_collect(__global const float* marks, int4 marksLayout
                                    int4 listedPositionLayout, __global float* listedNormal, int4 listedNormalLayout) {
     const int y = (int)get_global_id(0), taken = state[LW_REPAIR_TAKEN], marked = state[LW_REPAIR_MARKED];
     if (y >= height || taken == 0) return;
-    int i = rows[y];
+    int i = rows[y], next = place_of(i, taken, marked);
     for (int x = 0; x < width; x += LW_WIDTH) {
         uint bits = bits_(marked_at(marks, marksLayout, x, y, width));
         while (bits) {
-            const int column = x + take_lowest(&bits), place = place_of(i, taken, marked);
-            ++i;
-            if (place_of(i, taken, marked) == place) continue;
+            const int column = x + take_lowest(&bits), place = next;
+            next = place_of(++i, taken, marked);
+            if (next == place) continue;
             pixels[place] = y * width + column;
             const int row = place / LW_REPAIR_COLUMNS, at = place - row * LW_REPAIR_COLUMNS;
             for (int a = 0; a < 3; ++a) {

@@ -124,9 +124,15 @@ LW_FN lw_past look_up(lw_surface s, mask wanted, int x, int y, int mode, const L
         return past;
     }
     const lanei shift = column - lanei_iota(), far = (lanei)(1 << 30);
-    const int firstColumn = mini_lane(selecti_(far, shift, wanted)), firstRow = mini_lane(selecti_(far, row, wanted));
     const int taps = any_(and_(wanted, or_(fx > 0.0f, fy > 0.0f))) ? 4 : 1;
-    const int even = firstColumn == maxi_lane(selecti_(-far, shift, wanted)) && firstRow == maxi_lane(selecti_(-far, row, wanted));
+    // As a rule all go as far as the first lane: one look across lanes tells, where the ends of all take four.
+    int firstColumn = firsti_lane(shift), firstRow = firsti_lane(row);
+    int even = !any_(and_(wanted, or_(shift != (lanei)firstColumn, row != (lanei)firstRow)));
+    if (!even) {
+        firstColumn = mini_lane(selecti_(far, shift, wanted));
+        firstRow = mini_lane(selecti_(far, row, wanted));
+        even = firstColumn == maxi_lane(selecti_(-far, shift, wanted)) && firstRow == maxi_lane(selecti_(-far, row, wanted));
+    }
     const int rowEnd = (r.width + LW_WIDTH - 1) & ~(LW_WIDTH - 1);  // what blend has written, padding with it
     if (even && firstColumn >= 0 && firstColumn + (taps > 1) + LW_WIDTH <= rowEnd)
         add_taps(&past, s, tolerance, before, layout, r, column, row, fx, fy, wanted, taps, firstColumn, firstRow, 1);

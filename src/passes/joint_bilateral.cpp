@@ -25,7 +25,8 @@ Range itemsOver(std::uint32_t fullWidth, std::uint32_t rows, const Kernel& kerne
 }  // namespace
 
 JointBilateral::JointBilateral(Device& device, std::uint32_t channels, bool marks)
-    : downsample_(device.programs().kernel(kProgram, "joint_bilateral_downsample", definesOf(channels))),
+    : channels_(channels),
+      downsample_(device.programs().kernel(kProgram, "joint_bilateral_downsample", definesOf(channels))),
       upsample_(device.programs().kernel(kProgram, "joint_bilateral_upsample", definesOf(channels, marks))) {}
 
 void JointBilateral::recordDownsample(Executor& executor, const Planes& position, const Planes& normal,
@@ -37,10 +38,16 @@ void JointBilateral::recordDownsample(Executor& executor, const Planes& position
 
 void JointBilateral::recordUpsample(Executor& executor, const Planes& position, const Planes& normal,
                                     const Planes& halfPosition, const Planes& halfNormal,
-                                    const Planes& halfIrradiance, const Planes& irradiance, const Buffer& counts) {
-    executor.run("joint_bilateral.upsample", upsample_, itemsOver(position.width, halved(position.height), upsample_),
-                 groupOf(upsample_), position, normal, cl_int(position.width), cl_int(position.height), halfPosition,
-                 halfNormal, halfIrradiance, irradiance, counts);
+                                    const Planes& halfIrradiance, const Planes& irradiance, const Buffer& counts,
+                                    const Planes& validity) {
+    const auto run = [&](const auto&... rest) {
+        executor.run("joint_bilateral.upsample", upsample_, itemsOver(position.width, halved(position.height), upsample_),
+                     groupOf(upsample_), position, normal, cl_int(position.width), cl_int(position.height), halfPosition,
+                     halfNormal, halfIrradiance, irradiance, rest...);
+    };
+    if (channels_ != 3) return run(counts);
+    // A kernel's argument must be some memory, also where it is not written.
+    run(validity ? validity : irradiance, cl_int(validity ? 1 : 0), counts);
 }
 
 void JointBilateral::recordUpsampleMarked(Executor& executor, const Planes& position, const Planes& normal, const Planes& halfPosition,
@@ -49,7 +56,7 @@ void JointBilateral::recordUpsampleMarked(Executor& executor, const Planes& posi
     // A kernel's argument must be some memory, also where it is not written.
     executor.run("joint_bilateral.upsample", upsample_, itemsOver(position.width, halved(position.height), upsample_),
                  groupOf(upsample_), position, normal, cl_int(position.width), cl_int(position.height), halfPosition, halfNormal,
-                 halfIrradiance, irradiance, share, marks, validity ? validity : marks, cl_int(validity ? 1 : 0), counts);
+                 halfIrradiance, irradiance, validity ? validity : marks, cl_int(validity ? 1 : 0), share, marks, counts);
 }
 
 void JointBilateral::recordUpsampleAll(Executor& executor, const Planes& position, const Planes& normal,

@@ -18,13 +18,13 @@ public:
     void recordDownsample(Executor& executor, const Planes& position, const Planes& normal,
                           const Planes& halfPosition, const Planes& halfNormal);
     // Pass "joint_bilateral.upsample". counts[0] grows by the pixels with neither a surface nor a
-    // zero normal, counts[1] by those without a sample on their own surface.
+    // zero normal, counts[1] by those without a sample on their own surface. `validity`, where wanted and with 3 channels,
+    // becomes 1 on surfaces and 0 elsewhere.
     void recordUpsample(Executor& executor, const Planes& position, const Planes& normal,
                         const Planes& halfPosition, const Planes& halfNormal, const Planes& halfIrradiance,
-                        const Planes& irradiance, const Buffer& counts);
+                        const Planes& irradiance, const Buffer& counts, const Planes& validity = {});
     // The same, and what it does not know the light of: `marks`, a plane, is 1 at pixels without a sample on their own surface and where
-    // the samples around differ by more than `share` of the light, and 0 elsewhere. `validity`, where wanted, becomes 1 on surfaces and 0
-    // elsewhere.
+    // the samples around differ by more than `share` of the light, and 0 elsewhere.
     void recordUpsampleMarked(Executor& executor, const Planes& position, const Planes& normal, const Planes& halfPosition,
                               const Planes& halfNormal, const Planes& halfIrradiance, const Planes& irradiance, float share,
                               const Planes& marks, const Planes& validity, const Buffer& counts);
@@ -34,6 +34,7 @@ public:
                            const Planes& fourth, const Planes& fifth, const Buffer& counts);
 
 private:
+    std::uint32_t channels_;
     Kernel &downsample_, &upsample_;
 };
 

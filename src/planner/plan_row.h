@@ -24,6 +24,8 @@ constexpr std::size_t kPlanProbes = 8;  // in the order of LWPlanProbes' fields
 //                                              + cost[2] * Mtriangles)
 //          + memoryScale * cost[3] * Mtexels
 //
+// and, in a frame whose lights or geometry moved, computeScale * maps * (fixed + perMtriangles * Mtriangles) of kPlanMaps.
+//
 // with (here) and (there) the milliseconds of a launch on this device and on the one that was measured, scales of 1 there;
 // triangles: and surfels, texels: of all RSMs, facing: the probe, of pairs that a gather has work with. All of `cost` are 0 or more.
 //
@@ -33,6 +35,7 @@ struct PlanRow {
     const char* settings;  // as lwCreateTechniqueFromText takes them
     std::uint32_t needs;
     double launches;  // of kernels in a frame; 0: not known
+    double maps;      // of 128 x 128 texels that it draws where lights or geometry moved, and keeps where not
     double cost[5];   // ms, ms per million pixels, per million triangles, per million texels, per million pixels with facing = 1
     double errorMean;
     double errorSlopes[kPlanProbes];
@@ -43,6 +46,11 @@ struct PlanRow {
 struct PlanProbeScale {
     const char* name;  // LWPlanProbes' field
     double floor, mean, deviation, lowest, highest;
+};
+
+// ms of a map of 128 x 128 texels, and what a million triangles and surfels add to it.
+struct PlanMaps {
+    double fixed, perMtriangles;
 };
 
 // Of the device that the costs were measured on, as `lightwell devices --probe` has them; and the probe `facing` of a frame that does

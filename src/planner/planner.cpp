@@ -45,8 +45,10 @@ double millisecondsOf(const PlanRow& row, const Calibration& calibration, const 
     const double million = 1e-6;
     // What a launch takes is part of what was measured as fixed, but grows by its own rate.
     const double launching = std::min(row.launches * kPlanReference.launchMicroseconds * 1e-3, row.cost[0]);
+    const double shapes = (traits.triangles + traits.surfels) * million;
+    const double drawn = traits.hasMoved ? row.maps * (kPlanMaps.fixed + kPlanMaps.perMtriangles * shapes) : 0.0;
     const double computed = row.cost[0] - launching + (row.cost[1] + row.cost[4] * facing) * traits.pixels * traits.views * million +
-                            row.cost[2] * (traits.triangles + traits.surfels) * million;
+                            row.cost[2] * shapes + drawn;
     return calibration.launchScale * launching + calibration.computeScale * computed +
            calibration.memoryScale * row.cost[3] * traits.rsmTexels * million;
 }

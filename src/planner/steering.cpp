@@ -1,3 +1,4 @@
+// Over 300 lines: a third are constants, each with what larger and smaller ones do.
 #include "planner/steering.h"
 
 #include <algorithm>
@@ -33,6 +34,10 @@ const double kFirstSpread = std::log(1.15), kLeastSpread = std::log(1.03);
 // patiences in which nothing changes it becomes as much taken off, for else what is cheaper than it seems would never be found. Larger,
 // or sooner: more tries that break the budget. Smaller, or later: less of it is used.
 constexpr double kUntried = 0.15, kCurious = 8.0;
+// How many times as long as predicted the first one may take, of which nothing is known: neither this machine's load nor what its
+// technique takes of moving lights (twice and more where maps are drawn anew). It is left for what fits as soon as it has been learnt
+// from. Larger: worse light for the first frames. Smaller: they break the budget.
+constexpr double kBlind = 2.0;
 // What a candidate must be within to be entered, of the budget. Nearer to 1: those that just fit come and go.
 constexpr double kEnter = 0.95;
 // By how much one that does not fit either must be quicker. Nearer to 1: two of them swing.
@@ -76,27 +81,41 @@ std::size_t Steering::groupOf(std::size_t candidate) const {
     return candidate < options_.groups.size() ? options_.groups[candidate] : candidate;
 }
 
-// Of one that has not run: as those of its group that have, else as all that have: the lower of the two in the middle, for a wrong guess
-// upwards is never found out.
-double Steering::guessBias(std::size_t candidate) const {
-    std::vector<double> own, all;
+// Of one that has not run: as those of its group that have, between the next cheaper and the next dearer one (what a model leaves out
+// grows with what it is about: maps, of ssvp), else as all that have: the lower of the two in the middle, for a wrong guess upwards is
+// never found out.
+double Steering::guessBias(const Prediction& prediction) const {
+    const Known *cheaper = nullptr, *dearer = nullptr;
+    std::vector<double> all;
     for (const auto& [other, known] : known_) {
         if (known.learnt == 0) continue;
         all.push_back(known.bias);
-        if (groupOf(other) == groupOf(candidate)) own.push_back(known.bias);
+        if (groupOf(other) != groupOf(prediction.candidate)) continue;
+        if (known.predicted <= prediction.milliseconds && (!cheaper || known.predicted > cheaper->predicted)) cheaper = &known;
+        if (known.predicted >= prediction.milliseconds && (!dearer || known.predicted < dearer->predicted)) dearer = &known;
     }
-    std::vector<double>& biases = own.empty() ? all : own;
-    if (biases.empty()) return 0.0;
-    std::sort(biases.begin(), biases.end());
-    return biases[(biases.size() - 1) / 2];
+    if (cheaper && dearer && cheaper->predicted < dearer->predicted) {
+        const double part = std::log(prediction.milliseconds / cheaper->predicted) / std::log(dearer->predicted / cheaper->predicted);
+        return cheaper->bias + part * (dearer->bias - cheaper->bias);
+    }
+    if (cheaper || dearer) return (cheaper ? cheaper : dearer)->bias;
+    if (all.empty()) return 0.0;
+    std::sort(all.begin(), all.end());
+    return all[(all.size() - 1) / 2];
+}
+
+// No frame of any has told anything.
+bool Steering::isBlind() const {
+    return std::none_of(known_.begin(), known_.end(), [](const auto& one) { return one.second.learnt > 0; });
 }
 
 Steering::Expected Steering::expect(const Prediction& prediction) const {
     const auto found = known_.find(prediction.candidate);
     const bool tried = found != known_.end() && found->second.learnt > 0;
-    const double middle = prediction.milliseconds * std::exp(load_ + (tried ? found->second.bias : guessBias(prediction.candidate)));
+    const double middle = prediction.milliseconds * std::exp(load_ + (tried ? found->second.bias : guessBias(prediction)));
     const double calm = running_ ? double(frame_ - startedAt_) / (kCurious * std::max(options_.patience, 1u)) : 0.0;
-    return {prediction, middle, middle * std::exp(spread()) * (tried ? 1.0 : 1.0 + kUntried * (2.0 * std::exp(-calm) - 1.0))};
+    const double doubt = tried ? 1.0 : isBlind() ? kBlind : 1.0 + kUntried * (2.0 * std::exp(-calm) - 1.0);
+    return {prediction, middle, middle * std::exp(spread()) * doubt};
 }
 
 // The first candidate tells the load; another's first frames tell how it differs, and then the load again.
@@ -120,6 +139,7 @@ void Steering::ran(std::size_t candidate, double predictedMilliseconds, double m
     }
     beside_ += kBesideShare * (std::max(frameMilliseconds - milliseconds, 0.0) - beside_);
     const double ratio = std::log(milliseconds / predictedMilliseconds);
+    known.predicted = predictedMilliseconds;
     // What a fade takes is no fault of the candidate's.
     const bool isOver = options_.budgetMilliseconds > 0.0 && milliseconds > options_.budgetMilliseconds;
     overRow_ = isOver ? overRow_ + 1 : 0;
@@ -143,7 +163,8 @@ bool Steering::breaksBudget() const {
 
 bool Steering::mayLeave() const {
     const bool isOver = overRow_ > 0 || std::count(over_.begin(), over_.end(), true) + 1 >= kOverInWindow;
-    return running_ && ((isOver && canLeave_) || (better_ > 0 && better_ + 2 > options_.patience) || options_.patience == 0);
+    const bool isDue = better_ > 0 && (better_ + 2 > options_.patience || (startedBlind_ && known_.at(*running_).learnt + 1 >= kLearning));
+    return running_ && ((isOver && canLeave_) || isDue || options_.patience == 0);
 }
 
 bool Steering::fits(const Expected& one) const {
@@ -222,6 +243,7 @@ void Steering::resume(std::size_t candidate) {
     const auto before = running_ ? known_.find(*running_) : known_.end();
     isAnchored_ |= before != known_.end() && before->second.learnt > 0 && running_ != candidate;
     running_ = candidate;
+    startedBlind_ = isBlind();
     startedAt_ = frame_;
     over_.clear();
     overRow_ = better_ = 0;
@@ -264,7 +286,9 @@ const Steering::Expected* Steering::leaveFor(const Expected& running, const std:
     const bool isWorthIt = other && fits(*other) && isBetter(*other, running);
     better_ = isWorthIt ? better_ + 1 : 0;
     cause = options_.errorTarget > 0.0 && reaches(running) ? SteeringCause::kCheaper : SteeringCause::kBetter;
-    return better_ > options_.patience ? other : nullptr;
+    const bool isToldNow = startedBlind_ && known_.at(running.prediction.candidate).learnt >= kLearning;
+    if (isToldNow && !isWorthIt) startedBlind_ = false;
+    return isWorthIt && (isToldNow || better_ > options_.patience) ? other : nullptr;
 }
 
 std::optional<SteeringStep> Steering::next(const std::vector<Prediction>& predictions, bool mayLeave) {

@@ -72,6 +72,7 @@ private:
         double bias = 0.0;           // logarithm of measured over predicted, beyond the device's load
         std::uint32_t learnt = 0;    // frames that it was learnt from
         std::uint32_t toSettle = 0;  // frames of this stint that are not to be judged by
+        double predicted = 0.0;      // ms, of its last frame
         std::deque<double> recent;   // last logarithms of this stint
         std::uint64_t barredUntil = 0, barLength = 0;
         bool hasFailed = false;
@@ -83,7 +84,8 @@ private:
 
     Expected expect(const Prediction& prediction) const;
     void learn(Known& known, double ratio);
-    double guessBias(std::size_t candidate) const;
+    double guessBias(const Prediction& prediction) const;
+    bool isBlind() const;
     std::size_t groupOf(std::size_t candidate) const;
     double spread() const;
     bool breaksBudget() const;
@@ -111,6 +113,7 @@ private:
     double beside_ = 0.0;             // ms of a frame that are not its candidate's, in the mean: fading, probing
     std::deque<bool> over_;           // of this stint's last frames: over the budget
     std::uint32_t overRow_ = 0, better_ = 0;
+    bool startedBlind_ = false;  // what runs was chosen before any frame was measured
     bool canLeave_ = true;  // there is another that fits, or is quicker
 };
 

@@ -16,6 +16,9 @@ namespace {
 // Prewarmed is what may be chosen of what is predicted to take up to so many budgets: this machine may be as much quicker than the tables
 // say, or less loaded later. More: prewarming takes longer for what is seldom chosen.
 constexpr double kBudgetsWarmed = 2.0;
+// ... and what is not worse than a quicker one by so much: probes of the frame change the order of errors. More: prewarming takes longer.
+// Less: what turns out to be the best is left out.
+constexpr double kErrorsWarmed = 1.25;
 
 LWPlanProbes unknownProbes() {
     constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
@@ -90,19 +93,24 @@ void Auto::prewarm(Executor& executor, const std::shared_ptr<View>& view) {
     if (!hasSeen_) traits.hasDirectRadiance = traits.hasAlbedo = traits.hasCamera = traits.hasMotion = traits.hasVpls = true;
     if (updates_ == 0) traits.triangles = traits.staticVpls = 1;
     std::vector<Prediction> quicker;  // that can be chosen
+    skipped_.clear();
     int warmed = 0;
     for (const Prediction& one : planner_.predict(traits, probes_)) {
         // Dearer and worse than another is not chosen, as far as the frame is known.
         const bool isDominated = std::any_of(quicker.begin(), quicker.end(), [&](const Prediction& other) {
-            return other.milliseconds < one.milliseconds && other.error <= one.error;
+            return other.milliseconds < one.milliseconds && kErrorsWarmed * other.error <= one.error;
         });
         const bool isTooDear = desc_.budgetMs > 0.0f && one.milliseconds > kBudgetsWarmed * double(desc_.budgetMs) && warmed > 0;
-        if (isDominated || isTooDear) continue;
+        if (isDominated || isTooDear) {
+            skipped_.insert(one.candidate);
+            continue;
+        }
         ++warmed;
         const Candidate& candidate = planner_.candidates[one.candidate];
         try {
             makeTechnique(device_, candidate.technique, candidate.settings)->prewarm(executor, view);
             quicker.push_back(one);
+            proven_.insert(one.candidate);
         } catch (const Error& error) {
             if (!isItsOwn(error.status())) throw;
             device_.log(LW_LOG_WARNING, "auto: " + nameOf(one.candidate) + " cannot be chosen on this device: " + error.what());

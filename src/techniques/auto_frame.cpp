@@ -17,6 +17,13 @@ namespace {
 constexpr std::uint64_t kProbeEvery = 32;
 // Candidates that are tried in one frame at most: each that fails may have taken memory and time.
 constexpr int kMostTries = 8;
+// Frames of a fade that the budget has no room for. More: as many frames over it. Fewer: the change is seen.
+constexpr std::uint32_t kTightFade = 3;
+// So much longer than expected a frame is taken to last at most, when room is sought for its fade: what the first choice is doubted by is no
+// noise of frames. Larger: fades are shortened that would have fit.
+constexpr double kFadeMargin = 1.3;
+// Share of a frame in the mean of what fading takes. Larger: a hiccup shortens fades. Smaller: a load is known later.
+constexpr double kFadeShare = 0.25;
 constexpr std::size_t kNobody = ~std::size_t(0);
 
 // What decides which techniques are possible, as a word.
@@ -28,12 +35,35 @@ std::uint32_t inputsOf(const FrameTraits& traits) {
     return word;
 }
 
+// Where lights stand, and which geometry there is: what maps of a frame are drawn of. Light that only grows or fades moves nothing.
+std::vector<float> placesOf(const LWFrame& frame) {
+    std::vector<float> places;
+    const auto add = [&](const auto& values) { places.insert(places.end(), std::begin(values), std::end(values)); };
+    const std::uint64_t version = frame.geometry ? frame.geometry->version : 0;
+    places.push_back(float(version & 0xffff));
+    for (std::uint32_t l = 0; l < frame.lightCount; ++l) {
+        const LWLight& light = frame.lights[l];
+        add(light.position);
+        add(light.direction);
+        for (std::uint32_t r = 0; r < light.rsmCount; ++r) {
+            add(light.rsms[r].camera.view);
+            add(light.rsms[r].camera.projection);
+        }
+    }
+    for (std::uint32_t v = 0; v < frame.vplCount; ++v) add(frame.vpls[v].position);
+    return places;
+}
+
 }  // namespace
 
 void Auto::learn() {
     while (const std::optional<AutoTimes::Frame> frame = times_.take()) {
         if (frame->whole > 0.0) ++measured_;
         if (desc_.budgetMs > 0.0f && frame->whole > double(desc_.budgetMs)) ++over_;
+        if (frame->isKept && frame->whole > frame->part) {
+            const double cost = frame->whole - frame->part;
+            fadeCost_ += (fadeCost_ > 0.0 ? kFadeShare : 1.0) * (cost - fadeCost_);
+        }
         steering_.ran(frame->candidate, frame->predicted, frame->part, frame->whole);
     }
     if (const LWPlanProbes* probes = probing_.take()) {
@@ -49,16 +79,24 @@ FrameTraits Auto::traitsNow(const LWFrame& frame) {
     // Lamps that go out for a while ask for no other technique.
     hasHadRsms_ = traits.hasRsms || (hasHadRsms_ && !frame.reset);
     traits.hasRsms = hasHadRsms_;
+    std::vector<float> places = placesOf(frame);
+    traits.hasMoved = places != std::exchange(placed_, places);
     return traits;
 }
 
 std::vector<Prediction> Auto::predictions(const FrameTraits& traits) const {
     std::vector<Prediction> possible = planner_.predict(traits, probes_);
-    if (!possible.empty() || hasSeen_) return possible;
-    // Nothing is possible without what the first G-buffer has yet to show: it may have all.
-    FrameTraits all = traits;
-    all.hasDirectRadiance = all.hasAlbedo = all.hasCamera = all.hasMotion = true;
-    return planner_.predict(all, probes_);
+    if (possible.empty() && !hasSeen_) {
+        // Nothing is possible without what the first G-buffer has yet to show: it may have all.
+        FrameTraits all = traits;
+        all.hasDirectRadiance = all.hasAlbedo = all.hasCamera = all.hasMotion = true;
+        possible = planner_.predict(all, probes_);
+    }
+    // What prewarming left out would compile in the midst of frames: it is taken where there is nothing else.
+    std::vector<Prediction> prepared;
+    std::copy_if(possible.begin(), possible.end(), std::back_inserter(prepared),
+                 [&](const Prediction& one) { return proven_.count(one.candidate) || !skipped_.count(one.candidate); });
+    return prepared.empty() ? possible : prepared;
 }
 
 void Auto::noteView(const View& view, const LWGBuffer& gbuffer) {
@@ -93,6 +131,13 @@ void Auto::update(Executor& executor, const LWFrame& frame) {
     }
 }
 
+// A fade costs as long as it lasts.
+std::uint32_t Auto::fadeFor(const SteeringStep& step) const {
+    const double most = std::min(step.highest, kFadeMargin * step.expected);
+    const bool isTight = desc_.budgetMs > 0.0f && most + fadeCost_ > double(desc_.budgetMs);
+    return isTight ? std::min(desc_.fade, kTightFade) : desc_.fade;
+}
+
 void Auto::startFrame(const LWFrame& frame, const SteeringStep& step, bool forgets) {
     const SteeringStep before = std::exchange(step_, step);
     const bool changes = hasBefore_ && before_ != step.prediction.candidate;
@@ -104,7 +149,7 @@ void Auto::startFrame(const LWFrame& frame, const SteeringStep& step, bool forge
     if (changes || !hasBefore_) lastCause_ = step.cause;
     before_ = step.prediction.candidate;
     hasBefore_ = true;
-    fadeLeft_ = forgets ? 0 : changes ? desc_.fade : fadeLeft_ > 0 ? fadeLeft_ - 1 : 0;
+    fadeLeft_ = forgets ? 0 : changes ? fadeFor(step) : fadeLeft_ > 0 ? fadeLeft_ - 1 : 0;
     // A change is told a frame ahead, so that only then the picture has to be kept; and the first choices are soon made again.
     keeps_ = desc_.fade > 1 && (fadeLeft_ > 1 || step.isLeaving || steering_.mayLeave() || (planner_.usesProbes && !hasProbes_ && (probesDue_ || probing_.isReading())));
     states_.purge();
@@ -138,8 +183,9 @@ void Auto::updateWith(Executor& executor, const LWFrame& frame, const SteeringSt
         child->update(executor, frame, inputs);
         times_.end(executor, true);
         children_.start(std::move(child));
-        // Should its first lwRender fail, the one before takes its place in the same frame.
-        if (!children_.running()->hasRendered()) updateOther(executor, frame, inputs);
+        // Should its first lwRender fail, the one before takes its place in the same frame; not where its programs are known to be there, for
+        // an update of two is a frame over the budget.
+        if (!children_.running()->hasRendered() && !proven_.count(step.prediction.candidate)) updateOther(executor, frame, inputs);
     }
     wantsProbes_ = planner_.usesProbes && !probing_.isReading() && probesDue_;
     if (wantsProbes_) probe([&] { probing_.beginFrame(executor, frame); });

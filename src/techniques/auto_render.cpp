@@ -36,6 +36,7 @@ void Auto::renderTimed(Executor& executor, const std::shared_ptr<View>& view, co
     }
     AutoView* through = keptView(state, *view);
     if (!through) return child(output);
+    times_.keep();
     through->render(executor, *view, gbuffer, output, fade_, fadeLeft_ > 1 ? 1.0f / float(fadeLeft_) : 1.0f, child);
 }
 
@@ -57,6 +58,7 @@ void Auto::renderChild(Executor& executor, const std::shared_ptr<View>& view, co
     times_.begin(executor, true);
     try {
         running.render(executor, view, gbuffer, output);
+        proven_.insert(running.candidate());
     } catch (const Error& error) {
         if (!isItsOwn(error.status())) throw;
         if (hasOther_) {

@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -64,6 +65,7 @@ private:
     void bar(std::size_t failed, LWStatus status);
     void updateOther(Executor& executor, const LWFrame& frame, std::uint32_t inputs);
     void startFrame(const LWFrame& frame, const SteeringStep& step, bool forgets);
+    std::uint32_t fadeFor(const SteeringStep& step) const;
     void renderChild(Executor& executor, const std::shared_ptr<View>& view, const LWGBuffer& gbuffer, const LWOutput& output);
     void renderTimed(Executor& executor, const std::shared_ptr<View>& view, const LWGBuffer& gbuffer, const LWOutput& output);
     void probe(const std::function<void()>& record);
@@ -78,6 +80,8 @@ private:
     AutoPlanner planner_;
     Steering steering_;
     AutoChildren children_;
+    std::set<std::size_t> proven_;   // candidates that have been prewarmed, or have lit a view
+    std::set<std::size_t> skipped_;  // that prewarming left out
     AutoTimes times_;
     CrossFade fade_;
     FrameProbing probing_;
@@ -87,6 +91,7 @@ private:
     // What is known of the host's frames.
     LWGBuffer seen_{};  // of the last lwRender: which images it has
     bool hasSeen_ = false, hasHadRsms_ = false, hasProbes_ = false;
+    std::vector<float> placed_;  // where the last frame's lights stood, and its geometry's version
     double pixels_ = kAutoPixels;
     LWPlanProbes probes_;
 
@@ -96,6 +101,7 @@ private:
     bool probesDue_ = true;    // for the first time, for another scene, or again
     bool hasOther_ = false;  // the resting technique has this frame too, should the new one fail
     std::uint32_t fadeLeft_ = 0, inputs_ = 0;
+    double fadeCost_ = 0.0;  // ms, of a frame whose picture is kept, in the mean
     SteeringStep step_, stepBefore_;  // before the last change
     SteeringCause lastCause_ = SteeringCause::kStart;
     std::size_t before_ = 0;  // candidate

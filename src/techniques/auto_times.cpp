@@ -13,8 +13,12 @@ constexpr std::size_t kMostPending = 16;
 
 void AutoTimes::startFrame(std::size_t candidate, double predicted) {
     pending_.emplace_back();
-    pending_.back().frame = {candidate, predicted, 0.0, 0.0};
+    pending_.back().frame = {candidate, predicted, 0.0, 0.0, false};
     if (pending_.size() > kMostPending) pending_.pop_front();
+}
+
+void AutoTimes::keep() {
+    if (!pending_.empty()) pending_.back().frame.isKept = true;
 }
 
 void AutoTimes::discard() {

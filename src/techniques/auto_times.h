@@ -17,10 +17,13 @@ public:
         std::size_t candidate;
         double predicted;     // ms
         double part, whole;   // ms: of the candidate, and with all around it; NaN: not to be told
+        bool isKept;          // its picture was kept or mixed
     };
 
     // A frame begins.
     void startFrame(std::size_t candidate, double predicted);
+    // Its picture is kept or mixed.
+    void keep();
     // It is not to be told: another candidate had a part in it, or a call broke off.
     void discard();
 

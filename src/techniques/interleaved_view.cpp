@@ -100,7 +100,7 @@ void InterleavedView::light(Executor& executor, const Passes& passes, const LWCa
 void InterleavedView::upsample(Executor& executor, const Passes& passes, const Planes& position, const Planes& normal, const Planes& lit,
                                const Planes& made, const Planes& validity, const Gather& gatherAll) {
     const Planes &fullPosition = gbuffer_.position, &fullNormal = gbuffer_.normal;
-    if (!repaired_) return passes.bilateral->recordUpsample(executor, fullPosition, fullNormal, position, normal, lit, made, counts_);
+    if (!repaired_) return passes.bilateral->recordUpsample(executor, fullPosition, fullNormal, position, normal, lit, made, counts_, validity);
     const std::uint32_t w = made.width, h = made.height;
     passes.bilateral->recordUpsampleMarked(executor, fullPosition, fullNormal, position, normal, lit, made, options_.repairs,
                                            repaired_->marks(w, h), validity, counts_);

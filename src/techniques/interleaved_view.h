@@ -84,7 +84,7 @@ private:
                   const Planes& made, const Planes& validity, const Gather& gatherAll);
     // What comes last makes validity, too, of what it has read: the filter, or an up-sampling that marks.
     bool filtersLast() const { return options_.filters() && !options_.half; }
-    bool lastMakesValidity() const { return filtersLast() || repaired_; }
+    bool lastMakesValidity() const { return filtersLast() || options_.half; }
 
     Device& device_;
     InterleavedOptions options_;

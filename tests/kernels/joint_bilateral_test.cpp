@@ -49,11 +49,15 @@ Image upsampleOn(KernelRig& rig, const Image& position, const Image& normal, con
     const Guarded p = rig.uploadPlanes(position.planes, w, h, 3, kNaN), n = rig.uploadPlanes(normal.planes, w, h, 3, 1.0f);
     const Guarded hp = rig.uploadPlanes(half.position.planes, hw, hh, 3, kNaN), hn = rig.uploadPlanes(half.normal.planes, hw, hh, 3, 1.0f);
     const Guarded e = rig.uploadPlanes(light.planes, hw, hh, 3, kNaN), out = rig.makePlanes(w, h, 3);
-    const Guarded counts = rig.upload(std::vector<cl_int>{0, 0});
+    const Guarded counts = rig.upload(std::vector<cl_int>{0, 0}), validity = rig.makePlanes(w, h, 1);
     JointBilateral pass(rig.device());
     pass.recordUpsample(rig.executor(), rig.planes(p, w, h, 3), rig.planes(n, w, h, 3), rig.planes(hp, hw, hh, 3),
-                        rig.planes(hn, hw, hh, 3), rig.planes(e, hw, hh, 3), rig.planes(out, w, h, 3), counts);
+                        rig.planes(hn, hw, hh, 3), rig.planes(e, hw, hh, 3), rig.planes(out, w, h, 3), counts, rig.planes(validity, w, h, 1));
     rig.device().finish();
+    std::vector<float> surfaces(std::size_t(w) * h);
+    for (std::uint32_t y = 0; y < h; ++y)
+        for (std::uint32_t x = 0; x < w; ++x) surfaces[std::size_t(y) * w + x] = reference::surfaceAt(position, normal, x, y).valid ? 1.0f : 0.0f;
+    CHECK(bitDifference(rig.downloadPlanes(rig.planes(validity, w, h, 1)), surfaces) == "");
     fallbacks = rig.download<cl_int>(counts)[1];
     Image result(w, h);
     result.planes = rig.downloadPlanes(rig.planes(out, w, h, 3));

@@ -13,6 +13,8 @@ __kernel void wide_memory(__global const float* floats, __global const int* ints
     scatter(load(floats, i), out + 3 * count, at);
     will_load(floats + 1000000);  // no memory of ours
     store(load_whole(floats + i + 1), out + 4 * count, i);
+    store_past(load(floats, i), out + 5 * count, i);
+    store_past(load(floats, i), out + 6 * count + 1, i);
     store(loadi(ints, i + 3), outInts, i);
     store(gatheri(ints, at), outInts + count, i);
 }

@@ -73,7 +73,7 @@ TEST_CASE("memory forms at every width", "[wide]") {
     std::vector<cl_int> indices(kPixels);  // a permutation, as scatter needs
     for (std::size_t i = 0; i < kPixels; ++i) indices[i] = cl_int(i * 37 % kPixels);
 
-    const Guarded out = rig.make<float>(5 * kPixels), outInts = rig.make<cl_int>(2 * kPixels);
+    const Guarded out = rig.make<float>(8 * kPixels), outInts = rig.make<cl_int>(2 * kPixels);
     rig.run("test.memory", rig.kernel(kProgram, "wide_memory"), {kPixels / width, 1}, {1, 1},
             rig.upload(floats), rig.upload(ints), rig.upload(bytes), rig.upload(indices),
             cl_int(kPixels), out, outInts);
@@ -85,6 +85,8 @@ TEST_CASE("memory forms at every width", "[wide]") {
     CHECK(plane(values, 2) == forPixels<float>([&](std::size_t i) { return bytes[i + 3]; }));
     for (std::size_t i = 0; i < kPixels; ++i) CHECK(values[3 * kPixels + at(i)] == floats[i]);
     CHECK(plane(values, 4) == forPixels<float>([&](std::size_t i) { return floats[i + 1]; }));
+    CHECK(plane(values, 5) == forPixels<float>([&](std::size_t i) { return floats[i]; }));
+    for (std::size_t i = 0; i < kPixels; ++i) CHECK(values[6 * kPixels + 1 + i] == floats[i]);
     CHECK(plane(integers, 0) == forPixels<cl_int>([&](std::size_t i) { return ints[i + 3]; }));
     CHECK(plane(integers, 1) == forPixels<cl_int>([&](std::size_t i) { return ints[at(i)]; }));
 }

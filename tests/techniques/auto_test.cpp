@@ -239,6 +239,22 @@ TEST_CASE("kernels that do not build: prewarming goes on, and however many setti
     CHECK_THROWS_WITH(rig.frame(scene), Catch::Contains("failed before"));
 }
 
+TEST_CASE("what prewarming left out is taken where there is nothing else", "[auto]") {
+    Scene scene;
+    const std::vector<double> first = alone(0, scene), second = alone(1, scene);
+    AutoRig rig(describe(0));  // the second one is predicted to be slower and worse
+    Profile profile;
+    Executor executor(rig.device, profile);
+    rig.technique->prewarm(executor, rig.view);
+    rig.plan.prefer(1);
+    for (int f = 0; f < 3; ++f) CHECK(rig.frame(scene) == first);
+    const std::vector<Prediction> both = rig.plan.predictions;
+    rig.plan.predictions = {both[1]};
+    CHECK(rig.frame(scene) == second);
+    rig.plan.predictions = both;
+    for (int f = 0; f < 3; ++f) CHECK(rig.frame(scene) == second);  // its programs are there now
+}
+
 TEST_CASE("the host's mistakes are errors as any technique's, and nothing is barred for them", "[auto]") {
     Scene scene;
     const std::vector<double> first = alone(0, scene);

@@ -129,7 +129,9 @@ TEST_CASE("predicted times follow the frame's sizes and the device's rates", "[p
     const FrameTraits traits = everything();
     const auto plain = predict({}, traits, kNoProbes);
     for (std::size_t i = 1; i < plain.size(); ++i) CHECK(plain[i - 1].milliseconds <= plain[i].milliseconds);
-    FrameTraits stereo = traits, bare = traits;
+    FrameTraits stereo = traits, bare = traits, moved = traits;
+    moved.hasMoved = true;
+    bool hasMaps = false;
     stereo.views = 2;
     bare.pixels = bare.rsmTexels = bare.triangles = 0.0;
     bare.surfels = 1e-30;  // there, but next to none
@@ -145,6 +147,9 @@ TEST_CASE("predicted times follow the frame's sizes and the device's rates", "[p
         const auto faced = predict({}, traits, all);
         CHECK(find(faced, each.candidate)->milliseconds - each.milliseconds ==
               Approx(row.cost[4] * (1.0 - kPlanReference.usualFacing) * pixels).margin(1e-9));
+        hasMaps = hasMaps || row.maps > 0.0;
+        CHECK(find(predict({}, moved, kNoProbes), each.candidate)->milliseconds - each.milliseconds ==
+              Approx(row.maps * (kPlanMaps.fixed + kPlanMaps.perMtriangles * triangles)).margin(1e-9));
         const auto twice = predict({}, stereo, kNoProbes), none = predict({}, bare, kNoProbes);
         CHECK(find(twice, each.candidate)->milliseconds - each.milliseconds == Approx(perPixel * pixels).margin(1e-12));
         CHECK(find(none, each.candidate)->milliseconds == Approx(row.cost[0]).margin(1e-12));
@@ -153,6 +158,7 @@ TEST_CASE("predicted times follow the frame's sizes and the device's rates", "[p
         CHECK(find(slow, each.candidate)->milliseconds == Approx(2.0 * each.milliseconds));
         CHECK(find(starved, each.candidate)->milliseconds - each.milliseconds == Approx(row.cost[3] * texels).margin(1e-12));
     }
+    CHECK(hasMaps);
 }
 
 TEST_CASE("predicted errors follow the probes, within the fit's range", "[planner]") {
