@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import dataclasses
-import sys
+import traceback
 from typing import Any, Callable, List, Optional
 
 from ._enums import LogLevel
@@ -76,19 +76,9 @@ def _log_callback(log: Log) -> Any:
         log(LogLevel(level), text(message))
 
     def failed(kind: Any, error: Any, trace: Any) -> None:
-        # An exception of the log function must not cross C frames; it is shown as one of a destructor would be.
-        sys.unraisablehook(_Unraisable(kind, error, trace, log))
+        traceback.print_exception(kind, error, trace)  # it must not cross the library's frames
 
     return ffi.callback("LWLogCallback", called, onerror=failed)
-
-
-class _Unraisable:
-    """What sys.unraisablehook takes."""
-
-    err_msg = "Exception ignored in Lightwell's log function"
-
-    def __init__(self, kind: Any, error: Any, trace: Any, log: Log) -> None:
-        self.exc_type, self.exc_value, self.exc_traceback, self.object = kind, error, trace, log
 
 
 class Device(Handle):

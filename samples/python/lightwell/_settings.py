@@ -5,7 +5,7 @@ import dataclasses
 import difflib
 import functools
 import math
-from typing import TYPE_CHECKING, Any, Dict, Mapping, Optional, Tuple, Union
+from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Tuple, Union
 
 from ._enums import ParameterKind
 from ._errors import InvalidArgumentError, check
@@ -49,7 +49,7 @@ class TechniqueInfo:
 
 def _parameter(struct: Any) -> Parameter:
     kind = ParameterKind(struct.kind)
-    choices = []
+    choices: List[str] = []
     if struct.choices != NULL:
         while struct.choices[len(choices)] != NULL:
             choices.append(text(struct.choices[len(choices)]))
@@ -107,7 +107,7 @@ def _number(parameter: Parameter, value: Any) -> float:
     except (TypeError, ValueError):
         raise _refuse(parameter, expected, value) from None
     in_range = parameter.minimum <= number <= parameter.maximum and (not whole or number == math.floor(number))
-    # 0 is taken for the default by the library, where the range does not hold it.
+    # The library takes a 0 that is out of range for the default; here a default is had by leaving the setting out.
     if not in_range or (parameter.allowed and number not in parameter.allowed):
         raise _refuse(parameter, expected, value)
     return number

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import TYPE_CHECKING, Any, List, Optional, Tuple, Union
+from typing import TYPE_CHECKING, Any, List, Literal, Optional, Tuple, Union, overload
 
 from ._enums import InputFault, Severity
 from ._errors import InvalidArgumentError, check
@@ -140,8 +140,16 @@ class View(Handle):
         desc.budgetMs, desc.errorTarget, desc.views = budget_ms, error_target, views
         return frame_struct(frame, kept), gbuffer_struct(gbuffer, kept), desc, kept
 
+    @overload
+    def check_inputs(self, frame: Optional[Frame] = ..., gbuffer: Optional[GBuffer] = ..., *,
+                     overlay: Literal[False] = ...) -> List[Finding]: ...
+
+    @overload
+    def check_inputs(self, frame: Optional[Frame] = ..., gbuffer: Optional[GBuffer] = ..., *,
+                     overlay: Union[Literal[True], Array]) -> Tuple[List[Finding], Array]: ...
+
     def check_inputs(self, frame: Optional[Frame] = None, gbuffer: Optional[GBuffer] = None, *,
-                     overlay: Union[bool, Array] = False) -> "List[Finding] | Tuple[List[Finding], Array]":
+                     overlay: Union[bool, Array] = False) -> Union[List[Finding], Tuple[List[Finding], Array]]:
         """What is wrong with a frame's inputs, the most severe first; a debugging aid that reads all images back. With `overlay` also
         a picture (height, width, 3) of the G-buffer in grey, affected pixels in their finding's colour."""
         kept = Kept()
