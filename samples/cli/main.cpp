@@ -79,7 +79,6 @@ int main(int argc, char** argv) {
     app.name("lightwell");
     app.set_version_flag("--version", LIGHTWELL_CLI_VERSION);
     app.require_subcommand(1);
-    app.footer(kFooter);
     try {
         cli::addDevices(app);
         cli::addScenes(app);
@@ -97,6 +96,7 @@ int main(int argc, char** argv) {
         cli::addPlan(app);
         cli::addCompletion(app);
         cli::addManual(app);
+        app.footer(kFooter);  // last: commands begin with the footer that stands here
         if (commandWord(argc, argv) == "complete") {
             cli::printCompletions(app, std::vector<std::string>(argv + 2, argv + argc));
             return 0;
