@@ -31,6 +31,7 @@ set(CPACK_COMPONENTS_ALL runtime dev tools)
 set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_NAME} built using CMake")  # CPack's default, which gives way to each package's own
 set(CPACK_PACKAGE_CONTACT "The Lightwell authors <lightwell@localhost>")
 set(CPACK_PACKAGE_VENDOR Lightwell)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
@@ -45,22 +46,22 @@ set(CPACK_DEBIAN_RUNTIME_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_ENABLE_COMPONENT_DEPENDS ON)
 
 set(CPACK_COMPONENT_RUNTIME_DESCRIPTION "indirect light for any renderer, on any OpenCL device
- A renderer hands over the G-buffers of its views and the reflective shadow
- maps of its lights and gets indirect diffuse irradiance back. This package
- holds the shared library; it needs an OpenCL driver.")
+A renderer hands over the G-buffers of its views and the reflective shadow
+maps of its lights and gets indirect diffuse irradiance back. This package
+holds the shared library; it needs an OpenCL driver.")
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_RECOMMENDS "pocl-opencl-icd | opencl-icd")
 
 set(CPACK_COMPONENT_DEV_DESCRIPTION "indirect light for any renderer: development files
- The C and C++ headers of Lightwell and what CMake and pkg-config need to
- find it.")
+The C and C++ headers of Lightwell and what CMake and pkg-config need to
+find it.")
 set(CPACK_COMPONENT_DEV_DEPENDS runtime)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEV_PACKAGE_SHLIBDEPS OFF)
 
 set(CPACK_COMPONENT_TOOLS_DESCRIPTION "indirect light for any renderer: command line
- The program lightwell renders scenes with the library's techniques,
- path-traces the truth and says how far the one is from the other. Small
- scenes are included.")
+The program lightwell renders scenes with the library's techniques,
+path-traces the truth and says how far the one is from the other. Small
+scenes are included.")
 set(CPACK_COMPONENT_TOOLS_DEPENDS runtime)
 set(CPACK_DEBIAN_TOOLS_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_TOOLS_PACKAGE_SUGGESTS "python3-matplotlib, node-d3")
