@@ -35,9 +35,9 @@ class Complete(CommandLine):
         self.assertIn("ssvp", self.offered("render", "cornell", "--technique", ""))
         self.assertIn("none", self.offered("render", "--technique", "no"))
         self.assertEqual(self.offered("render", "--technique=rs"), ["--technique=rsm"])
-        self.assertEqual(self.offered("render", "cor"), ["cornell", ":files"])
-        self.assertEqual(self.offered("render", "--technique", "rsm", "cor"), ["cornell", ":files"])  # a value is no positional
-        self.assertEqual(self.offered("render", "--json", "cor"), ["cornell", ":files"])  # a flag takes none
+        self.assertEqual(self.offered("render", "sphere_r"), ["sphere_room", ":files"])
+        self.assertEqual(self.offered("render", "--technique", "rsm", "sphere_r"), ["sphere_room", ":files"])  # a value is no positional
+        self.assertEqual(self.offered("render", "--json", "sphere_r"), ["sphere_room", ":files"])  # a flag takes none
         self.assertEqual(self.offered("render", "cornell", "x"), [])  # no second scene
         self.assertEqual(self.offered("render", "--technique", "ssvp", "--set", "vpls=8", "clusters"), ["clusters="])
         self.assertEqual(self.offered("render", "--technique", "rsm", "--set", "filter="), ["filter=on", "filter=off"])
