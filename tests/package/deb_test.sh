@@ -35,17 +35,17 @@ abi=$(sed -n 's/^set(LIGHTWELL_ABI \([0-9]*\))$/\1/p' "$source/CMakeLists.txt")
 runtime=("$build/liblightwell${abi}"_*.deb) dev=("$build"/liblightwell-dev_*.deb) tools=("$build"/lightwell-tools_*.deb)
 for package in "${runtime[0]}" "${dev[0]}" "${tools[0]}"; do
     [ -f "$package" ] || fail "expected $package"
-    dpkg-deb -c "$package" | grep -q '/usr/share/doc/.*/copyright$' || fail "$package: expected its licence"
+    dpkg-deb -c "$package" | grep >/dev/null '/usr/share/doc/.*/copyright$' || fail "$package: expected its licence"
 done
 expect_field() { # PACKAGE FIELD PATTERN
-    dpkg-deb -f "$1" "$2" | grep -qE "$3" || fail "$(basename "$1"), $2: expected $3, got $(dpkg-deb -f "$1" "$2")"
+    dpkg-deb -f "$1" "$2" | grep -E "$3" >/dev/null || fail "$(basename "$1"), $2: expected $3, got $(dpkg-deb -f "$1" "$2")"
 }
 expect_field "${runtime[0]}" Depends 'libopencl1'
 expect_field "${runtime[0]}" Depends 'libc6 \(>= '
 expect_field "${dev[0]}" Depends "^liblightwell${abi} \\(= "
 expect_field "${tools[0]}" Depends "liblightwell${abi} \\(= .*libembree"
-dpkg-deb -I "${runtime[0]}" shlibs | grep -q "^liblightwell ${abi} liblightwell${abi} (>= " || fail "expected shlibs of ABI ${abi}"
-dpkg-deb -I "${runtime[0]}" postinst | grep -q ldconfig || fail "expected the runtime package to have ldconfig run"
+dpkg-deb -I "${runtime[0]}" shlibs | grep >/dev/null "^liblightwell ${abi} liblightwell${abi} (>= " || fail "expected shlibs of ABI ${abi}"
+dpkg-deb -I "${runtime[0]}" postinst | grep >/dev/null ldconfig || fail "expected the runtime package to have ldconfig run"
 
 # --- in a clean root ----------------------------------------------------------------------------------
 cat >"$work/inside.sh" <<'INSIDE'
