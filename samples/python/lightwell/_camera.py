@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from typing import Any, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,21 +19,21 @@ class Camera:
     projection: ArrayLike
 
 
-def _vector(values: Sequence[float], name: str) -> NDArray[np.float64]:
+def _vector(values: ArrayLike, name: str) -> NDArray[np.float64]:
     vector = np.asarray(values, np.float64)
     if vector.shape != (3,) or not np.isfinite(vector).all():
         raise InvalidArgumentError(f"{name}: expected three finite numbers, got {values!r}")
     return vector
 
 
-def look_at(eye: Sequence[float], target: Sequence[float], up: Sequence[float] = (0.0, 1.0, 0.0)) -> NDArray[np.float64]:
+def look_at(eye: ArrayLike, target: ArrayLike, up: ArrayLike = (0.0, 1.0, 0.0)) -> NDArray[np.float64]:
     """The view matrix of a right-handed camera at `eye` that looks down its own -z at `target`."""
     origin = _vector(eye, "eye")
     back = origin - _vector(target, "target")
     right = np.cross(_vector(up, "up"), back)
     if not np.linalg.norm(right) > 0.0:
-        raise InvalidArgumentError(f"look_at: expected an eye beside its target and an up that is not the way it looks, got {eye}, "
-                                   f"{target}, {up}")
+        raise InvalidArgumentError(f"look_at: expected an eye beside its target and an up that is not the way it looks, got {eye!r}, "
+                                   f"{target!r}, {up!r}")
     back /= np.linalg.norm(back)
     right /= np.linalg.norm(right)
     rotation = np.stack([right, np.cross(back, right), back])

@@ -9,7 +9,7 @@ import dataclasses
 from typing import TYPE_CHECKING, Any, Optional, Sequence, Tuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ._camera import Camera, fill_camera
 from ._enums import DepthKind, LightKind, Receivers
@@ -21,7 +21,7 @@ from ._records import BLOCKER, STATIC_VPL, VPL, records_pointer
 if TYPE_CHECKING:
     from ._view import View
 
-Vector = Tuple[float, float, float]
+Vector = ArrayLike  # three numbers
 _ORIGIN: Vector = (0.0, 0.0, 0.0)
 
 
