@@ -1,5 +1,7 @@
 """The contract: errors by name, use after close, the order of garbage collection, threads, reports."""
+import contextlib
 import gc
+import io
 import math
 import threading
 import unittest
@@ -9,6 +11,7 @@ import numpy as np
 
 import lightwell as lw
 import scenes
+from lightwell import _handles
 
 
 class Contract(unittest.TestCase):
@@ -231,12 +234,28 @@ class Reports(Contract):
         self.assertTrue(any(info.name == self.device.info.name for info in lw.devices()))
 
     def test_log(self):
-        lines = []
-        with lw.Device(cache_directory="", log=lambda level, message: lines.append((level, message))) as device:
-            with device.technique("rsm", vpls=64) as technique:
-                technique.update(scenes.frame())
-                technique.render(device.view(scenes.N, scenes.N), scenes.floor())
-        self.assertTrue(all(isinstance(level, lw.LogLevel) and message for level, message in lines), lines)
+        # A cache that cannot be written is told of. Inside the log function the library takes no calls: a view that is collected
+        # there is given back later, and an exception does not cross the library.
+        lines, held = [], {"view": self.device.view(8, 8)}
+
+        def log(level, message):
+            lines.append((level, message))
+            with self.assertRaises(lw.ReentrantError):
+                self.device.info
+            held.clear()
+            gc.collect()
+            self.assertEqual(len(_handles._deferred), 1)
+            raise RuntimeError("shown on stderr, and no more")
+
+        with contextlib.redirect_stderr(io.StringIO()) as shown:
+            with lw.Device(cache_directory="/dev/null/none", log=log) as device:
+                with device.technique("rsm", vpls=64) as technique:
+                    technique.update(scenes.frame())
+                    technique.render(device.view(scenes.N, scenes.N), scenes.floor())
+        self.assertIn("shown on stderr, and no more", shown.getvalue())
+        self.assertEqual([level for level, _ in lines], [lw.LogLevel.WARNING])
+        self.assertIn("/dev/null/none", lines[0][1])
+        self.assertEqual(_handles._deferred, [])
 
 
 class Threads(Contract):
