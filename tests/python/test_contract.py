@@ -217,6 +217,22 @@ class Reports(Contract):
         np.testing.assert_allclose(overlay[5, 5] / overlay[5, 5].max(), np.array(findings[0].colour) / max(findings[0].colour), atol=0.5)
         self.assertEqual([fault for fault, _, _ in lw.input_faults()], list(lw.InputFault))
 
+    def test_plans(self):
+        gbuffer, frame = scenes.floor(), scenes.frame()
+        gbuffer.camera = lw.Camera(lw.look_at((0.5, 2, 0.5), (0.5, 0, 0.5), (0, 0, -1)), lw.orthographic(1, 1, 0, 4))
+        plan = self.view.plan(frame, gbuffer, budget_ms=100)
+        self.assertTrue(plan.within_budget and 0 < plan.predicted_ms <= 100 and 0 < plan.confidence <= 1, plan)
+        self.assertIn(plan.technique, plan.reason)
+        self.assertTrue(0 <= plan.probes.facing <= 1)
+        with self.device.technique_from_text(plan.technique, plan.parameters) as technique:
+            self.assertEqual(technique.name, plan.technique)
+        plans = self.view.plans(frame, gbuffer, budget_ms=100)
+        times = [each.predicted_ms for each in plans]
+        self.assertEqual(times, sorted(times))
+        self.assertIn((plan.technique, plan.parameters), [(each.technique, each.parameters) for each in plans])
+        with self.assertRaisesRegex(lw.InvalidArgumentError, "views"):
+            self.view.plan(frame, gbuffer, views=65)
+
     def test_sizes_and_memory(self):
         with self.device.view(64, 48) as view:
             view.resize(20, 10)

@@ -110,7 +110,7 @@ class Documents(unittest.TestCase):
         import tempfile
         for name in ("ten_lines.py", "room.py"):
             with self.subTest(name), tempfile.TemporaryDirectory() as folder:
-                small = ["--size", "64x48"] if name == "room.py" else []
+                small = ["--size", "64x48", "--technique", "rsm vpls=64"] if name == "room.py" else []
                 try:
                     import matplotlib  # noqa: F401
                 except ImportError:
