@@ -57,8 +57,12 @@ if(NOT LIGHTWELL_SANITIZE)  # a consumer without the sanitizers cannot load a li
 endif()
 lightwell_tool_test(abi_test TOOL python3 COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/package/abi_test.py)
 if(TARGET lightwell_cli)
-  lightwell_tool_test(completion_test TOOL python3 COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/cli/completion_test.py $<TARGET_FILE:lightwell_cli>)
+  lightwell_tool_test(completion_test TOOL python3 COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/cli/completion_test.py $<TARGET_FILE:lightwell_cli>
+    Complete Manual)
+  lightwell_tool_test(completion_shells_test TOOL python3 COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/cli/completion_test.py
+    $<TARGET_FILE:lightwell_cli> Shells)
   set_tests_properties(completion_test PROPERTIES LABELS cli)
+  set_tests_properties(completion_shells_test PROPERTIES LABELS long)
 endif()
 
 # --- the Python package, beside the library that was just built
