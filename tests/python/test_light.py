@@ -146,8 +146,8 @@ class ForeignFrame(unittest.TestCase):
 class SameBits(unittest.TestCase):
     """The same arrays through tests/python/same_frame.c, a host in C: not a bit differs."""
 
-    CASES = {"rsm": "vpls=96 interleave=2", "ssvp": "vpls=64 clusters=4 bounces=2 second_vpls=16 occluders=screen",
-             "lpv": "size=16 steps=8"}
+    # Of one technique, whose kernels other suites compile as well: what is compared is the way to it.
+    CASES = ["vpls=96 interleave=2", "vpls=0 interleave=1 resolution=half seed=3"]
 
     def test_techniques(self):
         program = os.environ["LIGHTWELL_SAME_FRAME"]
@@ -163,12 +163,12 @@ class SameBits(unittest.TestCase):
                 for array in arrays + matrices:
                     file.write(np.ascontiguousarray(array, np.float32).tobytes())
             view = device.view(scenes.N, scenes.N)
-            for name, settings in self.CASES.items():
-                with self.subTest(technique=name), device.technique_from_text(name, settings) as technique:
+            for settings in self.CASES:
+                with self.subTest(settings), device.technique_from_text("rsm", settings) as technique:
                     frame = lw.Frame(lights=[scenes.sun([rsm])], source_views=[(view, gbuffer)])
                     technique.update(frame)
                     ours = technique.render(view, gbuffer).irradiance
-                    subprocess.run([program, name, settings, str(scenes.N), given, made], check=True)
+                    subprocess.run([program, "rsm", settings, str(scenes.N), given, made], check=True)
                     theirs = np.fromfile(made, np.float32).reshape(scenes.N, scenes.N, 3)
                     self.assertGreater(float(theirs.max()), 0)
                     self.assertEqual(np.ascontiguousarray(ours).tobytes(), theirs.tobytes())
