@@ -48,7 +48,42 @@ lightwell_tool_test(symbols_test TOOL nm COMMAND ${CMAKE_COMMAND} -DNM=nm -DLIBR
 if(NOT LIGHTWELL_SANITIZE)  # a consumer without the sanitizers cannot load a library with them
   add_test(NAME package_test COMMAND ${CMAKE_COMMAND} -DSOURCE=${PROJECT_SOURCE_DIR} -DBUILD=${PROJECT_BINARY_DIR}
            -DWORK=${CMAKE_CURRENT_BINARY_DIR}/package -P ${CMAKE_CURRENT_SOURCE_DIR}/package/package_test.cmake)
+  # Once more with what compiles the library again.
+  add_test(NAME package_fetch_test COMMAND ${CMAKE_COMMAND} -DSOURCE=${PROJECT_SOURCE_DIR} -DBUILD=${PROJECT_BINARY_DIR} -DFETCH=ON
+           -DWORK=${CMAKE_CURRENT_BINARY_DIR}/package_fetch -P ${CMAKE_CURRENT_SOURCE_DIR}/package/package_test.cmake)
+  add_test(NAME deb_test COMMAND bash ${CMAKE_CURRENT_SOURCE_DIR}/package/deb_test.sh ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_BINARY_DIR}/deb)
+  set_tests_properties(deb_test PROPERTIES SKIP_REGULAR_EXPRESSION "SKIPPED:")
+  set_tests_properties(package_fetch_test deb_test PROPERTIES LABELS long)
 endif()
+lightwell_tool_test(abi_test TOOL python3 COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/package/abi_test.py)
+if(TARGET lightwell_cli)
+  lightwell_tool_test(completion_test TOOL python3 COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/cli/completion_test.py $<TARGET_FILE:lightwell_cli>
+    Complete Manual)
+  lightwell_tool_test(completion_shells_test TOOL python3 COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/cli/completion_test.py
+    $<TARGET_FILE:lightwell_cli> Shells)
+  set_tests_properties(completion_test PROPERTIES LABELS cli)
+  set_tests_properties(completion_shells_test PROPERTIES LABELS long)
+endif()
+
+# --- the Python package, beside the library that was just built
+if(TARGET lightwell_python AND NOT LIGHTWELL_SANITIZE)  # Python itself is not instrumented
+  include(${PROJECT_SOURCE_DIR}/samples/python/find_python.cmake)
+  lightwell_find_python(LIGHTWELL_TEST_PYTHON cffi numpy)
+endif()
+if(LIGHTWELL_TEST_PYTHON)
+  add_executable(same_frame python/same_frame.c)
+  target_link_libraries(same_frame PRIVATE lightwell lightwell_warnings)
+  set(python_environment ${CMAKE_COMMAND} -E env LIGHTWELL_SAME_FRAME=$<TARGET_FILE:same_frame>)
+  add_test(NAME python_test COMMAND ${python_environment} PYTHONPATH=${PROJECT_BINARY_DIR}/python ${LIGHTWELL_TEST_PYTHON} -B
+           -m unittest discover -s ${CMAKE_CURRENT_SOURCE_DIR}/python)
+  add_test(NAME wheel_test COMMAND ${python_environment} bash ${CMAKE_CURRENT_SOURCE_DIR}/python/wheel_test.sh ${PROJECT_SOURCE_DIR}
+           ${CMAKE_CURRENT_BINARY_DIR}/wheel ${LIGHTWELL_TEST_PYTHON})
+  set_tests_properties(wheel_test PROPERTIES LABELS long SKIP_REGULAR_EXPRESSION "SKIPPED:")
+else()
+  add_test(NAME python_test COMMAND ${CMAKE_COMMAND} -E echo "SKIPPED: needs Python 3 with NumPy and cffi (python3-numpy, python3-cffi), and a build without sanitizers")
+  set_tests_properties(python_test PROPERTIES SKIP_REGULAR_EXPRESSION "SKIPPED:")
+endif()
+set_tests_properties(python_test PROPERTIES LABELS api)
 
 # docs/getting-started.md's program: exit code 0 means that its answer is right.
 add_executable(minimal ${PROJECT_SOURCE_DIR}/samples/minimal.c)

@@ -10,12 +10,21 @@
 #include <string>
 
 #include "cli.h"
+#include "completion.h"
 #include "interrupt.h"
 #include "place_vpls.h"
 
 namespace {
 
 constexpr int kFailed = 1, kWrongArgument = 2;
+
+constexpr char kFooter[] =
+    "Exit codes: 0 done; 1 the work failed (device, driver, disk); 2 a wrong argument; 130 interrupted.\n\n"
+    "Environment:\n"
+    "  LIGHTWELL_SCENES     folders of further scenes, separated by \":\"\n"
+    "  LIGHTWELL_DEVICE     gpu, cpu, PLATFORM:DEVICE indices or part of a name\n"
+    "  LIGHTWELL_WIDTH      lanes per work-item: 1, 4, 8, 16\n"
+    "  LIGHTWELL_CACHE_DIR  folder of compiled kernels and of truths\n";
 
 // One line, whatever the message's own layout.
 void printError(std::string message) {
@@ -85,6 +94,13 @@ int main(int argc, char** argv) {
         cli::addPlaceVpls(app);
         cli::addCheck(app);
         cli::addPlan(app);
+        cli::addCompletion(app);
+        cli::addManual(app);
+        app.footer(kFooter);  // last: commands begin with the footer that stands here
+        if (commandWord(argc, argv) == "complete") {
+            cli::printCompletions(app, std::vector<std::string>(argv + 2, argv + argc));
+            return 0;
+        }
         return parse(app, argc, argv);
     } catch (const cli::UsageError& error) {
         printError(error.what());

@@ -20,9 +20,10 @@ LIGHTWELL_SAMPLE_PACKAGES=(libembree-dev libopenimageio-dev openimageio-tools li
 # shellcheck disable=SC2034
 LIGHTWELL_TEST_PACKAGES=(catch2 libbenchmark-dev)
 # Tools that single suites are about; a suite without its tool is skipped.
-# matplotlib and D3: the report of `lightwell chart`.
+# matplotlib and D3: the report of `lightwell chart`. cffi (NumPy comes with matplotlib): the Python package.
 # shellcheck disable=SC2034
-LIGHTWELL_TEST_TOOLS=(oclgrind doxygen mesa-opencl-icd python3 python3-matplotlib node-d3)
+LIGHTWELL_TEST_TOOLS=(oclgrind doxygen mesa-opencl-icd python3 python3-matplotlib python3-cffi
+    node-d3)
 
 lightwell_say() { printf 'lightwell: %s\n' "$*"; }
 lightwell_complain() { printf 'lightwell: %s\n' "$*" >&2; }
