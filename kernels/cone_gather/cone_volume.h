@@ -73,11 +73,35 @@ LW_FN void add_word(cone_words* sum, laneu word, real weight) {
 // Between which of a corner's voxels a place is interpolated, and their shares: all eight, or the four of the tetrahedron that it lies in:
 // of the six along the way from the lower corner to the upper one the one that takes the axes by the place's shares, largest first.
 typedef struct {
-    real w[LW_CONE_VOXELS];
+    real w[LW_CONE_VOXELS], sum;  // sum: as far as these are known, of w one after the other
 #if LW_CONE_VOXELS == 4
     mask y, z, notZ;  // of x and y y is the larger; z is larger, and is not, than both
 #endif
 } cone_between;
+
+#if LW_CONE_PLANE
+// Of the shares those of voxels before the cone's plane, made to add up to `has` again.
+LW_FN void keep_before(cone_between* b, const cone_corner* c, real has) {
+    const real x = c->plane->nx, y = c->plane->ny, z = c->plane->nz;
+    real sum = (real)0.0f;
+    LW_UNROLL for (int k = 0; k < LW_CONE_VOXELS; ++k) {
+#if LW_CONE_VOXELS == 4
+        const real upper = x + y + z, first = select_(select_(x, y, b->y), z, b->z), last = select_(select_(y, x, b->y), z, b->notZ);
+        const real step = k == 0 ? (real)0.0f : k == 1 ? first : k == 2 ? upper - last : upper;
+#else
+        const real step = ((k & 1) ? x : (real)0.0f) + ((k & 2) ? y : (real)0.0f) + ((k & 4) ? z : (real)0.0f);
+#endif
+        b->w[k] *= before_plane(c->plane, c->height + step);
+        sum += b->w[k];
+    }
+    const real scale = has / greater(sum, (real)LW_CONE_PLANE_LEAST);
+    b->sum = (real)0.0f;
+    LW_UNROLL for (int k = 0; k < LW_CONE_VOXELS; ++k) {
+        b->w[k] *= scale;
+        b->sum += b->w[k];
+    }
+}
+#endif
 
 // has: the sum of the shares, 1 or 0.
 LW_FN void between(cone_between* b, const cone_corner* c, real has) {
@@ -99,6 +123,11 @@ LW_FN void between(cone_between* b, const cone_corner* c, real has) {
         b->w[2 * k + 1] = rows[k] * c->x;
         b->w[2 * k] = rows[k] - b->w[2 * k + 1];
     }
+#endif
+#if LW_CONE_PLANE
+    keep_before(b, c, has);
+#else
+    b->sum = has;
 #endif
 }
 
@@ -133,10 +162,10 @@ LW_FN void load_shared(laneu* found, __global const uint* words, const cone_betw
 
 // The words of one plane that each lane lies between onto the sum. Neighbouring pixels' cones are mostly between the same voxels from a
 // few levels on; of a level that is one voxel there is one word.
-LW_FN void add_plane(cone_words* sum, __global const uint* words, const cone_corner* c, lanei at, const cone_between* b, real has) {
+LW_FN void add_plane(cone_words* sum, __global const uint* words, const cone_corner* c, lanei at, const cone_between* b) {
     const int first = firsti_lane(at), shared = c->shared && !any_(at != (lanei)first);
     if (shared && c->side == 1) {
-        add_word(sum, (laneu)words[first], has);
+        add_word(sum, (laneu)words[first], b->sum);
         return;
     }
     laneu found[LW_CONE_VOXELS];
@@ -147,10 +176,11 @@ LW_FN void add_plane(cone_words* sum, __global const uint* words, const cone_cor
 
 LW_FN void begin_words(cone_words* sum) { sum->r = sum->g = sum->b = sum->a = sum->ones = sum->squares = (real)0.0f; }
 
-// Opacity's variance, and what it would be of open and closed voxels alone, times 255/256 squared. has: the sum of weights, 1 or 0.
-LW_FN void spread_of(real* variance, real* most, const cone_words* sum, real has) {
-    const real a = sum->a - has;
-    *variance = sum->squares - fma_((real)2.0f, a, has) - a * a;
+// Opacity's variance, and what it would be of open and closed voxels alone, times 255/256 squared. ones: the sum of weights; of has, 1 or 0, the
+// rest is empty.
+LW_FN void spread_of(real* variance, real* most, const cone_words* sum, real ones, real has) {
+    const real a = sum->a - ones;
+    *variance = sum->squares - fma_((real)2.0f, a, ones) - a * a;
     *most = a * (has * (1.0f / LW_CONE_OPACITY_STEP) - a);
 }
 LW_FN void keep_spread(cone_sample* sample, real variance, real most) {
@@ -158,9 +188,9 @@ LW_FN void keep_spread(cone_sample* sample, real variance, real most) {
     sample->spread = lesser(greater(variance, (real)0.0f), sample->most);
 }
 
-// has: the sum of weights, of those lanes that have any.
-LW_FN void finish_words(cone_sample* sample, const cone_words* sum, real has, int unit) {
-    sample->a = clamp((sum->a - has) * LW_CONE_OPACITY_STEP, (real)0.0f, (real)1.0f);
+// ones: the sum of weights.
+LW_FN void finish_words(cone_sample* sample, const cone_words* sum, real ones, int unit) {
+    sample->a = clamp((sum->a - ones) * LW_CONE_OPACITY_STEP, (real)0.0f, (real)1.0f);
 #if LW_CONE_LIGHT
     const float scale = as_float(unit + ((127 << 23) - (int)LW_CONE_LEAST_EXPONENT));
     // In this order: a step times the scale may leave float's range.
@@ -177,16 +207,16 @@ LW_FN void add_side(cone_words* sum, real* closed, real* ones, real* variance, r
     const real cosine = fabs(d);
     cone_words side;
     begin_words(&side);
-    add_plane(&side, words, c, c->at + selecti_((lanei)0, (lanei)plane, d > (real)0.0f), b, has);
+    add_plane(&side, words, c, c->at + selecti_((lanei)0, (lanei)plane, d > (real)0.0f), b);
     sum->a = fma_(cosine, side.a, sum->a);
     sum->r = fma_(cosine, side.r, sum->r);
     sum->g = fma_(cosine, side.g, sum->g);
     sum->b = fma_(cosine, side.b, sum->b);
     sum->ones = fma_(cosine, side.ones, sum->ones);
-    *ones = fma_(cosine, has, *ones);
-    *closed = fmax(*closed, side.a - has);
+    *ones = fma_(cosine, b->sum, *ones);
+    *closed = fmax(*closed, side.a - b->sum);
     real v, m;
-    spread_of(&v, &m, &side, has);
+    spread_of(&v, &m, &side, b->sum, has);
     *variance = fma_(cosine, v, *variance);
     *most = fma_(cosine, m, *most);
 }
@@ -273,10 +303,10 @@ LW_FN void sample_corner(cone_sample* sample, const cone_volume* v, int level, c
     begin_words(&sum);
     cone_between b;
     between(&b, c, has);
-    add_plane(&sum, words, c, c->at, &b, has);
-    finish_words(sample, &sum, has, v->unit);
+    add_plane(&sum, words, c, c->at, &b);
+    finish_words(sample, &sum, b.sum, v->unit);
     real variance, most;
-    spread_of(&variance, &most, &sum, has);
+    spread_of(&variance, &most, &sum, b.sum, has);
     keep_spread(sample, variance, most);
 }
 
