@@ -66,6 +66,7 @@ TEST_CASE("cones: same input, same bits, over runs and numbers of cores; widths 
     const DrawnView drawn(box.walls, kInside, kWidth, kHeight);
     LWConeTracingDesc desc = coneDesc(32, LW_VOXEL_MODE_ANISOTROPIC, LW_CONE_RESOLUTION_INTERLEAVED);
     desc.cascades = 2;
+    desc.normalAware = GENERATE(1u, 2u);
     TestDevice wide(16), scalar(1);
     const std::vector<float> first = renderCones(wide, desc, box.frame, drawn.gbuffer, kWidth, kHeight);
     CHECK(meanOf(first) > 0.0);
@@ -160,4 +161,43 @@ TEST_CASE("cones: the thinner a wall between, the more of a lit room's light get
     CHECK(voxel <= thin * 1.05);
     CHECK(thin < 0.2);
     CHECK(thick < 0.02);
+}
+
+// Opaque from both sides (normal_aware=two_sided): walls must not close the cones that leave them, and sheets must be closed from behind.
+TEST_CASE("cones: in a closed box of voxels that are opaque from both sides the irradiance is the walls'", "[cone_tracing]") {
+    TestDevice device(GENERATE(1u, 16u));
+    const ConeBox box(2.0, GENERATE(false, true), 1.0, 0.5, 64);
+    const DrawnView drawn(box.walls, kInside, kWidth, kHeight);
+    LWConeTracingDesc desc = coneDesc(32);
+    desc.normalAware = 2;
+    const std::vector<float> light = renderCones(device, desc, box.frame, drawn.gbuffer, kWidth, kHeight);
+    const auto [least, most] = rangeOf(light);
+    const double mean = meanOf(light) / 2.0;
+    CAPTURE(mean, least, most);
+    CHECK(mean > 0.94);
+    CHECK(mean < 1.02);
+    CHECK(most < 2.0 * 1.2);
+    CHECK(least > 2.0 * 0.65);
+}
+
+TEST_CASE("cones: a sheet stops light from behind where voxels are opaque from both sides", "[cone_tracing]") {
+    TestDevice device(16);
+    // A sheet that faces -x across the middle of the box, of one half whose floor is lit; the other half, behind it, is seen.
+    ConeBox box(0.0);
+    LitWall floor(64, {-1, -1, -1}, {1, 0, 0}, {0, 0, 2}, evenProfile);
+    box.triangles.quad({0, -1, -1}, {0, 2, 0}, {0, 0, 2});
+    LWFrame frame = box.frame;
+    frame.lights = &floor.light;
+    frame.lightCount = 1;
+    frame.geometry = &box.triangles.geometry;
+    const DrawnView drawn(box.walls, lookAt({0.3, 0.1, 0.9}, {0.9, 0, -1}, 0.6), kWidth, kHeight);
+    const auto seen = [&](std::uint32_t aware) {
+        LWConeTracingDesc desc = coneDesc(32);
+        desc.normalAware = aware;
+        return meanOf(renderCones(device, desc, frame, drawn.gbuffer, kWidth, kHeight));
+    };
+    const double one = seen(1), two = seen(2);
+    CAPTURE(one, two);
+    CHECK(one > 0.05);
+    CHECK(two < 0.1 * one);
 }
