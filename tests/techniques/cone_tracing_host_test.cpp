@@ -260,8 +260,8 @@ TEST_CASE("cones: single cones where voxels are opaque from both sides", "[cone_
     const bool hasSheet = GENERATE(false, true);
     const ConeBox box(2.0, true);
     WallTriangles open;  // a floor that emits 1 W/(sr m^2), and over it a sheet; both face up
-    open.quad({-1, -1, -1}, {0, 0, 2}, {2, 0, 0}, 0.5, 1.0);
-    if (hasSheet) open.quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0});
+    open.quad({-1, -1, -1}, {2, 0, 0}, {0, 0, 2}, 0.5, 1.0);
+    if (hasSheet) open.quad({-1.4, 0, -1.4}, {2.8, 0, 0}, {0, 0, 2.8});
     LWLight above{};
     above.structSize = sizeof above;
     above.kind = LW_LIGHT_DIRECTIONAL;
@@ -283,6 +283,7 @@ TEST_CASE("cones: single cones where voxels are opaque from both sides", "[cone_
         render(device, technique, view, drawn.gbuffer, all.output);
         const bool isClosed = hasSheet && aware == 2;
         CAPTURE(hasSheet, aware);
+        CAPTURE(meanOf(all.shadow.packed()), meanOf(all.specular.packed()), meanOf(all.refracted.packed()));
         CHECK(meanOf(all.shadow.packed()) == Approx(isClosed ? 0.0 : 1.0).margin(0.05));
         CHECK(meanOf(all.specular.packed()) == Approx(isClosed ? 0.0 : 0.5).margin(0.05));
         // Down through the floor, whose own voxels are not read: nothing lies there.
