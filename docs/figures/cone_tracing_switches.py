@@ -14,8 +14,9 @@ BEGIN, END = "<!-- begin: figures -->", "<!-- end: figures -->"
 SCENES = ["cornell", "rooms", "sponza_crytek", "living_room"]
 PLAIN = ["normal_aware=off"]
 SWITCHES = {"none": PLAIN, "directional opacity": [*PLAIN, "directional_opacity=on"], "aperture offset": [*PLAIN, "aperture_offset=on"],
-            "normal-aware": [], "normal-aware, aperture offset": ["aperture_offset=on"]}
-OTHERS = {"nudge 0.5": ["nudge=0.5"], "nudge 1": [], "nudge 2": ["nudge=2"], "step 0.5": ["step=0.5"], "full resolution": ["resolution=full"]}
+            "normal-aware": [], "two-sided": ["normal_aware=two_sided"], "normal-aware, aperture offset": ["aperture_offset=on"]}
+OTHERS = {"nudge 0.5": ["nudge=0.5"], "nudge 1": [], "nudge 2": ["nudge=2"], "step 0.5": ["step=0.5"], "full resolution": ["resolution=full"],
+          "64 cones": ["cones=64"], "64 cones, two-sided": ["cones=64", "normal_aware=two_sided"]}
 
 
 def main():

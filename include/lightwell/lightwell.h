@@ -747,7 +747,7 @@ typedef struct LWConeTracingDesc {
     uint32_t opacityCorrection;  /**< 1: opacity follows the length of steps; 0: each step takes its voxel's as it is */
     uint32_t directionalOpacity; /**< 1: the finest voxels too have an opacity for each axis, of what they show that way */
     uint32_t apertureOffset;     /**< 1: cones begin further off the wider they are, so that none takes light from its own surface */
-    uint32_t normalAware;        /**< 1: a voxel whose surfaces all face away from a cone sends it nothing */
+    uint32_t normalAware;        /**< 1: a voxel whose surfaces all face away from a cone sends it nothing, nor stops it; 2: it stops it */
     LWConeOcclusion occlusion;
     float occlusionDistance; /**< within which ambient occlusion counts what it meets, less with distance; in sides of the
                                   largest grid, above 0 .. 2 */

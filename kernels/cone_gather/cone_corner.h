@@ -2,14 +2,19 @@
 #ifndef LW_CONE_CORNER_H
 #define LW_CONE_CORNER_H
 
+#include "cone_plane.h"
 #include "shared/voxel_format.h"
 #include "shared/wide.h"
 
 // The lower of the eight voxels around a place as a word of its plane, and the upper ones' shares. `side`: voxels a side of the level.
-// `shared`: all lanes that have one have the same.
+// `shared`: all lanes that have one have the same. `height`: of its centre before the plane that the cone leaves, in the level's voxels.
 typedef struct {
     lanei at;
     real x, y, z;
+#if LW_CONE_PLANE
+    const cone_plane* plane;
+    real height;
+#endif
     mask has;
     int side, shared;
 } cone_corner;
@@ -66,8 +71,9 @@ LW_FN int between_same(lanei ix, lanei iy, lanei iz, mask live) {
     return LW_WIDTH > 1 && !any_(and_(live, key != (lanei)firsti_lane(key)));
 }
 
-// x, y, z: in voxels of the finest level. table: of the level. 0: no live lane has anything there.
-LW_FN int find_corner(cone_corner* c, __global const int* table, int size, int level, real x, real y, real z, mask live) {
+// x, y, z: in voxels of the finest level. table: of the level. at: the plane's in this grid. 0: no live lane has anything there.
+LW_FN int find_corner(cone_corner* c, __global const int* table, int size, int level, real x, real y, real z, mask live,
+                      const cone_plane* plane, real at) {
     const int side = size >> level;
     c->side = side;
     c->shared = LW_WIDTH > 1;
@@ -76,6 +82,10 @@ LW_FN int find_corner(cone_corner* c, __global const int* table, int size, int l
         c->has = live;
         c->at = (lanei)(only * LW_VOXEL_STRIDE);
         c->x = c->y = c->z = (real)0.0f;
+#if LW_CONE_PLANE
+        c->plane = plane;
+        c->height = fma_((real)0.5f, plane->nx + plane->ny + plane->nz, -at * as_float((127 - level) << 23));
+#endif
         return only >= 0;
     }
     const float scale = as_float((127 - level) << 23), most = (float)(side - 1);
@@ -84,6 +94,10 @@ LW_FN int find_corner(cone_corner* c, __global const int* table, int size, int l
     c->x = qx - to_real(ix);
     c->y = qy - to_real(iy);
     c->z = qz - to_real(iz);
+#if LW_CONE_PLANE
+    c->plane = plane;
+    c->height = fma_(plane->nx, to_real(ix) + 0.5f, fma_(plane->ny, to_real(iy) + 0.5f, fma_(plane->nz, to_real(iz) + 0.5f, -at * scale)));
+#endif
     const int bits = 28 - (int)clz(side);  // of bricks a side, above one
     if (between_same(ix, iy, iz, live)) {
         const int fx = firsti_lane(ix), fy = firsti_lane(iy), fz = firsti_lane(iz);

@@ -17,6 +17,8 @@ LW_FN void trace_cones(cone_sums* sums, const lw_surface* s, const cone_volume* 
                        __global const LwCone* cones, int count, __global const LwConeStep* steps, const LwConeView* view) {
     cone_frame frame;
     frame_of(&frame, s);
+    cone_plane plane;
+    plane_of(&plane, s, o, s->nx, s->ny, s->nz, has);
     const int size = volumes[0].grids.size, last = LW_CONE_CASCADES - 1;
     for (int grid = 0; grid < LW_CONE_CASCADES; ++grid) {
         const mask own = own_lanes(o, grid, size, has);
@@ -29,7 +31,7 @@ LW_FN void trace_cones(cone_sums* sums, const lw_surface* s, const cone_volume* 
             cone_light l;
             l.r = l.g = l.b = l.occluded = (real)0.0f;
             l.through = (real)1.0f;
-            march(&l, volumes, o, grid, dx, dy, dz, steps + cone.first, cone.count, view->environment.w, (real)INFINITY, begun);
+            march(&l, volumes, o, grid, dx, dy, dz, steps + cone.first, cone.count, view->environment.w, (real)INFINITY, begun, &plane);
             const real share = ones_(begun) * cone.direction.w, rest = share * l.through;
             sums->r = fma_(share, l.r, fma_(rest, (real)view->environment.x, sums->r));
             sums->g = fma_(share, l.g, fma_(rest, (real)view->environment.y, sums->g));

@@ -41,10 +41,13 @@ __kernel void cone_gather_harmonics(__global const float* position, int4 positio
         for (int k = 0; k < count; ++k) {
             const LwCone cone = cones[k];
             const real dx = (real)cone.direction.x, dy = (real)cone.direction.y, dz = (real)cone.direction.z;
+            // What goes down from a point off its surface meets that surface.
+            cone_plane plane;
+            plane_of(&plane, &s, &o, dx, dy, dz, and_(begun, fma_(s.nx, dx, fma_(s.ny, dy, s.nz * dz)) > 0.0f));
             cone_light l;
             l.r = l.g = l.b = l.occluded = (real)0.0f;
             l.through = (real)1.0f;
-            march(&l, volumes, &from, grid, dx, dy, dz, steps + cone.first, cone.count, view.environment.w, (real)INFINITY, begun);
+            march(&l, volumes, &from, grid, dx, dy, dz, steps + cone.first, cone.count, view.environment.w, (real)INFINITY, begun, &plane);
             const real share = ones_(begun) * cone.direction.w, rest = share * l.through;
             const real found[3] = {fma_(share, l.r, rest * view.environment.x), fma_(share, l.g, rest * view.environment.y),
                                    fma_(share, l.b, rest * view.environment.z)};

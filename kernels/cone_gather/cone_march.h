@@ -7,9 +7,6 @@
 #include "cone_volume.h"
 #include "shared/grid_types.h"
 
-#ifndef LW_CONE_CASCADES
-#define LW_CONE_CASCADES 1
-#endif
 #ifndef LW_CONE_CORRECT
 #define LW_CONE_CORRECT 1
 #endif
@@ -94,21 +91,21 @@ LW_FN void add_sample(cone_light* l, const cone_sample* s, const LwConeStep* ste
 // The corner of a step's place in grid c; 0: nothing there.
 #if LW_CONE_CASCADES == 1
 LW_FN int find_at(cone_corner* corner, const cone_volume* volumes, const cone_origin* from, int c, __global const LwConeStep* step, real dx,
-                  real dy, real dz, mask live, real out, real far) {
+                  real dy, real dz, mask live, real out, real far, const cone_plane* plane) {
     const real d = (real)step->distance;
     return find_corner(corner, volumes[c].table + volumes[c].grids.first[step->level], volumes[c].grids.size, step->level,
-                       fma_(dx, d, from->x[c]), fma_(dy, d, from->y[c]), fma_(dz, d, from->z[c]), and_(live, and_(out >= step->begins, far >= d)));
+                       fma_(dx, d, from->x[c]), fma_(dy, d, from->y[c]), fma_(dz, d, from->z[c]), and_(live, and_(out >= step->begins, far >= d)), plane, plane->at[c]);
 }
 #endif
 
 // grid: the one whose voxels the steps are counted in. reach, far: how far the cone reaches, all lanes and each, in voxels of the
-// finest. live: the lanes that it is followed for.
+// finest. live: the lanes that it is followed for. plane: of the surface that it leaves.
 //
 // Samples count as long as half of their cell lies before the ray's way out, and see what the grid's outermost cells hold: in a grid that
 // is fitted to a room, walls are those, and the samples that they are interpolated between lie on both sides. Ending at the
 // border, cones of 60 degrees lost half of the light of a closed box.
 LW_FN void march(cone_light* l, const cone_volume* volumes, const cone_origin* from, int grid, real dx, real dy, real dz,
-                 __global const LwConeStep* steps, int count, float reach, real far, mask live) {
+                 __global const LwConeStep* steps, int count, float reach, real far, mask live, const cone_plane* plane) {
     const int last = LW_CONE_CASCADES - 1, size = volumes[0].grids.size;
     l->before = (real)0.0f;
     const float most = (float)size, whole = (float)(1 << last);
@@ -119,11 +116,11 @@ LW_FN void march(cone_light* l, const cone_volume* volumes, const cone_origin* f
 #if LW_CONE_CASCADES == 1
     // The next sample's place and brick are looked for before this one's words, so that the one search does not wait for the other.
     cone_corner corner, next;
-    int has = count > 0 && steps[0].begins <= end && find_at(&corner, volumes, from, 0, steps, dx, dy, dz, live, out, far), nextHas;
+    int has = count > 0 && steps[0].begins <= end && find_at(&corner, volumes, from, 0, steps, dx, dy, dz, live, out, far, plane), nextHas;
     for (int i = 0; i < count; ++i, has = nextHas, corner = next) {
         const LwConeStep step = steps[i];
         if (step.begins > end || step.distance > reaches) break;
-        nextHas = i + 1 < count && steps[i + 1].begins <= end && find_at(&next, volumes, from, 0, steps + i + 1, dx, dy, dz, live, out, far);
+        nextHas = i + 1 < count && steps[i + 1].begins <= end && find_at(&next, volumes, from, 0, steps + i + 1, dx, dy, dz, live, out, far, plane);
         if (!has) {
             l->before = (real)0.0f;
             continue;
@@ -159,7 +156,7 @@ LW_FN void march(cone_light* l, const cone_volume* volumes, const cone_origin* f
             if (c < last) own = and_(left, in_grid(x, y, z, margin, most - margin));
             left = and_(left, not_(own));
             cone_corner corner;
-            if (!any_(own) || !find_corner(&corner, volumes[c].table + volumes[c].grids.first[level], size, level, x, y, z, own)) continue;
+            if (!any_(own) || !find_corner(&corner, volumes[c].table + volumes[c].grids.first[level], size, level, x, y, z, own, plane, plane->at[c])) continue;
             cone_sample s;
             sample_corner(&s, volumes + c, level, &corner, dx, dy, dz);
             // Of cells coarser than the cone the step is a smaller part.

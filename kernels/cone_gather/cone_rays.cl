@@ -32,11 +32,13 @@ LW_FN lanei class_of(real alpha, __global const LwCone* cones) {
 
 // One cone of each lane along d, of the lane's class; begun: lanes whose cone begins inside the grid. height: cosine of the direction and
 // the surface that it leaves.
-LW_FN void trace_classes(cone_light* l, const cone_volume* volumes, const cone_origin* o, mask has, const real* d, real height,
-                         real far, lanei kind, __global const LwCone* cones, __global const LwConeStep* steps, const LwConeView* view) {
+LW_FN void trace_classes(cone_light* l, const cone_volume* volumes, const lw_surface* s, const cone_origin* o, mask has, const real* d,
+                         real height, real far, lanei kind, __global const LwCone* cones, __global const LwConeStep* steps, const LwConeView* view) {
     l->r = l->g = l->b = l->occluded = (real)0.0f;
     l->through = (real)1.0f;
     const int size = volumes[0].grids.size;
+    cone_plane plane;
+    plane_of(&plane, s, o, d[0], d[1], d[2], has);
     // Steps are counted from where the cone begins, nudge / cosine off the surface.
     const real begin = view->rough.z / fmax(height, (real)0.1f);
     for (int grid = 0; grid < LW_CONE_CASCADES; ++grid) {
@@ -56,7 +58,7 @@ LW_FN void trace_classes(cone_light* l, const cone_volume* volumes, const cone_o
             const int least = mini_lane(selecti_((lanei)LW_CONE_APERTURES, kind, left));
             const mask these = and_(left, kind == (lanei)least);
             const LwCone cone = cones[least];
-            march(l, volumes, &from, grid, d[0], d[1], d[2], steps + cone.first, cone.count, view->environment.w, ahead, these);
+            march(l, volumes, &from, grid, d[0], d[1], d[2], steps + cone.first, cone.count, view->environment.w, ahead, these, &plane);
             left = and_(left, not_(these));
         }
     }
@@ -125,7 +127,7 @@ __kernel void cone_gather_rays(__global const float* position, int4 positionLayo
     const real length2 = squared_length(d[0], d[1], d[2]), inverse = select_(none, rsqrt(length2), length2 > none);
     for (int a = 0; a < 3; ++a) d[a] = select_(n[a], d[a] * inverse, length2 > none);
     cone_light l;
-    trace_classes(&l, volumes, &o, has, d, fabs(dot_normal(&s, d)), (real)INFINITY, class_of(rough * rough, cones), cones, steps, &view);
+    trace_classes(&l, volumes, &s, &o, has, d, fabs(dot_normal(&s, d)), (real)INFINITY, class_of(rough * rough, cones), cones, steps, &view);
     store_light(&l, has, &view, radiance, radianceLayout, x, y, width, counts);
 }
 
@@ -155,7 +157,7 @@ __kernel void cone_gather_shadow(__global const float* position, int4 positionLa
     for (int a = 0; a < 3; ++a) d[a] *= inverse;
     const real facing = dot_normal(&s, d), one = (real)1.0f, none = (real)0.0f;
     cone_light l;
-    trace_classes(&l, volumes, &o, and_(has, facing > none), d, facing, far, (lanei)0, cones, steps, &view);
+    trace_classes(&l, volumes, &s, &o, and_(has, facing > none), d, facing, far, (lanei)0, cones, steps, &view);
     const real open = select_(one, l.through, has);
     store(select_(none, open, and_(s.valid, facing > none)), shadow, shadowLayout.x + y * shadowLayout.y + x);
 }

@@ -50,6 +50,17 @@ LW_FN mask origins_of(cone_origin* o, const lw_surface* s, __global const LwGrid
     return has;
 }
 
+// The planes of surfaces that cones leave along d, on whichever side; none of lanes that do not `leave` one.
+LW_FN void plane_of(cone_plane* p, const lw_surface* s, const cone_origin* o, real dx, real dy, real dz, mask leave) {
+    const real along = fma_(s->nx, dx, fma_(s->ny, dy, s->nz * dz)), one = (real)1.0f, none = (real)0.0f;
+    const real side = select_(none, select_(one, -one, along < none), leave);
+    p->nx = side * s->nx;
+    p->ny = side * s->ny;
+    p->nz = side * s->nz;
+    for (int c = 0; c < LW_CONE_CASCADES; ++c)
+        p->at[c] = select_((real)LW_CONE_NO_PLANE, fma_(p->nx, o->x[c], fma_(p->ny, o->y[c], p->nz * o->z[c])), leave);
+}
+
 // Of the lanes `has` those whose finest grid is this one.
 LW_FN mask own_lanes(const cone_origin* o, int grid, int size, mask has) {
     const float most = (float)size;

@@ -5,6 +5,7 @@
 #ifndef LW_CONE_VOLUME_H
 #define LW_CONE_VOLUME_H
 
+#include "cone_between.h"
 #include "cone_corner.h"
 #include "shared/cone_types.h"
 #include "shared/voxel_format.h"
@@ -18,9 +19,6 @@
 #endif
 #ifndef LW_CONE_LIGHT
 #define LW_CONE_LIGHT 1
-#endif
-#ifndef LW_CONE_VOXELS
-#define LW_CONE_VOXELS 8
 #endif
 
 // Of one cascade.
@@ -66,77 +64,12 @@ LW_FN void add_word(cone_words* sum, laneu word, real weight) {
 #endif
 }
 
-#define LW_CONE_X 1
-#define LW_CONE_Y LW_VOXEL_STORED
-#define LW_CONE_Z (LW_VOXEL_STORED * LW_VOXEL_STORED)
-
-// Between which of a corner's voxels a place is interpolated, and their shares: all eight, or the four of the tetrahedron that it lies in:
-// of the six along the way from the lower corner to the upper one the one that takes the axes by the place's shares, largest first.
-typedef struct {
-    real w[LW_CONE_VOXELS];
-#if LW_CONE_VOXELS == 4
-    mask y, z, notZ;  // of x and y y is the larger; z is larger, and is not, than both
-#endif
-} cone_between;
-
-// has: the sum of the shares, 1 or 0.
-LW_FN void between(cone_between* b, const cone_corner* c, real has) {
-#if LW_CONE_VOXELS == 4
-    const real x = c->x, y = c->y, z = c->z, high = greater(x, y), low = lesser(x, y);
-    const real most = greater(high, z), least = lesser(low, z), middle = greater(low, lesser(high, z));
-    b->y = x < y;
-    b->z = z > high;
-    b->notZ = z <= low;
-    b->w[0] = has - most * has;
-    b->w[1] = (most - middle) * has;
-    b->w[2] = (middle - least) * has;
-    b->w[3] = least * has;
-#else
-    const real upper = has * c->z, lower = has - upper;
-    const real w3 = upper * c->y, w2 = upper - w3, w1 = lower * c->y, w0 = lower - w1;
-    const real rows[4] = {w0, w1, w2, w3};
-    LW_UNROLL for (int k = 0; k < 4; ++k) {
-        b->w[2 * k + 1] = rows[k] * c->x;
-        b->w[2 * k] = rows[k] - b->w[2 * k + 1];
-    }
-#endif
-}
-
-// The words of those voxels, `at` the lower corner's.
-LW_FN void load_words(laneu* found, __global const uint* words, lanei at, const cone_between* b) {
-#if LW_CONE_VOXELS == 4
-    __global const int* from = (__global const int*)words;
-    const lanei x = (lanei)LW_CONE_X, y = (lanei)LW_CONE_Y, z = (lanei)LW_CONE_Z, upper = (lanei)(LW_CONE_X + LW_CONE_Y + LW_CONE_Z);
-    found[0] = as_laneu_(gatheri(from, at));
-    found[1] = as_laneu_(gatheri(from, at + selecti_(selecti_(x, y, b->y), z, b->z)));
-    found[2] = as_laneu_(gatheri(from, at + (upper - selecti_(selecti_(y, x, b->y), z, b->notZ))));
-    found[3] = as_laneu_(gatheri(from, at + upper));
-#else
-    LW_UNROLL for (int k = 0; k < 4; ++k)
-        gather_pairs(words, at + ((k & 1) ? LW_CONE_Y : 0) + ((k & 2) ? LW_CONE_Z : 0), found + 2 * k, found + 2 * k + 1);
-#endif
-}
-
-// The same where all lanes have one corner: each word is loaded once for all of them.
-LW_FN void load_shared(laneu* found, __global const uint* words, const cone_between* b) {
-#if LW_CONE_VOXELS == 4
-    found[0] = (laneu)words[0];
-    found[1] = selectu_(selectu_((laneu)words[LW_CONE_X], (laneu)words[LW_CONE_Y], b->y), (laneu)words[LW_CONE_Z], b->z);
-    found[2] = selectu_(selectu_((laneu)words[LW_CONE_X + LW_CONE_Z], (laneu)words[LW_CONE_Y + LW_CONE_Z], b->y),
-                        (laneu)words[LW_CONE_X + LW_CONE_Y], b->notZ);
-    found[3] = (laneu)words[LW_CONE_X + LW_CONE_Y + LW_CONE_Z];
-#else
-    LW_UNROLL for (int k = 0; k < 8; ++k)
-        found[k] = (laneu)words[((k & 1) ? LW_CONE_X : 0) + ((k & 2) ? LW_CONE_Y : 0) + ((k & 4) ? LW_CONE_Z : 0)];
-#endif
-}
-
 // The words of one plane that each lane lies between onto the sum. Neighbouring pixels' cones are mostly between the same voxels from a
 // few levels on; of a level that is one voxel there is one word.
-LW_FN void add_plane(cone_words* sum, __global const uint* words, const cone_corner* c, lanei at, const cone_between* b, real has) {
+LW_FN void add_plane(cone_words* sum, __global const uint* words, const cone_corner* c, lanei at, const cone_between* b) {
     const int first = firsti_lane(at), shared = c->shared && !any_(at != (lanei)first);
     if (shared && c->side == 1) {
-        add_word(sum, (laneu)words[first], has);
+        add_word(sum, (laneu)words[first], b->sum);
         return;
     }
     laneu found[LW_CONE_VOXELS];
@@ -147,10 +80,11 @@ LW_FN void add_plane(cone_words* sum, __global const uint* words, const cone_cor
 
 LW_FN void begin_words(cone_words* sum) { sum->r = sum->g = sum->b = sum->a = sum->ones = sum->squares = (real)0.0f; }
 
-// Opacity's variance, and what it would be of open and closed voxels alone, times 255/256 squared. has: the sum of weights, 1 or 0.
-LW_FN void spread_of(real* variance, real* most, const cone_words* sum, real has) {
-    const real a = sum->a - has;
-    *variance = sum->squares - fma_((real)2.0f, a, has) - a * a;
+// Opacity's variance, and what it would be of open and closed voxels alone, times 255/256 squared. ones: the sum of weights; of has, 1 or 0, the
+// rest is empty.
+LW_FN void spread_of(real* variance, real* most, const cone_words* sum, real ones, real has) {
+    const real a = sum->a - ones;
+    *variance = sum->squares - fma_((real)2.0f, a, ones) - a * a;
     *most = a * (has * (1.0f / LW_CONE_OPACITY_STEP) - a);
 }
 LW_FN void keep_spread(cone_sample* sample, real variance, real most) {
@@ -158,9 +92,9 @@ LW_FN void keep_spread(cone_sample* sample, real variance, real most) {
     sample->spread = lesser(greater(variance, (real)0.0f), sample->most);
 }
 
-// has: the sum of weights, of those lanes that have any.
-LW_FN void finish_words(cone_sample* sample, const cone_words* sum, real has, int unit) {
-    sample->a = clamp((sum->a - has) * LW_CONE_OPACITY_STEP, (real)0.0f, (real)1.0f);
+// ones: the sum of weights.
+LW_FN void finish_words(cone_sample* sample, const cone_words* sum, real ones, int unit) {
+    sample->a = clamp((sum->a - ones) * LW_CONE_OPACITY_STEP, (real)0.0f, (real)1.0f);
 #if LW_CONE_LIGHT
     const float scale = as_float(unit + ((127 << 23) - (int)LW_CONE_LEAST_EXPONENT));
     // In this order: a step times the scale may leave float's range.
@@ -177,16 +111,16 @@ LW_FN void add_side(cone_words* sum, real* closed, real* ones, real* variance, r
     const real cosine = fabs(d);
     cone_words side;
     begin_words(&side);
-    add_plane(&side, words, c, c->at + selecti_((lanei)0, (lanei)plane, d > (real)0.0f), b, has);
+    add_plane(&side, words, c, c->at + selecti_((lanei)0, (lanei)plane, d > (real)0.0f), b);
     sum->a = fma_(cosine, side.a, sum->a);
     sum->r = fma_(cosine, side.r, sum->r);
     sum->g = fma_(cosine, side.g, sum->g);
     sum->b = fma_(cosine, side.b, sum->b);
     sum->ones = fma_(cosine, side.ones, sum->ones);
-    *ones = fma_(cosine, has, *ones);
-    *closed = fmax(*closed, side.a - has);
+    *ones = fma_(cosine, b->sum, *ones);
+    *closed = fmax(*closed, side.a - b->sum);
     real v, m;
-    spread_of(&v, &m, &side, has);
+    spread_of(&v, &m, &side, b->sum, has);
     *variance = fma_(cosine, v, *variance);
     *most = fma_(cosine, m, *most);
 }
@@ -273,10 +207,10 @@ LW_FN void sample_corner(cone_sample* sample, const cone_volume* v, int level, c
     begin_words(&sum);
     cone_between b;
     between(&b, c, has);
-    add_plane(&sum, words, c, c->at, &b, has);
-    finish_words(sample, &sum, has, v->unit);
+    add_plane(&sum, words, c, c->at, &b);
+    finish_words(sample, &sum, b.sum, v->unit);
     real variance, most;
-    spread_of(&variance, &most, &sum, has);
+    spread_of(&variance, &most, &sum, b.sum, has);
     keep_spread(sample, variance, most);
 }
 

@@ -30,7 +30,7 @@ LW_FN lw_int voxel_light_row(lw_int row, lw_int texels) {
 typedef struct {
     lw_int mode;      // LWVoxelMode
     lw_int sides;     // 1: six sides on the finest level
-    lw_int aware;     // 1: of what faces them
+    lw_int aware;     // 1: light and opacity of what faces them; 2: light alone
     lw_int feedback;  // 1: of light that arrives at receivers as well
     lw_int size;
     lw_int slots;       // of surfaces

@@ -87,8 +87,9 @@ LW_FN void shade_mean(const lw_voxels* v, real* value) {
     value[3] = opacity;
 }
 
-// The same for rays that go down the axis (sign 1: they see what faces up) or up (-1). aware: of what faces the ray alone, light and
-// opacity. With the opacity of what faces away, rays that leave a lit wall were dimmed by it, which cost a closed box half of its light.
+// The same for rays that go down the axis (sign 1: they see what faces up) or up (-1). aware 1: of what faces the ray alone, light and
+// opacity. With the opacity of what faces away, rays that leave a lit wall were dimmed by it, which cost a closed box half of its light. 2: opaque from
+// both sides, for cones that read no voxel of the surface that they leave (cone_plane.h).
 LW_FN void shade_side(const lw_voxels* v, int axis, float sign, int aware, real* value) {
     if (!aware) {
         const real opacity = fmin(larger_side(v, axis), (real)(1.0f)), perArea = voxel_over(opacity, v->area);
@@ -104,7 +105,8 @@ LW_FN void shade_side(const lw_voxels* v, int axis, float sign, int aware, real*
     const real facing = fmax(0.5f * (v->axes[axis] + sign * (v->area * v->normal[axis])), (real)(0.0f));
     const real one = fmin(sqrt(fma_(v->towards[0], v->towards[0], fma_(v->towards[1], v->towards[1], v->towards[2] * v->towards[2]))), (real)1.0f);
     const real sent = 0.5f * (fma_(1.0f - one, most, fabs(v->towards[axis])) + sign * v->towards[axis]);
-    const real opacity = fmin(facing, (real)(1.0f)), kept = voxel_over(opacity, facing);
+    const real closes = aware == 2 ? larger_side(v, axis) : facing;
+    const real opacity = fmin(closes, (real)(1.0f)), kept = voxel_over(opacity, closes);
     // Where more faces away than this way, some of the light fell on the backs of sheets, which nobody sees: a ceiling that the sun lights from
     // above would shine through the tops of its cornices (living room: 4 times the light).
     const real front = voxel_over(facing, fmax(facing, v->axes[axis] - facing));

@@ -104,6 +104,7 @@ Defines coneDefines(const ConeGatherOptions& options, bool light, bool open) {
             {"LW_CONE_SIDES", options.sides ? "1" : "0"},
             {"LW_CONE_CASCADES", std::to_string(options.cascades)},
             {"LW_CONE_VOXELS", options.tetrahedral ? "4" : "8"},
+            {"LW_CONE_PLANE", options.startPlane ? "1" : "0"},
             {"LW_CONE_CORRECT", options.opacityCorrection ? "1" : "0"},
             {"LW_CONE_LIGHT", light ? "1" : "0"},
             {"LW_CONE_OPEN", open ? "1" : "0"}};

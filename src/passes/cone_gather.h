@@ -24,6 +24,7 @@ struct ConeGatherOptions {
     bool opacityCorrection = true, apertureOffset = false;
     bool near = false;               // light is dimmed by what stands nearer than where cones begin
     double occlusionDistance = 1.0;  // sides of the largest grid
+    bool startPlane = false;  // samples see voxels before the plane of the surface that a cone leaves alone
     bool tetrahedral = false;        // samples are interpolated between four voxels, not eight
 };
 

@@ -16,7 +16,7 @@ struct ConeLightSource {
 
 class ConeRays {
 public:
-    // Of the options size, cascades, mode, sides, nudge, step, distance and opacityCorrection count.
+    // Of the options size, cascades, mode, sides, startPlane, nudge, step, distance and opacityCorrection count.
     ConeRays(Device& device, const ConeGatherOptions& options);
 
     // Pass "cone_gather.specular": mean radiance over the lobe, and "cone_gather.refraction": along the

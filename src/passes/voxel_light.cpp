@@ -73,11 +73,11 @@ void VoxelLight::reserve(Executor& executor, std::uint32_t slots, std::size_t te
 
 void VoxelLight::record(Executor& executor, const RsmInput& rsms, const VoxelSurfaces& surfaces,
                         const Buffer& place, const VoxelMips& mips, const VoxelVolume& volume,
-                        bool aware, bool hears) {
+                        cl_int aware, bool hears) {
     LwVoxelContents contents{};
     contents.mode = cl_int(volume.mode);
     contents.sides = volume.sides ? 1 : 0;
-    contents.aware = aware ? 1 : 0;
+    contents.aware = aware;
     contents.feedback = hears ? 1 : 0;
     contents.size = cl_int(size_);
     contents.slots = cl_int(surfaces.slots);

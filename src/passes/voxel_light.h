@@ -31,10 +31,10 @@ public:
 
     // Passes "voxel_light.*", between the two of VoxelMips: words of bricks whose surfaces or light have
     // changed, and their marks. What comes out is the same, to the bit, as all made anew. place:
-    // LwGridPlace. aware: a volume with sides shows on each the light of surfaces that face it alone.
+    // LwGridPlace. aware: LwVoxelContents', of a volume with sides.
     // hears: irradiance() counts, too.
     void record(Executor& executor, const RsmInput& rsms, const VoxelSurfaces& surfaces,
-                const Buffer& place, const VoxelMips& mips, const VoxelVolume& volume, bool aware,
+                const Buffer& place, const VoxelMips& mips, const VoxelVolume& volume, cl_int aware,
                 bool hears = false);
     void forget() { isKept_ = false; }  // the next record() writes all words
 

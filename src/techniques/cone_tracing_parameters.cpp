@@ -18,6 +18,7 @@ constexpr const char* kResolutions[] = {"full", "half", "quarter", "interleaved"
 constexpr double kResolutionSweep[] = {LW_CONE_RESOLUTION_HALF, LW_CONE_RESOLUTION_INTERLEAVED};
 constexpr const char* kSources[] = {"auto", "triangles", "surfels", "screen", nullptr};
 constexpr double kBounceValues[] = {0, 1};
+constexpr const char* kAwareness[] = {"off", "on", "two_sided", nullptr};
 constexpr const char* kInterpolations[] = {"trilinear", "tetrahedral", nullptr};
 constexpr const char* kOcclusions[] = {"off", "all", "near", nullptr};
 
@@ -100,10 +101,12 @@ std::vector<LWParameter> ofCones() {
         flag("aperture_offset",
              "cones begin further off the wider they are, so that none takes light from its own surface; near light is missed more",
              offsetof(LWConeTracingDesc, apertureOffset), 0),
-        flag("normal_aware",
-             "cones see of a voxel what faces them alone, light and opacity, so that surfaces neither light nor shadow themselves; takes "
-             "geometry whose triangles or surfels face outwards, and the finest voxels' six sides",
-             offsetof(LWConeTracingDesc, normalAware), 1),
+        choosing(parameter("normal_aware",
+                           "cones see of a voxel what faces them alone, light and opacity, so that surfaces neither light nor shadow "
+                           "themselves; takes geometry whose triangles or surfels face outwards, and the finest voxels' six sides. two_sided: "
+                           "light alone; what faces away is opaque too, and cones read no voxel of the surface that they leave",
+                           LW_PARAMETER_ENUM, offsetof(LWConeTracingDesc, normalAware), 0, 2, 1),
+                 kAwareness),
         choosing(parameter("occlusion",
                            "what ambient occlusion from voxels dims of the light: nothing, as that has come past the voxels already; all, "
                            "which counts what is hidden twice; or all by what stands nearer than cones begin",

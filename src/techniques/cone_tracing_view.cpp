@@ -42,6 +42,7 @@ ConeGatherOptions coneOptions(const LWConeTracingDesc& desc) {
     options.cascades = desc.cascades;
     options.mode = desc.mode;
     options.sides = coneSides(desc);
+    options.startPlane = desc.normalAware == 2;
     options.cones = desc.cones;
     options.interleaved = isInterleaved(desc);
     options.nudge = double(desc.nudge);

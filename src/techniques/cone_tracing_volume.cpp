@@ -115,7 +115,7 @@ void ConeTracingVolume::record(Executor& executor, const LWFrame& frame, const R
         const VoxelSurfaces surfaces = VoxelSurfaces::of(*grids_[c]);
         const Buffer& place = places_.grid(c).place();
         if (bounce_) receivers_[c]->record(executor, surfaces, place, *mips_[c], *lights_[c]);
-        lights_[c]->record(executor, rsms, surfaces, place, *mips_[c], volume_, desc_.normalAware != 0, bool(bounce_));
+        lights_[c]->record(executor, rsms, surfaces, place, *mips_[c], volume_, cl_int(desc_.normalAware), bool(bounce_));
         mips_[c]->recordFilter(executor, volume_);
         if (volume_.sparse) wanted_[c]->record(executor, "voxel_mips.counts", mips_[c]->work(), 0);
     }

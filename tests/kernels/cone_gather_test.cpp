@@ -115,12 +115,13 @@ TEST_CASE("cones are what a loop over their samples makes of the same words", "[
         int mode;
         bool sides;
         std::uint32_t cascades;
-        bool tetrahedral = false;
+        bool tetrahedral = false, plane = false;
     };
     const Case c = GENERATE(Case{1, 0, false, 1}, Case{16, 0, false, 1}, Case{16, 0, true, 1},
                             Case{1, 1, true, 1}, Case{16, 1, false, 1}, Case{1, 2, false, 1},
-                            Case{16, 2, true, 1}, Case{1, 0, false, 3}, Case{16, 0, false, 3},
-                            Case{16, 0, false, 1, true}, Case{16, 1, true, 1, true}, Case{1, 2, true, 1, true});
+                            Case{16, 2, true, 1, false, true}, Case{1, 0, false, 3}, Case{16, 0, false, 3, false, true},
+                            Case{16, 0, false, 1, true}, Case{16, 1, true, 1, true, true}, Case{1, 2, true, 1, true},
+                            Case{16, 1, true, 1, false, true});
     KernelRig rig(c.width);
     std::vector<HostVoxels> grids;
     for (std::uint32_t k = 0; k < c.cascades; ++k)
@@ -129,6 +130,7 @@ TEST_CASE("cones are what a loop over their samples makes of the same words", "[
     ConeGatherOptions options = optionsOf(grids[0]);
     options.cascades = c.cascades;
     options.tetrahedral = c.tetrahedral;
+    options.startPlane = c.plane;
     options.step = c.sides ? 0.5 : 1.0;
     options.near = c.sides;
     options.nudge = 2.0;

@@ -16,7 +16,7 @@ TEST_CASE("the same words in any order of texels and at any width", "[voxel_ligh
     VoxelLightRig wide(16, 32, mode, sides), narrow(1, 32, mode, sides);
     LitRoom scene(90);
     for (VoxelLightRig* rig : {&wide, &narrow}) {
-        rig->aware = sides;
+        rig->aware = sides ? 1 : 0;
         rig->setTriangles(scene.triangles);
         rig->shine(scene.texels);
     }

@@ -33,7 +33,7 @@ TEST_CASE("a thin wall shows each side its own light where voxels know what face
           "[voxel_light][large]") {
     const bool aware = GENERATE(false, true);
     VoxelLightRig rig(16, 32, LW_VOXEL_MODE_ANISOTROPIC, true);
-    rig.aware = aware;
+    rig.aware = aware ? 1 : 0;
     std::vector<VoxelTriangle> lit = voxelSheet(13.5, 0.0, 32.0, 1), wall = lit;
     append(wall, voxelSheet(13.5, 0.0, 32.0, -1));
     rig.setTriangles(wall);
@@ -58,10 +58,31 @@ TEST_CASE("a thin wall shows each side its own light where voxels know what face
     CHECK(across == 0.0);
 }
 
+TEST_CASE("a sheet shows its front's light to its front alone, and is opaque from behind where voxels are from both sides", "[voxel_light][large]") {
+    const cl_int aware = GENERATE(1, 2);
+    VoxelLightRig rig(GENERATE(1u, 16u), 32, LW_VOXEL_MODE_ANISOTROPIC, true);
+    rig.aware = aware;
+    const std::vector<VoxelTriangle> sheet = voxelSheet(13.5, 0.0, 32.0, 1);
+    rig.setTriangles(sheet);
+    rig.shine(texelsOn(sheet, 40000, {1.0, 1.0, 1.0}, 3));
+    const VoxelLevel level = VoxelLevel::of(rig.volume, 0);
+    double front = 0.0, back = 0.0;
+    for (int y = 0; y < 32; ++y)
+        for (int z = 0; z < 32; ++z) {
+            const LwVoxelValue down = level.value(0, 13, y, z, rig.lit().unit), up = level.value(1, 13, y, z, rig.lit().unit);
+            CHECK(down.opacity == 1.0f);
+            CHECK(up.opacity == (aware == 2 ? 1.0f : 0.0f));
+            front += double(down.red) / 1024;
+            back += double(up.red) / 1024;
+        }
+    CHECK(front == Approx(1.0).epsilon(0.005));
+    CHECK(back == Approx(0.0).margin(0.0025));
+}
+
 TEST_CASE("light on a sheet's back leaves by no other side, nor out of what stands in its voxels",
           "[voxel_light][large]") {
     VoxelLightRig rig(16, 32, LW_VOXEL_MODE_ANISOTROPIC, true);
-    rig.aware = true;
+    rig.aware = 1;
     // A sheet that faces down x, lit from above; in one voxel a sixteenth of it faces up, in another a
     // wall crosses it.
     const std::vector<VoxelTriangle> back = voxelSheet(13.5, 8.0, 24.0, 1);
@@ -113,7 +134,7 @@ TEST_CASE("SH2 keeps the flux of a wall, and shines to its own side", "[voxel_li
 TEST_CASE("light too weak for the inverse of its brightness stays dark, and comes from nowhere", "[voxel_light][large]") {
     const LWVoxelMode mode = GENERATE(LW_VOXEL_MODE_SH2, LW_VOXEL_MODE_ANISOTROPIC);
     VoxelLightRig rig(GENERATE(1u, 16u), 32, mode, mode == LW_VOXEL_MODE_ANISOTROPIC);
-    rig.aware = true;
+    rig.aware = 1;
     rig.setTriangles(voxelSheet(13.5, 0.0, 32.0, -1));
     // Nearer to each other than the whole numbers in which light is added up reach.
     const double bright = 1e-21, weak = GENERATE(1e-39, 2e-39, 5e-39);

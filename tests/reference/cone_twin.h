@@ -29,6 +29,11 @@ struct ConeTwin {
         double colour[3] = {0, 0, 0}, through = 1, occluded = 0;
     };
 
+    // Of the surface that cones leave: a point of the world, and the normal.
+    struct Plane {
+        Vec at, normal;
+    };
+
     int size() const { return int(voxels.volume.size); }
     int cascades() const { return int(voxels.volume.cascades); }
 
@@ -72,7 +77,14 @@ struct ConeTwin {
         return options.tetrahedral ? std::max(0.0, least - largest) : weight;
     }
 
-    Sample sample(int cascade, int level, Vec at, Vec d) const {
+    // What counts of a voxel, of the level's coordinates `corner`: nothing while it touches the plane, all from a sixteenth of its side on.
+    double before(const Plane& plane, int cascade, int level, Vec corner) const {
+        const Vec off = corner + Vec{0.5, 0.5, 0.5} - placed(plane.at, cascade) * std::ldexp(1.0, -level), n = plane.normal;
+        const double touches = 0.5 * (std::abs(n.x) + std::abs(n.y) + std::abs(n.z));
+        return std::clamp(16 * (dot(off, n) - touches), 0.0, 1.0);
+    }
+
+    Sample sample(int cascade, int level, Vec at, Vec d, const Plane& plane) const {
         const double scale = std::ldexp(1.0, -level), most = (size() >> level) - 1,
                      p[3] = {at.x, at.y, at.z}, way[3] = {d.x, d.y, d.z};
         int corner[3];
@@ -83,10 +95,17 @@ struct ConeTwin {
             share[a] = q - corner[a];
         }
         Sample sum, side[3];
+        double weights[8], all = 0;
+        for (int k = 0; k < 8; ++k) {
+            weights[k] = shareOf(k, share);
+            const Vec own{double(corner[0] + (k & 1)), double(corner[1] + (k >> 1 & 1)), double(corner[2] + (k >> 2))};
+            if (options.startPlane) weights[k] *= before(plane, cascade, level, own);
+            all += weights[k];
+        }
         for (int k = 0; k < 8; ++k) {
             int i[3];
             for (int a = 0; a < 3; ++a) i[a] = corner[a] + (k >> a & 1);
-            const double weight = shareOf(k, share);
+            const double weight = options.startPlane ? weights[k] / std::max(all, 1.0 / 64) : weights[k];
             if (weight <= 0) continue;
             if (level == 0 ? options.sides : options.mode == LW_VOXEL_MODE_ANISOTROPIC) {
                 for (int a = 0; a < 3; ++a)
@@ -141,7 +160,7 @@ struct ConeTwin {
         return std::min({at.x, at.y, at.z}) >= margin && std::max({at.x, at.y, at.z}) <= n - margin;
     }
 
-    Light march(Vec world, Vec d, int grid, const std::vector<LwConeStep>& steps, double reach) const {
+    Light march(Vec world, Vec d, int grid, const std::vector<LwConeStep>& steps, double reach, const Plane& plane) const {
         Light light;
         double before = 0;
         for (const LwConeStep& step : steps) {
@@ -158,7 +177,7 @@ struct ConeTwin {
                 at = placed(world, cascade) + d * std::ldexp(distance, -cascade);
                 if (cascade + 1 == cascades() || holds(at, 0.5 * std::ldexp(1.0, level))) break;
             }
-            const Sample s = sample(cascade, level, at, d);
+            const Sample s = sample(cascade, level, at, d, plane);
             const double exponent =
                 double(step.exponent) * std::ldexp(1.0, std::min(0, wanted - cascade));
             const double alone = options.opacityCorrection
@@ -212,7 +231,7 @@ struct ConeTwin {
             const std::vector<LwConeStep> steps = coneSteps(cone.halfAngle, cone.d[2], schedule());
             const double begin = std::ldexp(double(steps[0].distance), grid + 1 - cascades());
             if (!holds(placed(p, cascades() - 1) + d * begin, 0)) continue;
-            const Light l = march(p, d, grid, steps, schedule().reach);
+            const Light l = march(p, d, grid, steps, schedule().reach, {p, n});
             for (int c = 0; c < 3; ++c)
                 g.irradiance[c] += 3.14159265358979323846 * cone.weight *
                                    (l.colour[c] + l.through * environment[std::size_t(c)]);

@@ -22,7 +22,8 @@ struct VoxelLightRig : VoxelRig {
     VoxelMips mips;
     VoxelLight light;
     VoxelReceivers receivers;
-    bool aware = false, hears = false;
+    bool hears = false;
+    cl_int aware = 0;
     double area = kCell * kCell;  // of a voxel's face
 
     VoxelLightRig(std::uint32_t width, int n, LWVoxelMode mode, bool sides, bool sparse = true)

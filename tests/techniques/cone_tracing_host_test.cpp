@@ -88,6 +88,7 @@ TEST_CASE("cones compile nothing after lwPrewarm, and take no more memory than w
     desc.interpolation = isFirst ? LW_CONE_INTERPOLATION_TRILINEAR : LW_CONE_INTERPOLATION_TETRAHEDRAL;
     desc.bounces = desc.mode == LW_VOXEL_MODE_SH2 ? 1 : 0;
     desc.cascades = desc.mode == LW_VOXEL_MODE_SH2 ? 2 : 1;
+    desc.normalAware = isFirst ? 1 : 2;
     desc.occlusion = desc.bounces ? LW_CONE_OCCLUSION_ALL : LW_CONE_OCCLUSION_NEAR;
     TestTechnique technique(device, "cone_tracing", &desc);
     TestView view(device, kWidth, kHeight);
@@ -244,13 +245,47 @@ TEST_CASE("cones: what a frame does not bring is refused, and what is not used i
     for (const auto& spoil : std::vector<std::function<void(LWConeTracingDesc&)>>{
              [](LWConeTracingDesc& d) { d.size = 48; }, [](LWConeTracingDesc& d) { d.cones = 8; }, [](LWConeTracingDesc& d) { d.cascades = 5; },
              [](LWConeTracingDesc& d) { d.nudge = NAN; }, [](LWConeTracingDesc& d) { d.step = 0.01f; },
-             [](LWConeTracingDesc& d) { d.refractiveIndex = 0.5f; }, [](LWConeTracingDesc& d) { d.bounces = 2; }}) {
+             [](LWConeTracingDesc& d) { d.refractiveIndex = 0.5f; }, [](LWConeTracingDesc& d) { d.bounces = 2; },
+             [](LWConeTracingDesc& d) { d.normalAware = 3; }}) {
         LWConeTracingDesc bad = coneDesc(32);
         spoil(bad);
-        CAPTURE(bad.size, bad.cones, bad.cascades, bad.nudge, bad.step, bad.refractiveIndex, bad.bounces);
+        CAPTURE(bad.size, bad.cones, bad.cascades, bad.nudge, bad.step, bad.refractiveIndex, bad.bounces, bad.normalAware);
         CHECK(lwCreateConeTracing(device, &bad, &none) == LW_ERROR_INVALID_ARGUMENT);
         lwReleaseTechnique(none);
     }
+}
+
+// What they leave does not close them on either side of it, what they come to from behind does.
+TEST_CASE("cones: single cones where voxels are opaque from both sides", "[cone_tracing]") {
+    TestDevice device(16);
+    const bool hasSheet = GENERATE(false, true);
+    const ConeBox box(2.0, true);
+    WallTriangles open;  // a floor that emits 1 W/(sr m^2), and over it a sheet; both face up
+    open.quad({-1, -1, -1}, {2, 0, 0}, {0, 0, 2}, 0.5, 1.0);
+    if (hasSheet) open.quad({-1.4, 0, -1.4}, {2.8, 0, 0}, {0, 0, 2.8});
+    LWLight above{};
+    above.structSize = sizeof above;
+    above.kind = LW_LIGHT_DIRECTIONAL;
+    above.direction[1] = -1.0f;
+    LWFrame frame = box.frame;
+    frame.lights = &above;
+    frame.lightCount = 1;
+    frame.geometry = &open.geometry;
+    for (float& c : frame.environment) c = 0.5f;
+    const DrawnView drawn(box.walls, lookAt({0.1, -0.2, 0.2}, {0, -1, 0}, 0.4), kWidth, kHeight);
+    LWConeTracingDesc desc = coneDesc(32, LW_VOXEL_MODE_ANISOTROPIC, LW_CONE_RESOLUTION_FULL);
+    desc.normalAware = 2;
+    desc.extent = 3.0f;
+    TestTechnique technique(device, "cone_tracing", &desc);
+    TestView view(device, kWidth, kHeight);
+    technique.update(frame);
+    Outputs all;
+    render(device, technique, view, drawn.gbuffer, all.output);
+    CAPTURE(hasSheet, meanOf(all.shadow.packed()), meanOf(all.specular.packed()), meanOf(all.refracted.packed()));
+    CHECK(meanOf(all.shadow.packed()) == Approx(hasSheet ? 0.0 : 1.0).margin(0.05));
+    CHECK(meanOf(all.specular.packed()) == Approx(hasSheet ? 0.0 : 0.5).margin(0.05));
+    // Down through the floor, whose own voxels are not read: nothing lies there.
+    CHECK(meanOf(all.refracted.packed()) == Approx(0.5).margin(0.05));
 }
 
 TEST_CASE("cones: dense grids and sparse ones have the same light", "[cone_tracing]") {

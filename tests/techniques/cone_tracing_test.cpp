@@ -66,6 +66,7 @@ TEST_CASE("cones: same input, same bits, over runs and numbers of cores; widths 
     const DrawnView drawn(box.walls, kInside, kWidth, kHeight);
     LWConeTracingDesc desc = coneDesc(32, LW_VOXEL_MODE_ANISOTROPIC, LW_CONE_RESOLUTION_INTERLEAVED);
     desc.cascades = 2;
+    desc.normalAware = 2;  // what 1 reads, and where it lies about the plane
     TestDevice wide(16), scalar(1);
     const std::vector<float> first = renderCones(wide, desc, box.frame, drawn.gbuffer, kWidth, kHeight);
     CHECK(meanOf(first) > 0.0);
@@ -160,4 +161,45 @@ TEST_CASE("cones: the thinner a wall between, the more of a lit room's light get
     CHECK(voxel <= thin * 1.05);
     CHECK(thin < 0.2);
     CHECK(thick < 0.02);
+}
+
+// Opaque from both sides (normal_aware=two_sided): walls must not close the cones that leave them, and sheets must be closed from behind.
+TEST_CASE("cones: in a closed box of voxels that are opaque from both sides the irradiance is the walls'", "[cone_tracing]") {
+    TestDevice device(16);
+    const ConeBox box(2.0, GENERATE(false, true), 1.0, 0.5, 64);
+    const DrawnView drawn(box.walls, kInside, kWidth, kHeight);
+    LWConeTracingDesc desc = coneDesc(32);
+    desc.normalAware = 2;
+    const std::vector<float> light = renderCones(device, desc, box.frame, drawn.gbuffer, kWidth, kHeight);
+    const auto [least, most] = rangeOf(light);
+    const double mean = meanOf(light) / 2.0;
+    CAPTURE(mean, least, most);
+    CHECK(mean > 0.94);
+    CHECK(mean < 1.02);
+    CHECK(most < 2.0 * 1.2);
+    // In edges: cones that leave along the second wall begin within its voxels, which close them (docs/techniques/cone_tracing.md).
+    CHECK(least > 2.0 * 0.5);
+}
+
+TEST_CASE("cones: a sheet stops from behind what a wall of two faces stops, where voxels are opaque from both sides", "[cone_tracing]") {
+    TestDevice device(16);
+    // Across the middle of the box, of one half whose floor is lit; the other half is seen.
+    const auto seen = [&](bool isWall, std::uint32_t aware) {
+        ConeBox box(0.0);
+        LitWall floor(64, {-1, -1, -1}, {0.8, 0, 0}, {0, 0, 2}, evenProfile);
+        box.triangles.quad({0.03, -1, -1}, {0, 2, 0}, {0, 0, 2});  // faces -x
+        if (isWall) box.triangles.quad({0.03, -1, -1}, {0, 0, 2}, {0, 2, 0});
+        LWFrame frame = box.frame;
+        frame.lights = &floor.light;
+        frame.lightCount = 1;
+        frame.geometry = &box.triangles.geometry;
+        const DrawnView drawn(box.walls, lookAt({0.3, 0.1, 0.9}, {0.9, 0, -1}, 0.6), kWidth, kHeight);
+        LWConeTracingDesc desc = coneDesc(32);
+        desc.normalAware = aware;
+        return meanOf(renderCones(device, desc, frame, drawn.gbuffer, kWidth, kHeight));
+    };
+    const double open = seen(false, 1), wall = seen(true, 1), sheet = seen(false, 2);
+    CAPTURE(open, wall, sheet);
+    CHECK(wall < 0.8 * open);
+    CHECK(sheet < 1.1 * wall);
 }
