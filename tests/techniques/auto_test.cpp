@@ -28,6 +28,15 @@ const std::vector<Candidate> kCandidates = {{"rsm", "vpls=16 interleave=1 filter
 // What the test predicts, from frame to frame.
 struct Plan {
     std::vector<Prediction> predictions;
+    std::size_t ofGeometry = ~std::size_t(0);  // a candidate that takes triangles
+    double mostTriangles = 0.0;                // of the frames that it was asked about
+    std::vector<Prediction> of(const FrameTraits& traits) {
+        mostTriangles = std::max(mostTriangles, traits.triangles);
+        std::vector<Prediction> possible;
+        for (const Prediction& one : predictions)
+            if (one.candidate != ofGeometry || traits.triangles > 0.0) possible.push_back(one);
+        return possible;
+    }
     void prefer(std::size_t candidate) {
         for (Prediction& one : predictions) one.error = one.candidate == candidate ? 0.1 : 1.0;
     }
@@ -63,7 +72,7 @@ struct AutoRig {
     AutoRig(const LWAutoDesc& desc, Device& on, const std::vector<Candidate>& candidates, std::size_t count) : device(on) {
         for (std::size_t i = 0; i < count; ++i) plan.predictions.push_back({i, 1.0 + double(i), 1.0, 0.7});
         plan.prefer(0);
-        technique = makeAuto(device, desc, {candidates, [this](const FrameTraits&, const LWPlanProbes&) { return plan.predictions; }, false});
+        technique = makeAuto(device, desc, {candidates, [this](const FrameTraits& traits, const LWPlanProbes&) { return plan.of(traits); }, false});
     }
     std::vector<double> frame(Scene& scene) {
         update(scene);
@@ -253,6 +262,30 @@ TEST_CASE("what prewarming left out is taken where there is nothing else", "[aut
     CHECK(rig.frame(scene) == second);
     rig.plan.predictions = both;
     for (int f = 0; f < 3; ++f) CHECK(rig.frame(scene) == second);  // its programs are there now
+}
+
+TEST_CASE("prewarming after frames goes by what they brought, and what it cannot judge stays left out", "[auto]") {
+    Scene scene;
+    const std::vector<double> first = alone(0, scene), second = alone(1, scene);
+    AutoRig rig(describe(0));
+    rig.plan.ofGeometry = 1;  // and slower and worse, at first
+    Profile profile;
+    Executor executor(rig.device, profile);
+    rig.technique->prewarm(executor, rig.view);
+    CHECK(rig.frame(scene) == first);
+    rig.plan.mostTriangles = 0.0;
+    rig.technique->prewarm(executor, rig.view);  // of frames without triangles
+    CHECK(rig.plan.mostTriangles == 0.0);
+    LWGeometry geometry{};
+    geometry.structSize = sizeof geometry;
+    geometry.triangleCount = 12;
+    scene.frame.geometry = &geometry;
+    rig.plan.prefer(1);
+    for (int f = 0; f < 3; ++f) CHECK(rig.frame(scene) == first);
+    rig.plan.mostTriangles = 0.0;
+    rig.technique->prewarm(executor, rig.view);
+    CHECK(rig.plan.mostTriangles == 12.0);
+    CHECK(rig.frame(scene) == second);
 }
 
 TEST_CASE("the host's mistakes are errors as any technique's, and nothing is barred for them", "[auto]") {
