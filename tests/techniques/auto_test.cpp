@@ -74,6 +74,10 @@ struct AutoRig {
         plan.prefer(0);
         technique = makeAuto(device, desc, {candidates, [this](const FrameTraits& traits, const LWPlanProbes&) { return plan.of(traits); }, false});
     }
+    static void setOrigin(Executor& executor, const Scene& scene) {
+        const double(&o)[3] = scene.frame.worldOrigin;
+        executor.setWorldOrigin({o[0], o[1], o[2]});
+    }
     std::vector<double> frame(Scene& scene) {
         update(scene);
         return render(scene, view);
@@ -81,10 +85,12 @@ struct AutoRig {
     void update(Scene& scene) {
         record = std::make_unique<Profile>();
         Executor executor(device, *record);
+        setOrigin(executor, scene);
         technique->update(executor, scene.frame);
     }
     std::vector<double> render(Scene& scene, const std::shared_ptr<View>& to) {
         Executor executor(device, *record);
+        setOrigin(executor, scene);
         technique->render(executor, to, scene.gbuffer, scene.output);
         device.finish();
         return scene.light();
@@ -286,6 +292,40 @@ TEST_CASE("prewarming after frames goes by what they brought, and what it cannot
     rig.technique->prewarm(executor, rig.view);
     CHECK(rig.plan.mostTriangles == 12.0);
     CHECK(rig.frame(scene) == second);
+}
+
+TEST_CASE("after prewarming, changes, fades and moves of the origin build nothing", "[auto]") {
+    Scene scene;
+    const auto own = freshDevice();
+    AutoRig rig(describe(3), *own, kCandidates, 2);
+    rig.plan.prefer(1);  // dearer and better: neither is left out
+    Profile profile;
+    Executor executor(*own, profile);
+    rig.technique->prewarm(executor, rig.view);
+    const std::uint64_t built = own->programs().built(), loaded = own->programs().loaded();
+    for (int f = 0; f < 40; ++f) {
+        if (f % 7 == 6) rig.plan.prefer(f % 2);
+        scene.frame.worldOrigin[0] = f / 10;
+        rig.frame(scene);
+    }
+    CHECK(rig.count("switches") >= 3);
+    CHECK(own->programs().built() == built);
+    CHECK(own->programs().loaded() == loaded);
+}
+
+TEST_CASE("a fade is short where the budget has no room for its time", "[auto]") {
+    Scene scene;
+    const auto left = [&](std::uint32_t fade, float budget) {
+        AutoRig rig(describe(fade, 0, budget));
+        rig.frame(scene);
+        rig.plan.predictions = {rig.plan.predictions[1]};
+        rig.frame(scene);
+        return rig.count("fading_frames_left");
+    };
+    CHECK(left(12, 0.0f) == 11);
+    CHECK(left(12, 1e6f) == 11);
+    CHECK(left(12, 1e-3f) == 2);
+    CHECK(left(2, 1e-3f) == 1);
 }
 
 TEST_CASE("the host's mistakes are errors as any technique's, and nothing is barred for them", "[auto]") {
