@@ -1,4 +1,5 @@
 // Technique auto: with candidates and predictions of the test's own, whose light is known from the techniques alone; and through the C API.
+// Over 300 lines: one rig, whose programs are built once.
 #include "techniques/auto.h"
 
 #include <algorithm>
