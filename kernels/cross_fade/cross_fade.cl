@@ -15,7 +15,7 @@
 // wanted: the others' arguments are not touched, and stand as 0 in a picture. mode: LW_HISTORY_*. share: of the new, above 0. rounding: as
 // look_up's, above 0: bilinear mixing is four times the gathers, and a blur in every frame of a fade. before,
 // after: pictures, of the frame before at its size and of this one. shownIrradiance, shownValidity: what the view shows.
-// counts[0]: surfaces that the last picture did not show.
+// counts[0]: surfaces that the last picture did not show, of a share below 1: else it is not looked at.
 __kernel void cross_fade_mix(__global const float* position, int4 positionLayout, __global const float* normal, int4 normalLayout,
                              int width, int height, __global const float* irradiance, int4 irradianceLayout,
                              __global const float* validity, int4 validityLayout, int hasIrradiance, int hasValidity,

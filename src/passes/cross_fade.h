@@ -39,7 +39,7 @@ public:
     // Before a frame that is not recorded here: the next has nothing to begin from.
     void forget();
     bool isKept() const { return drawn_[last_].camera.has_value(); }
-    // Of the last record: the count "fade_new", surfaces that took the new light at once.
+    // Of the last record: the count "fade_new", surfaces that took the new light at once; 0 where share was 1, when all do.
     void report(Device& device, Report& report) const;
     static std::uint64_t estimateBytes(std::uint32_t maxWidth, std::uint32_t maxHeight);
     std::uint64_t bytes() const { return images_[0].bytes() + images_[1].bytes() + counts_.bytes(); }

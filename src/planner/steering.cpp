@@ -162,9 +162,10 @@ bool Steering::breaksBudget() const {
 }
 
 bool Steering::mayLeave() const {
+    if (!running_) return false;
     const bool isOver = overRow_ > 0 || std::count(over_.begin(), over_.end(), true) + 1 >= kOverInWindow;
     const bool isDue = better_ > 0 && (better_ + 2 > options_.patience || (startedBlind_ && known_.at(*running_).learnt + 1 >= kLearning));
-    return running_ && ((isOver && canLeave_) || isDue || options_.patience == 0);
+    return (isOver && canLeave_) || isDue || options_.patience == 0;
 }
 
 bool Steering::fits(const Expected& one) const {

@@ -91,9 +91,17 @@ void Auto::prewarm(Executor& executor, const std::shared_ptr<View>& view) {
     FrameTraits traits = traitsOf(LWFrame{}, seen_, hasSeen_ ? pixels_ : double(view ? view->width * view->height : kAutoPixels), desc_.views);
     traits.hasRsms = true;
     if (!hasSeen_) traits.hasDirectRadiance = traits.hasAlbedo = traits.hasCamera = traits.hasMotion = traits.hasVpls = true;
-    if (updates_ == 0) traits.triangles = traits.staticVpls = 1;
+    if (updates_ == 0) {
+        traits.triangles = traits.staticVpls = 1;
+    } else {
+        traits.triangles = brought_.triangles;
+        traits.surfels = brought_.surfels;
+        traits.rsmTexels = brought_.rsmTexels;
+        traits.lights = brought_.lights;
+        traits.staticVpls = brought_.staticVpls;
+        traits.hasVpls = brought_.hasVpls;
+    }
     std::vector<Prediction> quicker;  // that can be chosen
-    skipped_.clear();
     int warmed = 0;
     for (const Prediction& one : planner_.predict(traits, probes_)) {
         // Dearer and worse than another is not chosen, as far as the frame is known.

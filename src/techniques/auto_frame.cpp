@@ -81,6 +81,7 @@ FrameTraits Auto::traitsNow(const LWFrame& frame) {
     traits.hasRsms = hasHadRsms_;
     std::vector<float> places = placesOf(frame);
     traits.hasMoved = places != std::exchange(placed_, places);
+    brought_ = traits;
     return traits;
 }
 

@@ -81,7 +81,7 @@ private:
     Steering steering_;
     AutoChildren children_;
     std::set<std::size_t> proven_;   // candidates that have been prewarmed, or have lit a view
-    std::set<std::size_t> skipped_;  // that prewarming left out
+    std::set<std::size_t> skipped_;  // that prewarming left out at some time; of what was proven later that says nothing
     AutoTimes times_;
     CrossFade fade_;
     FrameProbing probing_;
@@ -91,6 +91,7 @@ private:
     // What is known of the host's frames.
     LWGBuffer seen_{};  // of the last lwRender: which images it has
     bool hasSeen_ = false, hasHadRsms_ = false, hasProbes_ = false;
+    FrameTraits brought_;        // by the last frame
     std::vector<float> placed_;  // where the last frame's lights stood, and its geometry's version
     double pixels_ = kAutoPixels;
     LWPlanProbes probes_;

@@ -146,6 +146,7 @@ void exerciseTechnique(Executor& executor, Technique& technique, std::uint32_t k
         if (kinds & kMakesSpecular) output.specularRadiance = imageOf(inputs.specular, LW_FORMAT_FLOAT3);
         if (kinds & kMakesRefracted) output.refractedRadiance = imageOf(inputs.refracted, LW_FORMAT_FLOAT3);
         if (kinds & kMakesShadow) output.shadow = imageOf(inputs.shadow, LW_FORMAT_FLOAT1);
+        executor.setWorldOrigin({});  // whatever one that failed before this left
         technique.update(executor, frame);
         technique.render(executor, view, gbuffer, output);
         for (const DebugView& debug : technique.debugViews(view.get()))

@@ -1,4 +1,5 @@
 // Technique auto: with candidates and predictions of the test's own, whose light is known from the techniques alone; and through the C API.
+// Over 300 lines: one rig, whose programs are built once.
 #include "techniques/auto.h"
 
 #include <algorithm>
@@ -28,6 +29,15 @@ const std::vector<Candidate> kCandidates = {{"rsm", "vpls=16 interleave=1 filter
 // What the test predicts, from frame to frame.
 struct Plan {
     std::vector<Prediction> predictions;
+    std::size_t ofGeometry = ~std::size_t(0);  // a candidate that takes triangles
+    double mostTriangles = 0.0;                // of the frames that it was asked about
+    std::vector<Prediction> of(const FrameTraits& traits) {
+        mostTriangles = std::max(mostTriangles, traits.triangles);
+        std::vector<Prediction> possible;
+        for (const Prediction& one : predictions)
+            if (one.candidate != ofGeometry || traits.triangles > 0.0) possible.push_back(one);
+        return possible;
+    }
     void prefer(std::size_t candidate) {
         for (Prediction& one : predictions) one.error = one.candidate == candidate ? 0.1 : 1.0;
     }
@@ -63,7 +73,11 @@ struct AutoRig {
     AutoRig(const LWAutoDesc& desc, Device& on, const std::vector<Candidate>& candidates, std::size_t count) : device(on) {
         for (std::size_t i = 0; i < count; ++i) plan.predictions.push_back({i, 1.0 + double(i), 1.0, 0.7});
         plan.prefer(0);
-        technique = makeAuto(device, desc, {candidates, [this](const FrameTraits&, const LWPlanProbes&) { return plan.predictions; }, false});
+        technique = makeAuto(device, desc, {candidates, [this](const FrameTraits& traits, const LWPlanProbes&) { return plan.of(traits); }, false});
+    }
+    static void setOrigin(Executor& executor, const Scene& scene) {
+        const double(&o)[3] = scene.frame.worldOrigin;
+        executor.setWorldOrigin({o[0], o[1], o[2]});
     }
     std::vector<double> frame(Scene& scene) {
         update(scene);
@@ -72,10 +86,12 @@ struct AutoRig {
     void update(Scene& scene) {
         record = std::make_unique<Profile>();
         Executor executor(device, *record);
+        setOrigin(executor, scene);
         technique->update(executor, scene.frame);
     }
     std::vector<double> render(Scene& scene, const std::shared_ptr<View>& to) {
         Executor executor(device, *record);
+        setOrigin(executor, scene);
         technique->render(executor, to, scene.gbuffer, scene.output);
         device.finish();
         return scene.light();
@@ -253,6 +269,64 @@ TEST_CASE("what prewarming left out is taken where there is nothing else", "[aut
     CHECK(rig.frame(scene) == second);
     rig.plan.predictions = both;
     for (int f = 0; f < 3; ++f) CHECK(rig.frame(scene) == second);  // its programs are there now
+}
+
+TEST_CASE("prewarming after frames goes by what they brought, and what it cannot judge stays left out", "[auto]") {
+    Scene scene;
+    const std::vector<double> first = alone(0, scene), second = alone(1, scene);
+    AutoRig rig(describe(0));
+    rig.plan.ofGeometry = 1;  // and slower and worse, at first
+    Profile profile;
+    Executor executor(rig.device, profile);
+    rig.technique->prewarm(executor, rig.view);
+    CHECK(rig.frame(scene) == first);
+    rig.plan.mostTriangles = 0.0;
+    rig.technique->prewarm(executor, rig.view);  // of frames without triangles
+    CHECK(rig.plan.mostTriangles == 0.0);
+    LWGeometry geometry{};
+    geometry.structSize = sizeof geometry;
+    geometry.triangleCount = 12;
+    scene.frame.geometry = &geometry;
+    rig.plan.prefer(1);
+    for (int f = 0; f < 3; ++f) CHECK(rig.frame(scene) == first);
+    rig.plan.mostTriangles = 0.0;
+    rig.technique->prewarm(executor, rig.view);
+    CHECK(rig.plan.mostTriangles == 12.0);
+    CHECK(rig.frame(scene) == second);
+}
+
+TEST_CASE("after prewarming, changes, fades and moves of the origin build nothing", "[auto]") {
+    Scene scene;
+    const auto own = freshDevice();
+    AutoRig rig(describe(3), *own, kCandidates, 2);
+    rig.plan.prefer(1);  // dearer and better: neither is left out
+    Profile profile;
+    Executor executor(*own, profile);
+    rig.technique->prewarm(executor, rig.view);
+    const std::uint64_t built = own->programs().built(), loaded = own->programs().loaded();
+    for (int f = 0; f < 40; ++f) {
+        if (f % 7 == 6) rig.plan.prefer(f % 2);
+        scene.frame.worldOrigin[0] = f / 10;
+        rig.frame(scene);
+    }
+    CHECK(rig.count("switches") >= 3);
+    CHECK(own->programs().built() == built);
+    CHECK(own->programs().loaded() == loaded);
+}
+
+TEST_CASE("a fade is short where the budget has no room for its time", "[auto]") {
+    Scene scene;
+    const auto left = [&](std::uint32_t fade, float budget) {
+        AutoRig rig(describe(fade, 0, budget));
+        rig.frame(scene);
+        rig.plan.predictions = {rig.plan.predictions[1]};
+        rig.frame(scene);
+        return rig.count("fading_frames_left");
+    };
+    CHECK(left(12, 0.0f) == 11);
+    CHECK(left(12, 1e6f) == 11);
+    CHECK(left(12, 1e-3f) == 2);
+    CHECK(left(2, 1e-3f) == 1);
 }
 
 TEST_CASE("the host's mistakes are errors as any technique's, and nothing is barred for them", "[auto]") {

@@ -259,6 +259,18 @@ TEST_CASE("the first is chosen for twice its time, and left for what fits as soo
     CHECK(drive(dear, machine, 100, 33.0, always, always).share(0, 100) == 1.0);
 }
 
+TEST_CASE("with nothing running there is nothing to leave, also where what ran was to be left at once", "[steering]") {
+    Steering steering(within(33.0));
+    const std::vector<Prediction> two{{0, 5.0, 0.2, 0.7}, {1, 20.0, 0.1, 0.7}};
+    REQUIRE(steering.next(two)->prediction.candidate == 0);  // twice the other's time is over the budget
+    for (int i = 0; i < 4; ++i) {
+        steering.ran(0, 5.0, 5.0, 5.0);
+        steering.next(two);
+    }
+    steering.fail(0);
+    CHECK_FALSE(steering.mayLeave());
+}
+
 TEST_CASE("what models leave out grows with cost: one between two that have run is taken to lie between them", "[steering]") {
     const std::vector<Prediction> three{{0, 4.0, 0.4, 0.7}, {1, 8.0, 0.2, 0.7}, {2, 16.0, 0.1, 0.7}};
     SteeringOptions options = within(1000.0);
