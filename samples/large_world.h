@@ -3,13 +3,13 @@
 #include <math.h>
 
 /* The origin for this frame (LWFrame::worldOrigin): stays until the eye has left it far behind. */
-static void chooseOrigin(const double eye[3], double origin[3]) {
+static inline void chooseOrigin(const double eye[3], double origin[3]) {
     for (int a = 0; a < 3; ++a)
         if (fabs(eye[a] - origin[a]) > 1024.0) origin[a] = 1024.0 * floor(eye[a] / 1024.0 + 0.5);
 }
 
 /* A camera that was relative to `from`, relative to `to`: the last frame's, as LWGBuffer::previousCamera. */
-static void moveCamera(LWCamera* camera, const double from[3], const double to[3]) {
+static inline void moveCamera(LWCamera* camera, const double from[3], const double to[3]) {
     for (int row = 0; row < 3; ++row) {
         float* r = camera->view + 4 * row;
         double t = (double)r[3];

@@ -105,6 +105,8 @@ LW_FN LwGridPlace fitted(LwGridPlace last, LwGridFit fit, const float* low, cons
             origin[axis] = wanted;
         else if (low[axis] < origin[axis] + cell || high[axis] > origin[axis] + (size - 1.0f) * cell)
             origin[axis] += cell * round((wanted - origin[axis]) / cell);
+        // From so far that a float does not know cells.
+        if (!(fabs(origin[axis] - wanted) <= cell)) origin[axis] = wanted;
     }
     LwGridPlace place;
     place.origin = (float4)(origin[0], origin[1], origin[2], 0.0f);

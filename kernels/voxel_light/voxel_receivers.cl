@@ -43,7 +43,11 @@ __kernel void voxel_receivers_count(LwVoxelContents contents, __global const int
 __kernel void voxel_receivers_scan(__global const LwGridPlace* grid, __global float4* last, int bricks,
                                    int room, int all, float tolerance, __global const LwVoxelWork* work,
                                    __global int* counts, __global LwVoxelReceivers* state) {
-    if (get_global_id(0) != 0 || !work->stale) return;
+    if (get_global_id(0) != 0) return;
+    const float4 place = (float4)(grid->origin.xyz, grid->cell.x);
+    const int isSame = same_place(*last, place, tolerance);
+    *last = place;  // also where nothing is stale: a scene that moves along with the origin of positions stays where it is
+    if (!work->stale) return;
     int sum = 0;
     for (int i = 0; i < bricks; ++i) {
         const int count = counts[i];
@@ -52,9 +56,7 @@ __kernel void voxel_receivers_scan(__global const LwGridPlace* grid, __global fl
     }
     state->receivers = min(sum, room);
     state->missing = sum - min(sum, room);
-    const float4 place = (float4)(grid->origin.xyz, grid->cell.x);
-    state->moved = all || !same_place(*last, place, tolerance);
-    *last = place;
+    state->moved = all || !isSame;
 }
 
 // One work-item = one brick: its receivers. What its voxels have heard is forgotten where they hold

@@ -87,6 +87,11 @@ struct TechniqueObject : Object {
         broken = is;
         for (const auto& part : parts) part->setBroken(is);
     }
+    // What it and its parts keep is relative to this now, whoever renders with a part next.
+    void setOrigin(const WorldOrigin& origin) {
+        if (record) record->executor.setWorldOrigin(origin);
+        for (const auto& part : parts) part->setOrigin(origin);
+    }
 
     // What the last lwGetStats pointed to.
     std::vector<LWPassTime> passes;

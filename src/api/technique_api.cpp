@@ -231,6 +231,7 @@ LWStatus lwUpdate(LWTechnique technique, const LWFrame* frame) {
         }
         object->setBroken(false);
         object->record = std::move(record);
+        object->setOrigin(object->record->executor.worldOrigin());
         object->frameIndex = own.get().frameIndex;
         object->updated = true;
         object->failures = device.failures();

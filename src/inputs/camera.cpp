@@ -14,6 +14,7 @@
 #include <glm/gtc/matrix_inverse.hpp>
 
 #include "compute/error.h"
+#include "compute/float_parts.h"
 
 namespace lightwell {
 namespace {
@@ -187,8 +188,7 @@ LwUnprojection Camera::unprojection(LWDepthKind kind) const {
     result.y = float4(xyz.perI.y, xyz.perJ.y, perDepth.y, xyz.constant.y);
     result.z = float4(xyz.perI.z, xyz.perJ.z, perDepth.z, xyz.constant.z);
     result.w = float4(w.perI, w.perJ, wPerDepth, w.constant);
-    result.wRest = float4(w.perI - double(result.w.s[0]), w.perJ - double(result.w.s[1]),
-                          wPerDepth - double(result.w.s[2]), w.constant - double(result.w.s[3]));
+    result.wRest = float4(restOf(w.perI), restOf(w.perJ), restOf(wPerDepth), restOf(w.constant));
     result.origin = float4(origin.x, origin.y, origin.z, 0.0);
     return result;
 }

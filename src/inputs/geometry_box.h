@@ -21,7 +21,7 @@ public:
         const LWGeometry* geometry = frame.geometry;
         const Key key = keyOf(frame);
         if (key == key_) return;
-        GeometryInput().check(geometry);
+        GeometryInput().check(frame);
         key_ = key;
         isSome_ = false;
         if (key == Key{}) return;

@@ -176,8 +176,14 @@ GeometryInput::Key GeometryInput::keyOf(const LWGeometry* g, bool withEmission) 
             g->vertexCount, g->triangleCount, g->version};
 }
 
-void GeometryInput::check(const LWGeometry* geometry, bool withEmission) const {
-    if (geometry && geometry->triangleCount && !(keyOf(geometry, withEmission) == key_)) checkArrays(*geometry, withEmission);
+void GeometryInput::check(const LWFrame& frame, bool withEmission) const {
+    const double(&at)[3] = frame.worldOrigin;
+    check(frame.geometry, withEmission, {at[0], at[1], at[2]});
+}
+
+void GeometryInput::check(const LWGeometry* geometry, bool withEmission, const WorldOrigin& origin) const {
+    const bool isInForce = keyOf(geometry, withEmission) == key_ && origin == origin_;
+    if (geometry && geometry->triangleCount && !isInForce) checkArrays(*geometry, withEmission);
 }
 
 void GeometryInput::forget() {

@@ -31,8 +31,10 @@ public:
         kEmission = LW_TRIANGLE_EMISSION
     };
 
-    // Throws what import() would say of this geometry (null: none). Of what is in force already nothing is read.
-    void check(const LWGeometry* geometry, bool withEmission = false) const;
+    // Throws what import() would say of this geometry (null: none). Of what is in force already, relative to the same origin, nothing is
+    // read.
+    void check(const LWGeometry* geometry, bool withEmission = false, const WorldOrigin& origin = {}) const;
+    void check(const LWFrame& frame, bool withEmission = false) const;
 
     // Brings the geometry to the device (pass "geometry_input.upload") when its version, a pointer, a count or the executor's origin
     // differs from the last and some triangle does; host memory is read during the call only. Triangles are ordered by

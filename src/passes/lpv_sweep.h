@@ -63,6 +63,7 @@ public:
     // Its steps, for grids that lie in each other: what one bounce brings from grid to grid comes before the next. begin() says
     // whether all shall be done; while not done: of all grids recordStart() where isAtStart(), recordPart(), then recordEnd() once.
     bool begin(Executor& executor, bool restart);
+    bool moves(const Executor& executor) const { return kept_.moves(executor); }  // places in begin(), to another origin
     bool isAtStart() const { return nextGroup_ == 0 && bounce_ == 0; }
     bool isShown() const { return isShown_; }  // there is a result
     bool isDone() const { return bounce_ == options_.bounces; }

@@ -2,6 +2,7 @@
 
 #include <glm/glm.hpp>
 
+#include "compute/float_parts.h"
 #include "passes/world_shift.h"
 
 namespace lightwell {
@@ -23,7 +24,8 @@ LwReprojection reprojection(const Camera& camera, std::uint32_t width, std::uint
     const glm::dvec4 x = (m[0] + m[3]) * (0.5 * width), y = (m[3] - m[1]) * (0.5 * height);
     // As the kernel takes it off: far from the world's origin the eye would be off by parts of a pixel, all of one picture alike.
     const glm::dvec3 moved(after[0] - before[0], after[1] - before[1], after[2] - before[2]);
-    const glm::dvec3 origin(glm::vec3(camera.eye() - moved)), there = origin + moved;
+    const glm::dvec3 eye = camera.eye() - moved;
+    const glm::dvec3 origin(roundedToFloat(eye.x), roundedToFloat(eye.y), roundedToFloat(eye.z)), there = origin + moved;
     LwReprojection result{};
     result.x = rounded(relativeTo(there, x));
     result.y = rounded(relativeTo(there, y));

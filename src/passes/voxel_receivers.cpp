@@ -55,7 +55,6 @@ void VoxelReceivers::record(Executor& executor, const VoxelSurfaces& surfaces, c
         slots_ = surfaces.slots;
     }
     const bool moves = kept_.moves(executor);
-    if (moves) kept_.move(executor, points_, {room_, 0, 1, room_});
     if (moves) kept_.move(executor, place_, {});
     kept_.arrive(executor);
     light.reserveHeard(executor, surfaces.slots);

@@ -46,7 +46,7 @@ private:
     std::uint32_t size_, slots_ = 0, room_ = 0;
     Kernel &count_, &scan_, &list_, &end_, &hear_;
     Buffer counts_, before_, points_, gathered_, voxels_, place_, state_;
-    KeptPlaces kept_;  // points_, place_
+    KeptPlaces kept_;  // place_; points are listed anew with all that is stale
 };
 
 }  // namespace lightwell

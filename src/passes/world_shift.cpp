@@ -1,6 +1,7 @@
 #include "passes/world_shift.h"
 
 #include "compute/device.h"
+#include "compute/float_parts.h"
 #include "passes/vpl_list.h"
 
 namespace lightwell {
@@ -14,11 +15,10 @@ WorldStep worldStep(const WorldOrigin& from, const WorldOrigin& to) {
     WorldStep step;
     for (std::size_t a = 0; a < 3; ++a) {
         const double whole = to[a] - from[a];
-        // Volatile: GCC 12.2 at -O3 leaves out the rounding to a float and back, and finds nothing left.
-        const volatile float high = float(whole), low = float(whole - double(high));
-        step.high.s[a] = high;
-        step.low.s[a] = low;
-        step.least.s[a] = float(whole - double(high) - double(low));
+        const double rest = restOf(whole);
+        step.high.s[a] = roundedToFloat(whole);
+        step.low.s[a] = roundedToFloat(rest);
+        step.least.s[a] = float(restOf(rest));
     }
     return step;
 }

@@ -46,7 +46,7 @@ void ConeTracingSurfaces::check(const LWFrame& frame) const {
         if (trianglesOf(frame) == 0)
             fail(LW_ERROR_INVALID_ARGUMENT,
                  "frame.geometry: expected triangles, as the technique's parameter source=triangles asks for them, got none");
-        triangles_.check(frame.geometry, true);
+        triangles_.check(frame, true);
     }
     if (source == Source::surfels) {
         if (surfelsOf(frame) == 0)

@@ -77,7 +77,7 @@ void LpvGeometry::check(const LWFrame& frame) const {
                      ? "triangles, as the technique's parameter geometry_volume=triangles asks for them"
                      : "surfels or triangles, as the technique's parameter geometry_volume=surfels asks for them",
                  ", got none");
-        triangles_.check(frame.geometry);
+        triangles_.check(frame);
     }
     if (source == Source::surfels) SurfelInput::check(device_, frame.geometry);
     if (source == Source::screen) ScreenSurfels::check(device_, frame);

@@ -36,7 +36,7 @@ LpvSurfaces::LpvSurfaces(Device& device, const LWLpvDesc& desc, int hidden)
 
 void LpvSurfaces::check(const LWFrame& frame) const {
     const Source source = sourceOf(frame);
-    if (source == Source::triangles) triangles_.check(frame.geometry);
+    if (source == Source::triangles) triangles_.check(frame);
     if (source == Source::surfels) SurfelInput::check(device_, frame.geometry);
 }
 

@@ -19,6 +19,7 @@ void LpvSweepCascades::record(Executor& executor, const LWFrame& frame, const Rs
     places_.record(executor, frame, rsms, placement);
     const bool isOther = surfaces_.import(executor, frame);
     std::vector<LpvSweepInput> inputs;
+    const bool hasMoved = sweeps_[0]->moves(executor);
     bool all = false;
     for (std::size_t c = 0; c < sweeps_.size(); ++c) {
         inputs.push_back({rsms, places_.authored(), frame.vplCount, places_.grid(c).place(), surfaces_.surfels(), surfaces_.areaScale(),
@@ -26,8 +27,8 @@ void LpvSweepCascades::record(Executor& executor, const LWFrame& frame, const Rs
         all = sweeps_[c]->begin(executor, inputs[c].restart);
     }
     const LpvSweep& any = *sweeps_[0];
-    // What is shown may lie elsewhere than when it was made: the origin of positions may have moved.
-    if (any.isShown() && !all)
+    // What is shown lies elsewhere than when it was made where the origin of positions has moved.
+    if (hasMoved && any.isShown() && !all)
         for (std::size_t c = 0; c < sweeps_.size(); ++c) places_.recordTable(executor, c, sweeps_[c]->shownPlace());
     do {
         if (any.isAtStart())

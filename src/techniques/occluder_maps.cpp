@@ -92,7 +92,7 @@ void OccluderMaps::check(const LWFrame& frame) const {
         !hasRsm(frame))
         fail(LW_ERROR_INVALID_ARGUMENT, "frame: expected RSMs or sourceViews, as the technique's parameter "
              "occluders=screen asks for them, got neither");
-    if (drawsTriangles) triangles_.check(frame.geometry);
+    if (drawsTriangles) triangles_.check(frame);
     if (source == Source::surfels) SurfelInput::check(device_, frame.geometry);
     if (source == Source::screen) ScreenSurfels::check(device_, frame);
 }

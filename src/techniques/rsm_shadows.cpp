@@ -59,7 +59,7 @@ Source RsmShadows::sourceOf(const LWFrame& frame) const {
 
 void RsmShadows::check(const LWFrame& frame) const {
     const Source source = sourceOf(frame);
-    if (source == Source::triangles) triangles_.check(frame.geometry);
+    if (source == Source::triangles) triangles_.check(frame);
     if (source == Source::surfels) SurfelInput::check(device_, frame.geometry);
     if (source == Source::screen) ScreenSurfels::check(device_, frame);
 }

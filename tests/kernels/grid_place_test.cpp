@@ -132,6 +132,25 @@ TEST_CASE("grids stay on the cells of the world where the origin of positions mo
     }
 }
 
+TEST_CASE("a fitted grid holds what it is fitted to, from however far it comes", "[grid_place]") {
+    PlacesRig rig(16u);
+    const std::vector<LWVpl> vpls = corners(-9.0f, 11.0f);
+    rig.place(around(0, 0, 0, 0), vpls);
+    // What is lit is there as well, as after a jump that nobody announces.
+    const WorldOrigin jumps[] = {{1e12, -1e9, 3e7}, {3e7, -1e12, 1e9}, {0, 0, 0}};
+    for (const WorldOrigin& origin : jumps) {
+        rig.executor().setWorldOrigin(origin);
+        rig.place(around(0, 0, 0, 0), vpls);
+        const LwGridPlace outer = rig.table()[kLevels - 1];
+        const double cell = double(outer.cell.s[0]);
+        for (std::size_t a = 0; a < 3; ++a) {
+            INFO("axis " << a << ", origin " << origin[a]);
+            // The middle of the grid is that of the box, to a cell.
+            CHECK(std::abs(double(outer.origin.s[a]) + 0.5 * double(kSize) * cell - 1.0) <= 1.01 * cell);
+        }
+    }
+}
+
 TEST_CASE("what places take is what is estimated", "[grid_place]") {
     PlacesRig rig(16);
     rig.place(around(0, 0, 0, 8), corners(-1.0f, 1.0f));

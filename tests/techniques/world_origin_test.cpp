@@ -114,14 +114,16 @@ private:
 };
 
 // The last of some frames of a box at `place` of the world, of positions relative to origin(f).
-std::vector<float> lightAt(LWDevice device, const char* name, const char* settings, const Place& place, const std::function<Place(int)>& origin) {
+std::vector<float> lightAt(LWDevice device, const char* name, const char* settings, const Place& place, const std::function<Place(int)>& origin,
+                           const std::function<Place(int)>& ship = {}) {
     LWTechnique raw = nullptr;
     REQUIRE(lwCreateTechniqueFromText(device, name, settings, &raw) == LW_SUCCESS);
     TestView view(device, kWidth, kHeight);
     PlanarPixels irradiance(kWidth, kHeight, 3);
     for (int f = 0; f < kFrames; ++f) {
         const Place o = origin(f);
-        const MovingFrame moving(f, place - o, o);
+        // Of a ship nothing moves in it.
+        const MovingFrame moving(ship ? 0 : f, place - o, ship ? ship(f) : o);
         LWOutput output{};
         output.structSize = sizeof output;
         output.irradiance = irradiance.image();
@@ -170,6 +172,23 @@ TEST_CASE("so it is with all that keep something", "[world_origin][long]") {
     compare(device, "cone_tracing", "size=32 bounces=0 extent=4 cascades=2");
     compare(device, "static_vpl", "visibility=hard clusters=8");
     compare(device, "fallback", "first=horizon first.history=8 second=rsm second.history=8");
+}
+
+// A ship that carries all there is, and the origin with it: nothing moves for what is relative to that.
+TEST_CASE("a scene that moves along with the origin is lit as one at rest", "[world_origin]") {
+    TestDevice device(16);
+    const auto lit = [&](const char* name, const char* settings, const Place& moved) {
+        return lightAt(device, name, settings, Place(0), [](int) { return Place(0); }, [&](int f) { return f < kMoves ? Place(0) : moved; });
+    };
+    const auto check = [&](const char* name, const char* settings) {
+        const std::vector<float> still = lit(name, settings, Place(0));
+        for (const Place& moved : {Place(320, -640, 32), Place(1e12, -1e12, 9.7e11)}) {
+            CAPTURE(name, settings, moved.x);
+            CHECK(difference(lit(name, settings, moved), still) <= kMost);
+        }
+    };
+    check("cone_tracing", "size=32 bounces=0 extent=4 cascades=2");
+    check("lpv", "size=16 extent=4 transport=sweep directions=24 rests=on");
 }
 
 TEST_CASE("listed lights keep their numbers and places where the origin moves", "[world_origin]") {
