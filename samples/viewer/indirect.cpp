@@ -127,8 +127,8 @@ void Indirect::render(FrameInputs& inputs, const IndirectImages& images, const s
     output.validity = images.validity();
     const auto start = std::chrono::steady_clock::now();
     try {
-        technique_.update(frame);
-        technique_.render(*view_, inputs.gbuffer(), output);
+        technique_->update(frame);
+        technique_->render(*view_, inputs.gbuffer(), output);
         device_.finish();
     } catch (...) {
         lwFinish(device_.get());  // commands on their way may still read what the caller unmaps next
@@ -144,7 +144,7 @@ void Indirect::render(FrameInputs& inputs, const IndirectImages& images, const s
 }
 
 void Indirect::readFigures(double wallMilliseconds) {
-    const LWStats stats = technique_.stats();
+    const LWStats stats = technique_->stats();
     figures_ = {};
     figures_.wallMilliseconds = wallMilliseconds;
     figures_.deviceMilliseconds = stats.totalMilliseconds;

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -57,8 +58,8 @@ public:
     void forget() { reset_ = true; }  // what techniques remember of frames before
 
     // While the last frame's inputs are still mapped.
-    std::vector<LWDebugView> debugViews() const { return technique_.debugViews(view_.get()); }
-    std::vector<float> readDebugView(const LWDebugView& view) const { return technique_.readDebugView(view, view_.get()); }
+    std::vector<LWDebugView> debugViews() const { return technique_->debugViews(view_.get()); }
+    std::vector<float> readDebugView(const LWDebugView& view) const { return technique_->readDebugView(view, view_.get()); }
     // `overlay`: RGB floats of the view's pixels.
     std::vector<LWInputFinding> check(FrameInputs& inputs, std::vector<float>& overlay);
 
@@ -70,7 +71,7 @@ private:
     LWDeviceInfo info_{};
     std::string sharing_;
     std::unique_ptr<lightwell::View> view_;
-    lightwell::Technique technique_;
+    std::optional<lightwell::Technique> technique_;
     Settings settings_;
     IndirectFigures figures_;
     std::uint64_t frameIndex_ = 0;

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "gbuffer.h"  // the studio's: what RSMs are fitted to
 #include "gbuffer_pass.h"
 #include "ray_scene.h"
 
