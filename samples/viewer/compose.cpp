@@ -39,7 +39,7 @@ void main() {
 const char* const kPictureFragment = R"(
 uniform sampler2D depthImage, motionImage;
 uniform sampler2DArray extra;
-uniform int show, extraChannels, debugChannel, splitColumn;
+uniform int extraChannels, debugChannel, splitColumn;
 uniform float exposure, debugScale, farthest;
 uniform bool hasSplit;
 out vec4 colour;
@@ -62,16 +62,28 @@ vec3 debugAt(vec2 at) {
 }
 vec3 shown(ivec2 pixel, vec2 at) {
     vec3 irradiance = irradianceAt(pixel);
-    if (show == 1) return toneMapped(texelFetch(directImage, pixel, 0).rgb);
-    if (show == 2) return toneMapped(reflectedAt(pixel, irradiance));
-    if (show == 3) return toneMapped(irradiance * (1.0 / 3.14159265));
-    if (show == 4) return vec3(texelFetch(indirect, ivec3(pixel, 3), 0).r);
-    if (show == 5) return texelFetch(albedoImage, pixel, 0).rgb;
-    if (show == 6) return texelFetch(normalImage, pixel, 0).x == -32768 ? vec3(0.0) : normalOf(texelFetch(normalImage, pixel, 0).xy) * 0.5 + 0.5;
-    if (show == 7) return vec3(texelFetch(depthImage, pixel, 0).r / farthest);
-    if (show == 8) return vec3(abs(texelFetch(motionImage, pixel, 0).rg) * 0.1, 0.0);
-    if (show >= 9) return debugAt(at);
+#if SHOW == 1
+    return toneMapped(texelFetch(directImage, pixel, 0).rgb);
+#elif SHOW == 2
+    return toneMapped(reflectedAt(pixel, irradiance));
+#elif SHOW == 3
+    return toneMapped(irradiance * (1.0 / 3.14159265));
+#elif SHOW == 4
+    return vec3(texelFetch(indirect, ivec3(pixel, 3), 0).r);
+#elif SHOW == 5
+    return texelFetch(albedoImage, pixel, 0).rgb;
+#elif SHOW == 6
+    ivec2 oct = texelFetch(normalImage, pixel, 0).xy;
+    return oct.x == -32768 ? vec3(0.0) : normalOf(oct) * 0.5 + 0.5;
+#elif SHOW == 7
+    return vec3(texelFetch(depthImage, pixel, 0).r / farthest);
+#elif SHOW == 8
+    return vec3(abs(texelFetch(motionImage, pixel, 0).rg) * 0.1, 0.0);
+#elif SHOW >= 9
+    return debugAt(at);
+#else
     return toneMapped(texelFetch(directImage, pixel, 0).rgb + reflectedAt(pixel, irradiance));
+#endif
 }
 void main() {
     ivec2 size = textureSize(directImage, 0);
@@ -91,12 +103,19 @@ const std::vector<std::string>& showNames() {
 }
 
 Compose::Compose()
-    : picture_("picture", kWholeImageVertex, std::string("#version 330 core\n") + kNormalReader + kRadiance + kPictureFragment),
-      brightness_("brightness", kWholeImageVertex, std::string("#version 330 core\n") + kRadiance + kBrightnessFragment),
+    : brightness_("brightness", kWholeImageVertex, std::string("#version 330 core\n") + kRadiance + kBrightnessFragment),
       grid_({GL_RG32F, GL_RG, GL_FLOAT, 8}, kGridWidth, kGridHeight),
       gridTarget_({&grid_}, nullptr),
       nothing_({GL_RGB32F, GL_RGB, GL_FLOAT, 12}, 1, 1),
       nothingLayered_({GL_R32F, GL_RED, GL_FLOAT, 4}, 1, 1, 1) {}
+
+// One program for each thing to show: choosing in the shader would cost all of them at every pixel on a CPU.
+const Program& Compose::pictureOf(Show show) {
+    const auto known = pictures_.find(show);
+    if (known != pictures_.end()) return known->second;
+    const std::string head = "#version 330 core\n#define SHOW " + std::to_string(int(show)) + "\n";
+    return pictures_.emplace(show, Program("picture", kWholeImageVertex, head + kNormalReader + kRadiance + kPictureFragment)).first->second;
+}
 
 void Compose::setTruth(int width, int height, const std::vector<float>& rgb) {
     truth_ = Texture({GL_RGB32F, GL_RGB, GL_FLOAT, 12}, width, height);
@@ -138,29 +157,29 @@ float Compose::measureExposure(const GBufferImages& images, const Texture& indir
     return sum.y > 0.0 ? float(0.18 / std::exp(sum.x / sum.y)) : 1.0f;
 }
 
-void Compose::draw(GLuint target, int width, int height, const GBufferImages& images, const Texture& indirect, const Look& look) const {
+void Compose::draw(GLuint target, int width, int height, const GBufferImages& images, const Texture& indirect, const Look& look) {
+    const Program& picture = pictureOf(look.show);
     glBindFramebuffer(GL_FRAMEBUFFER, target);
     glViewport(0, 0, width, height);
-    bind(picture_, images, indirect);
-    picture_.set("depthImage", 5, images.depth);
-    picture_.set("motionImage", 6, images.motion);
-    picture_.set("extra", 7, extra_.get() != 0 ? extra_ : nothingLayered_);
-    picture_.set("show", int(look.show));
-    picture_.set("extraChannels", extra_.get() != 0 ? extraChannels_ : 1);
-    picture_.set("debugChannel", look.show == Show::Check ? 0 : std::min(look.debugChannel, std::max(0, extraChannels_ - 1)));
-    picture_.set("debugScale", look.show == Show::Check ? 1.0f : look.debugScale);
-    picture_.set("farthest", look.farthest);
-    picture_.set("exposure", look.exposure);
+    bind(picture, images, indirect);
+    picture.set("depthImage", 5, images.depth);
+    picture.set("motionImage", 6, images.motion);
+    picture.set("extra", 7, extra_.get() != 0 ? extra_ : nothingLayered_);
+    picture.set("extraChannels", extra_.get() != 0 ? extraChannels_ : 1);
+    picture.set("debugChannel", look.show == Show::Check ? 0 : std::min(look.debugChannel, std::max(0, extraChannels_ - 1)));
+    picture.set("debugScale", look.show == Show::Check ? 1.0f : look.debugScale);
+    picture.set("farthest", look.farthest);
+    picture.set("exposure", look.exposure);
     const bool hasSplit = hasTruth() && look.split < 1.0f;
     const int column = hasSplit ? int(look.split * float(width)) : width;
-    picture_.set("hasSplit", hasSplit ? 1 : 0);
-    picture_.set("splitColumn", column);
+    picture.set("hasSplit", hasSplit ? 1 : 0);
+    picture.set("splitColumn", column);
     glEnable(GL_SCISSOR_TEST);
     glScissor(0, 0, column, height);
     drawWholeImage();
     if (hasSplit) {
         glScissor(column, 0, width - column, height);
-        picture_.set("isTruth", 1);
+        picture.set("isTruth", 1);
         drawWholeImage();
     }
     glDisable(GL_SCISSOR_TEST);

@@ -2,6 +2,7 @@
 // log-average luminance), and what else a frame can show instead.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -36,11 +37,13 @@ public:
 
     float measureExposure(const GBufferImages& images, const Texture& indirect);
     // Into `target`, the right way up.
-    void draw(GLuint target, int width, int height, const GBufferImages& images, const Texture& indirect, const Look& look) const;
+    void draw(GLuint target, int width, int height, const GBufferImages& images, const Texture& indirect, const Look& look);
 
 private:
+    const Program& pictureOf(Show show);
     void bind(const Program& program, const GBufferImages& images, const Texture& indirect) const;
-    Program picture_, brightness_;
+    Program brightness_;
+    std::map<Show, Program> pictures_;  // compiled when first shown
     Texture truth_, extra_, grid_;
     Framebuffer gridTarget_;
     int extraChannels_ = 0;

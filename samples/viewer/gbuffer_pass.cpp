@@ -63,7 +63,7 @@ GBufferImages::GBufferImages(int w, int h)
       width(w),
       height(h) {}
 
-GBufferPass::GBufferPass() : program_("gbuffer", kSurfaceVertex, std::string(kSurfaceFragment) + kGBufferFragment) {}
+GBufferPass::GBufferPass() : programs_("gbuffer", kGBufferFragment) {}
 
 void GBufferPass::resize(int width, int height) {
     images_ = GBufferImages(width, height);
@@ -79,13 +79,12 @@ void GBufferPass::draw(const SceneMeshes& meshes, const Eye& now, const Eye& bef
     for (const GLint colour : {0, 2, 3}) glClearBufferfv(GL_COLOR, colour, zero);
     glClearBufferiv(GL_COLOR, 1, noSurface);
     glClearBufferfv(GL_DEPTH, 0, &farthest);
-    program_.use();
-    program_.set("clipFromWorld", rasterMatrix(now.projection, now.view));
-    program_.set("previousClipFromWorld", rasterMatrix(before.projection, before.view));
-    program_.set("eyePosition", glm::vec3(glm::inverse(now.view)[3]));
-    program_.set("axial", axialRow(now.view));
-    program_.set("imageSize", glm::vec2(images_.width, images_.height));
-    meshes.draw(program_, posesNow, &posesBefore);
+    programs_.set("clipFromWorld", rasterMatrix(now.projection, now.view));
+    programs_.set("previousClipFromWorld", rasterMatrix(before.projection, before.view));
+    programs_.set("eyePosition", glm::vec3(glm::inverse(now.view)[3]));
+    programs_.set("axial", axialRow(now.view));
+    programs_.set("imageSize", glm::vec2(images_.width, images_.height));
+    meshes.draw(programs_, posesNow, &posesBefore);
     glDisable(GL_FRAMEBUFFER_SRGB);
     glDisable(GL_DEPTH_TEST);
 }

@@ -32,7 +32,7 @@ public:
     const GBufferImages& images() const { return images_; }
 
 private:
-    Program program_;
+    SurfacePrograms programs_;
     GBufferImages images_;
     Framebuffer target_;
 };

@@ -1,6 +1,7 @@
 // What a light sees, drawn by rasterisation: reflective shadow maps for Lightwell, shadow maps for direct light.
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "gbuffer.h"  // the studio's: what RSMs are fitted to
@@ -36,13 +37,20 @@ public:
     void drawShadows(const LightMaps& maps, const SceneMeshes& meshes, const Poses& poses) const;
 
 private:
-    Program rsmProgram_, shadowProgram_;
+    SurfacePrograms rsmPrograms_, shadowPrograms_;
 };
 
 // GLSL: `vec3 arrivalAt(vec3 position, out vec3 toLight)`: irradiance of a surface that faces the light, without shadows,
 // and the uniforms that describe it.
 extern const char* const kLightReader;
-void setLight(const Program& program, const studio::Light& light);
+template <class Programs>  // a Program in use, or SurfacePrograms
+void setLight(const Programs& programs, const studio::Light& light) {
+    programs.set("kind", int(light.kind));  // in the order of LightKind
+    programs.set("lightPosition", light.position);
+    programs.set("lightDirection", light.direction);
+    programs.set("emitted", light.emitted);
+    programs.set("coneCosines", glm::vec2(std::cos(light.innerCone), std::cos(light.outerCone)));
+}
 
 // Direct diffuse radiance of all lights into the G-buffer's `direct`, one pass each.
 class DirectPass {

@@ -6,6 +6,24 @@
 namespace viewer {
 namespace {
 
+const char* const kSurfaceVertex = R"(#version 330 core
+layout(location = 0) in vec3 positionObject;
+layout(location = 1) in vec3 normalObject;
+layout(location = 2) in vec2 textureCoordinate;
+uniform mat4 clipFromWorld, pose, previousClipFromWorld, previousPose;
+out vec3 positionWorld, normalWorld;
+out vec2 uv;
+out vec4 clipNow, clipBefore;
+void main() {
+    positionWorld = (pose * vec4(positionObject, 1.0)).xyz;
+    normalWorld = mat3(pose) * normalObject;
+    uv = textureCoordinate;
+    clipNow = clipFromWorld * vec4(positionWorld, 1.0);
+    clipBefore = previousClipFromWorld * (previousPose * vec4(positionObject, 1.0));
+    gl_Position = clipNow;
+}
+)";
+
 struct Vertex {
     glm::vec3 position, normal;
     glm::vec2 uv;
@@ -55,6 +73,10 @@ glm::vec4 axialRow(const glm::mat4& view) {
     return -glm::vec4(view[0][2], view[1][2], view[2][2], view[3][2]);
 }
 
+SurfacePrograms::SurfacePrograms(const std::string& name, const std::string& fragment)
+    : whole_(name, kSurfaceVertex, "#version 330 core\n" + std::string(kSurfaceFragment) + fragment),
+      masked_(name + " with holes", kSurfaceVertex, "#version 330 core\n#define MASKED\n" + std::string(kSurfaceFragment) + fragment) {}
+
 SceneMeshes::SceneMeshes(const studio::Scene& scene) : array_(makeVertexArray()), vertices_(makeBuffer()), indices_(makeBuffer()) {
     const std::uint8_t white[4] = {255, 255, 255, 255};
     textures_.push_back(makeColourTexture(1, 1, white));
@@ -82,10 +104,17 @@ SceneMeshes::SceneMeshes(const studio::Scene& scene) : array_(makeVertexArray())
     describeVertices();
 }
 
-void SceneMeshes::draw(const Program& program, const Poses& now, const Poses* before) const {
+void SceneMeshes::draw(const SurfacePrograms& programs, const Poses& now, const Poses* before) const {
     glBindVertexArray(array_.get());
+    draw(programs.whole(), false, now, before);
+    draw(programs.masked(), true, now, before);
+}
+
+void SceneMeshes::draw(const Program& program, bool isMasked, const Poses& now, const Poses* before) const {
+    program.use();
     program.set("baseColour", 0);
     for (const Draw& draw : draws_) {
+        if ((draw.alphaCutoff > 0.0f) != isMasked) continue;
         program.set("pose", now[std::size_t(draw.object)]);
         if (before != nullptr) program.set("previousPose", (*before)[std::size_t(draw.object)]);
         program.set("reflectance", draw.reflectance);
@@ -96,31 +125,20 @@ void SceneMeshes::draw(const Program& program, const Poses& now, const Poses* be
     }
 }
 
-const char* const kSurfaceVertex = R"(#version 330 core
-layout(location = 0) in vec3 positionObject;
-layout(location = 1) in vec3 normalObject;
-layout(location = 2) in vec2 textureCoordinate;
-uniform mat4 clipFromWorld, pose, previousClipFromWorld, previousPose;
-out vec3 positionWorld, normalWorld;
-out vec2 uv;
-out vec4 clipNow, clipBefore;
-void main() {
-    positionWorld = (pose * vec4(positionObject, 1.0)).xyz;
-    normalWorld = mat3(pose) * normalObject;
-    uv = textureCoordinate;
-    clipNow = clipFromWorld * vec4(positionWorld, 1.0);
-    clipBefore = previousClipFromWorld * (previousPose * vec4(positionObject, 1.0));
-    gl_Position = clipNow;
-}
-)";
-
-const char* const kSurfaceFragment = R"(#version 330 core
+const char* const kSurfaceFragment = R"(
 in vec3 positionWorld, normalWorld;
 in vec2 uv;
 in vec4 clipNow, clipBefore;
 uniform vec3 reflectance;
 uniform float alphaCutoff;
 uniform sampler2D baseColour;
+
+// By the finest level, so that holes and shadows have the studio's sizes.
+void cutHoles() {
+#ifdef MASKED
+    if (textureLod(baseColour, uv, 0.0).a < alphaCutoff) discard;
+#endif
+}
 
 struct Surface {
     vec3 albedo, normal, geometricNormal;
@@ -130,8 +148,7 @@ struct Surface {
 Surface surfaceSeenFrom(vec3 towards) {
     vec3 face = cross(dFdx(positionWorld), dFdy(positionWorld));
     vec4 texel = texture(baseColour, uv);
-    // Masks by the finest level, so that holes and shadows have the studio's sizes.
-    if (alphaCutoff > 0.0 && textureLod(baseColour, uv, 0.0).a < alphaCutoff) discard;
+    cutHoles();
     float size = length(face);
     vec3 geometric = size > 0.0 ? face / size : towards;
     if (dot(geometric, towards) < 0.0) geometric = -geometric;

@@ -19,14 +19,33 @@ glm::mat4 rasterMatrix(const glm::mat4& projection, const glm::mat4& view);
 // dot(axialRow(view), (x, y, z, 1)): a position's distance along the camera's axis.
 glm::vec4 axialRow(const glm::mat4& view);
 
+// What draws surfaces: one program for whole ones, and one that cuts holes, since whatever may discard a fragment can't
+// be left out early by its depth.
+class SurfacePrograms {
+public:
+    // `fragment`: what follows kSurfaceFragment.
+    SurfacePrograms(const std::string& name, const std::string& fragment);
+    // Sets uniforms of both.
+    template <class Value>
+    void set(const char* uniform, const Value& value) const {
+        for (const Program* program : {&whole_, &masked_}) program->use(), program->set(uniform, value);
+    }
+    const Program& whole() const { return whole_; }
+    const Program& masked() const { return masked_; }
+
+private:
+    Program whole_, masked_;
+};
+
 class SceneMeshes {
 public:
     explicit SceneMeshes(const studio::Scene& scene);
     // Sets `pose` and, with `before`, `previousPose`; material: `reflectance`, `alphaCutoff` and texture `baseColour` in unit 0.
-    void draw(const Program& program, const Poses& now, const Poses* before = nullptr) const;
+    void draw(const SurfacePrograms& programs, const Poses& now, const Poses* before = nullptr) const;
     std::size_t triangleCount() const { return triangleCount_; }
 
 private:
+    void draw(const Program& program, bool isMasked, const Poses& now, const Poses* before) const;
     struct Draw {
         GLsizei count;
         std::size_t byteOffset;
@@ -43,8 +62,7 @@ private:
     std::size_t triangleCount_ = 0;
 };
 
-// Shader of vertices for SceneMeshes, and what fragment shaders share: `surfaceSeenFrom`, octahedral normals.
-extern const char* const kSurfaceVertex;
+// What fragment shaders of surfaces share: `cutHoles`, `surfaceSeenFrom`, octahedral normals.
 extern const char* const kSurfaceFragment;
 
 }  // namespace viewer
