@@ -1,8 +1,9 @@
 #include "frame_inputs.h"
 
-#include <algorithm>
+#include <cmath>
 
 #include "lightwell/lightwell.hpp"
+#include "sun_fit.h"
 
 namespace viewer {
 namespace {
@@ -32,6 +33,19 @@ LWGeometry describeTriangles(const studio::SceneTriangles& triangles) {
     geometry.vertexCount = 3 * triangles.count();
     geometry.version = triangles.version;
     return geometry;
+}
+
+// A spot that is too wide for one map has the faces of a cube, which Lightwell takes of point lights alone: such a one is
+// a point light whose profile is the spot's.
+std::vector<float> coneProfile(const studio::Light& spot) {
+    constexpr std::size_t kSteps = 1024;
+    std::vector<float> profile(kSteps);
+    const studio::LightAxes axes(spot.direction);
+    for (std::size_t i = 0; i < kSteps; ++i) {
+        const double angle = double(studio::kPi) * double(i) / double(kSteps - 1);
+        profile[i] = studio::coneFalloff(spot, glm::vec3(axes.right * std::sin(angle) - axes.back * std::cos(angle)));
+    }
+    return profile;
 }
 
 constexpr LWLightKind kLightKinds[] = {LW_LIGHT_DIRECTIONAL, LW_LIGHT_SPOT, LW_LIGHT_POINT};  // in the order of studio::LightKind
@@ -71,6 +85,7 @@ void FrameInputs::map(const Eye& now, const Eye& before, const std::vector<Light
     gbuffer_.previousCamera = describeCamera(before);
     lights_.clear();
     rsms_.clear();
+    profiles_.clear();
     std::size_t plane = 0;
     for (const LightMaps& light : lights) describeLight(light, plane);
     geometry_ = describeTriangles(triangles);
@@ -105,6 +120,12 @@ void FrameInputs::describeLight(const LightMaps& maps, std::size_t& plane) {
     light.outerConeAngle = from.outerCone;
     light.rsmCount = std::uint32_t(rsms_.back().size());
     light.rsms = rsms_.back().data();  // a moved vector keeps its data's address
+    profiles_.push_back(light.rsmCount > 1 && light.kind == LW_LIGHT_SPOT ? coneProfile(from) : std::vector<float>());
+    if (!profiles_.back().empty()) {
+        light.kind = LW_LIGHT_POINT;
+        light.profileCount = std::uint32_t(profiles_.back().size());
+        light.profile = profiles_.back().data();
+    }
     lights_.push_back(light);
 }
 

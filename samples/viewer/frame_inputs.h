@@ -31,6 +31,7 @@ private:
     ReadBack gbufferPixels_, rsmPixels_;
     LWGBuffer gbuffer_{};
     std::vector<std::vector<LWRsm>> rsms_;
+    std::vector<std::vector<float>> profiles_;  // of each light; mostly empty
     std::vector<LWLight> lights_;
     LWGeometry geometry_{};
     float focus_[3] = {};

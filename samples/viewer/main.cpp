@@ -1,12 +1,21 @@
 // The program `lightwell-viewer`. Exit codes: 0 done; 1 the work failed (display, device, disk); 2 a wrong argument.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <new>
+#include <string>
 
 #include "app.h"
 
 namespace {
+
+// One line, whatever the message's own layout.
+void printError(std::string message) {
+    while (!message.empty() && message.back() == '\n') message.pop_back();
+    std::replace(message.begin(), message.end(), '\n', ' ');
+    fmt::print(stderr, "lightwell-viewer: {}\n", message);
+}
 
 int run(int argc, char** argv) {
     viewer::Options options;
@@ -24,13 +33,13 @@ int main(int argc, char** argv) {
     try {
         return run(argc, argv);
     } catch (const viewer::UsageError& error) {
-        fmt::print(stderr, "lightwell-viewer: {}\n", error.what());
+        printError(error.what());
         return 2;
     } catch (const std::bad_alloc&) {
-        fmt::print(stderr, "lightwell-viewer: out of memory; a smaller --size needs less\n");
+        printError("out of memory; a smaller --size needs less");
         return 1;
     } catch (const std::exception& error) {
-        fmt::print(stderr, "lightwell-viewer: {}\n", error.what());
+        printError(error.what());
         return 1;
     }
 }
