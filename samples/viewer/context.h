@@ -15,6 +15,8 @@ public:
     virtual GLFWwindow* window() const { return nullptr; }  // null: headless
     virtual bool wantsToClose() const { return false; }
     virtual void beginFrame() {}  // reads what mouse and keyboard did
+    // GLFW's keys pressed since the last frame, also those that were let go before it: frames may be slow.
+    virtual bool isPressed(int) const { return false; }
     virtual void endFrame() {}    // shows the default framebuffer
     // Of the default framebuffer, in pixels; a headless context has none.
     virtual void size(int& width, int& height) const = 0;

@@ -16,7 +16,8 @@
 namespace viewer {
 namespace {
 
-constexpr float kPanelWidth = 318.0f, kMargin = 10.0f;
+constexpr float kPanelWidth = 300.0f, kMargin = 10.0f;
+constexpr double kSmallPass = 0.02;  // of Lightwell's time: shown with others like it
 constexpr const char* kFont = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
 const ImVec4 kWarm(1.0f, 0.78f, 0.36f, 1.0f), kGrey(0.62f, 0.64f, 0.68f, 1.0f), kBad(1.0f, 0.45f, 0.4f, 1.0f);
 
@@ -81,6 +82,12 @@ std::vector<std::string> choicesOf(const LWParameter& parameter) {
     return names;
 }
 
+// PoCL's names are long.
+std::string shortName(const std::string& name) {
+    constexpr std::size_t kLongest = 30;
+    return name.size() > kLongest ? name.substr(0, kLongest - 3) + "..." : name;
+}
+
 void beginPanel(const char* title, bool isRight, int width, int height, float share) {
     ImGui::SetNextWindowPos(ImVec2(isRight ? float(width) - kPanelWidth - kMargin : kMargin, kMargin), ImGuiCond_Once);
     ImGui::SetNextWindowSizeConstraints(ImVec2(kPanelWidth, 0.0f), ImVec2(kPanelWidth, std::max(120.0f, share * (float(height) - 2.0f * kMargin))));
@@ -136,7 +143,7 @@ void Panels::begin(int width, int height, float seconds) {
 void Panels::draw(App& app, GLuint target) {
     takeKeys(app);
     if (!isHidden_) {
-        beginPanel("Lightwell", false, app.width(), app.height(), 1.0f);
+        beginPanel("Lightwell", false, app.width(), app.height(), 0.8f);
         drawTechnique(app);
         drawLights(app);
         endPanel();
@@ -155,19 +162,19 @@ void Panels::draw(App& app, GLuint target) {
 
 void Panels::takeKeys(App& app) {
     if (context_.window() == nullptr || ImGui::GetIO().WantTextInput) return;
-    if (ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false)) glfwSetWindowShouldClose(context_.window(), GLFW_TRUE);
-    if (ImGui::IsKeyPressed(GLFW_KEY_H, false)) isHidden_ = !isHidden_;
-    if (ImGui::IsKeyPressed(GLFW_KEY_P, false)) app.askForScreenshot();
-    if (ImGui::IsKeyPressed(GLFW_KEY_SPACE, false)) app.isPlaying() = !app.isPlaying();
-    if (ImGui::IsKeyPressed(GLFW_KEY_C, false)) app.askForCheck();
-    if (ImGui::IsKeyPressed(GLFW_KEY_K, false)) app.path().add(app.time(), app.camera().camera());
+    if (context_.isPressed(GLFW_KEY_ESCAPE)) glfwSetWindowShouldClose(context_.window(), GLFW_TRUE);
+    if (context_.isPressed(GLFW_KEY_H)) isHidden_ = !isHidden_;
+    if (context_.isPressed(GLFW_KEY_P)) app.askForScreenshot();
+    if (context_.isPressed(GLFW_KEY_SPACE)) app.isPlaying() = !app.isPlaying();
+    if (context_.isPressed(GLFW_KEY_C)) app.askForCheck();
+    if (context_.isPressed(GLFW_KEY_K)) app.path().add(app.time(), app.camera().camera());
     const std::vector<std::string>& names = showNames();
-    if (ImGui::IsKeyPressed(GLFW_KEY_TAB, false)) app.look().show = Show((int(app.look().show) + 1) % (int(names.size()) - 2));
+    if (context_.isPressed(GLFW_KEY_TAB)) app.look().show = Show((int(app.look().show) + 1) % (int(names.size()) - 2));
 }
 
 void Panels::drawTechnique(App& app) {
     const LWDeviceInfo& device = app.indirect().deviceInfo();
-    wrapped(kGrey, fmt::format("{}, width {}", device.name, device.width));
+    wrapped(kGrey, fmt::format("{}, {} units, width {}", shortName(device.name), device.computeUnits, device.width));
     Settings settings = app.settings();
     std::vector<std::string> names;
     for (std::uint32_t i = 0; i < lwCountTechniques(); ++i) {
@@ -284,16 +291,29 @@ bool Panels::drawNumber(const LWParameter& parameter, const std::string& key, st
     return true;
 }
 
+// Those that take a share worth a line; the rest in one.
+void Panels::drawPasses(const IndirectFigures& figures) {
+    double rest = 0.0;
+    int restCount = 0;
+    for (const PassTime& pass : figures.passes) {
+        const bool isSmall = pass.milliseconds < kSmallPass * figures.wallMilliseconds;
+        if (isSmall) rest += std::max(0.0, pass.milliseconds), ++restCount;
+        if (!isSmall) bar(pass.name.c_str(), pass.milliseconds, figures.wallMilliseconds, true);
+    }
+    if (restCount > 0) bar(fmt::format("{} others", restCount).c_str(), rest, figures.wallMilliseconds, true);
+}
+
 void Panels::drawTimes(App& app) {
     const Timings& timings = app.timings();
     const double whole = timings.frameMilliseconds();
     const IndirectFigures& figures = app.indirect().figures();
     ImGui::TextColored(kWarm, "%.1f ms", whole);
     ImGui::SameLine();
-    ImGui::Text("a frame, %dx%d, %zu triangles", app.width(), app.height(), app.triangleCount());
+    ImGui::Text("a frame, %dx%d", app.width(), app.height());
+    wrapped(kGrey, fmt::format("{}\n{} triangles", reinterpret_cast<const char*>(glGetString(GL_RENDERER)), app.triangleCount()));
     for (const auto& [name, milliseconds] : timings.stages()) bar(name.c_str(), milliseconds, whole, name == "lightwell");
-    if (ImGui::TreeNodeEx("passes", ImGuiTreeNodeFlags_DefaultOpen, "Lightwell's passes (%.2f ms on the device)", figures.deviceMilliseconds)) {
-        for (const PassTime& pass : figures.passes) bar(pass.name.c_str(), pass.milliseconds, figures.wallMilliseconds, true);
+    if (ImGui::TreeNodeEx("passes", ImGuiTreeNodeFlags_DefaultOpen, "Lightwell's passes, %.1f ms", figures.deviceMilliseconds)) {
+        drawPasses(figures);
         ImGui::TreePop();
     }
     if (ImGui::TreeNode("counts", "counts, %.1f MB on the device", double(figures.deviceBytes) / 1e6)) {

@@ -12,6 +12,7 @@
 namespace viewer {
 
 class App;
+struct IndirectFigures;
 struct Settings;
 
 class Panels {
@@ -30,6 +31,7 @@ private:
     bool drawParameters(const LWTechniqueInfo& info, const std::string& prefix, Settings& settings);
     bool drawParameter(const LWParameter& parameter, const std::string& key, Settings& settings);
     bool drawNumber(const LWParameter& parameter, const std::string& key, std::string& text);
+    void drawPasses(const IndirectFigures& figures);
     void drawTimes(App& app);
     void drawView(App& app);
     void drawDebugView(App& app);

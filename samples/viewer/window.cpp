@@ -4,7 +4,9 @@
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
+#include <vector>
 
 #include "context.h"
 
@@ -33,6 +35,11 @@ public:
         }
         glfwMakeContextCurrent(window_);
         glfwSwapInterval(0);  // frames last as long as they take: times mean something
+        glfwSetWindowUserPointer(window_, this);
+        // Dear ImGui's own call-back calls this one.
+        glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
+            if (action == GLFW_PRESS) static_cast<Window*>(glfwGetWindowUserPointer(window))->pressed_.push_back(key);
+        });
     }
     ~Window() override {
         glfwDestroyWindow(window_);
@@ -44,12 +51,17 @@ public:
     std::string description() const override { return fmt::format("GLFW {}", glfwGetVersionString()); }
     GLFWwindow* window() const override { return window_; }
     bool wantsToClose() const override { return glfwWindowShouldClose(window_) == GLFW_TRUE; }
-    void beginFrame() override { glfwPollEvents(); }
+    void beginFrame() override {
+        pressed_.clear();
+        glfwPollEvents();
+    }
+    bool isPressed(int key) const override { return std::find(pressed_.begin(), pressed_.end(), key) != pressed_.end(); }
     void endFrame() override { glfwSwapBuffers(window_); }
     void size(int& width, int& height) const override { glfwGetFramebufferSize(window_, &width, &height); }
 
 private:
     GLFWwindow* window_ = nullptr;
+    std::vector<int> pressed_;
 };
 
 }  // namespace
