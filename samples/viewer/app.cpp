@@ -96,8 +96,8 @@ App::App(const Options& options, Context& context)
     }
     if (!options.truth.empty()) loadTruth();
     if (scene_->emissiveSurfaces || scene_->sky != glm::vec3(0.0f))
-        message_ = "Direct light is that of suns, spots and points: what a sky or glowing surfaces send straight is not drawn.";
-    if (!message_.empty() && context.window() == nullptr) fmt::print(stderr, "note: {}\n", message_);
+        notice_ = "Direct light is that of suns, spots and points: what a sky or glowing surfaces send straight is not drawn.";
+    if (!notice_.empty() && context.window() == nullptr) fmt::print(stderr, "note: {}\n", notice_);
 }
 
 App::~App() = default;
@@ -157,7 +157,7 @@ void App::writePath() {
     if (path_.isEmpty()) return;
     try {
         path_.write("viewer_path.json");
-        message_ = "wrote viewer_path.json";
+        notice_ = "wrote viewer_path.json";
     } catch (const std::exception& error) {
         message_ = error.what();
     }
@@ -308,7 +308,7 @@ void App::run() {
         if (wantsScreenshot_) saveScreenshot(fmt::format("viewer_{}.png", ++screenshotCount_));
         if (frame + 1 == count) writeOutputs();
         context_.endFrame();
-        if (frame + 1 == options_.warmUp) timings_.clear();
+        if (frame + 1 == options_.warmUp) timings_.restart();
     }
 }
 
@@ -316,7 +316,7 @@ void App::saveScreenshot(const std::string& file) {
     wantsScreenshot_ = false;
     try {
         writeScreen(file, screen(), width_, height_);
-        message_ = "wrote " + file;
+        notice_ = "wrote " + file;
     } catch (const std::exception& error) {
         if (context_.window() == nullptr) throw;
         message_ = error.what();

@@ -32,6 +32,7 @@ public:
     const Settings& settings() const { return indirect_.settings(); }
     void choose(const Settings& settings);  // what is refused stands in message()
     const std::string& message() const { return message_; }
+    const std::string& notice() const { return notice_; }  // what is worth knowing
     const Indirect& indirect() const { return indirect_; }
     const Timings& timings() const { return timings_; }
     const std::vector<LWDebugView>& debugViews() const { return debugViews_; }
@@ -95,7 +96,7 @@ private:
     std::vector<IndirectFigures> indirectFrames_;  // measured ones
     std::vector<LWDebugView> debugViews_;
     std::vector<LWInputFinding> findings_;
-    std::string message_;
+    std::string message_, notice_;
     float time_ = 0.0f, timeOfScene_ = 0.0f;
     bool isPlaying_ = false, wantsCheck_ = false, wantsScreenshot_ = false, isFirst_ = true;
     int width_ = 0, height_ = 0, screenshotCount_ = 0;

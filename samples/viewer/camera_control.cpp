@@ -15,6 +15,7 @@ namespace viewer {
 namespace {
 
 constexpr float kRadiansPerPixel = 0.004f, kFaster = 5.0f;
+constexpr float kLongestStep = 0.1f;  // s: after a frame that took longer nobody wants to be elsewhere
 constexpr float kSteepest = 1.5f;  // radians from the horizon: a view along "up" has no sides
 
 std::string vectorText(const glm::vec3& v) {
@@ -99,7 +100,7 @@ bool CameraControl::fly(float seconds) {
     step(GLFW_KEY_D, side), step(GLFW_KEY_A, -side);
     step(GLFW_KEY_E, up), step(GLFW_KEY_Q, -up);
     if (way != glm::vec3(0.0f)) isMoved = true;
-    camera_.position += way * (speed_ * seconds * (io.KeyShift ? kFaster : 1.0f));
+    camera_.position += way * (speed_ * std::min(seconds, kLongestStep) * (io.KeyShift ? kFaster : 1.0f));
     camera_.target = camera_.position + forward;
     return isMoved;
 }

@@ -16,7 +16,7 @@
 namespace viewer {
 namespace {
 
-constexpr float kPanelWidth = 300.0f, kMargin = 10.0f;
+constexpr float kLeftWidth = 300.0f, kRightWidth = 326.0f, kMargin = 10.0f;
 constexpr double kSmallPass = 0.02;  // of Lightwell's time: shown with others like it
 constexpr const char* kFont = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
 const ImVec4 kWarm(1.0f, 0.78f, 0.36f, 1.0f), kGrey(0.62f, 0.64f, 0.68f, 1.0f), kBad(1.0f, 0.45f, 0.4f, 1.0f);
@@ -84,13 +84,14 @@ std::vector<std::string> choicesOf(const LWParameter& parameter) {
 
 // PoCL's names are long.
 std::string shortName(const std::string& name) {
-    constexpr std::size_t kLongest = 30;
+    constexpr std::size_t kLongest = 32;
     return name.size() > kLongest ? name.substr(0, kLongest - 3) + "..." : name;
 }
 
 void beginPanel(const char* title, bool isRight, int width, int height, float share) {
-    ImGui::SetNextWindowPos(ImVec2(isRight ? float(width) - kPanelWidth - kMargin : kMargin, kMargin), ImGuiCond_Once);
-    ImGui::SetNextWindowSizeConstraints(ImVec2(kPanelWidth, 0.0f), ImVec2(kPanelWidth, std::max(120.0f, share * (float(height) - 2.0f * kMargin))));
+    const float panelWidth = isRight ? kRightWidth : kLeftWidth;
+    ImGui::SetNextWindowPos(ImVec2(isRight ? float(width) - panelWidth - kMargin : kMargin, kMargin), ImGuiCond_Once);
+    ImGui::SetNextWindowSizeConstraints(ImVec2(panelWidth, 0.0f), ImVec2(panelWidth, std::max(120.0f, share * (float(height) - 2.0f * kMargin))));
     ImGui::Begin(title, nullptr, ImGuiWindowFlags_AlwaysAutoResize);
     ImGui::PushItemWidth(150.0f);
 }
@@ -102,7 +103,7 @@ void endPanel() {
 
 void bar(const char* name, double milliseconds, double of, bool isStrong) {
     ImGui::PushStyleColor(ImGuiCol_PlotHistogram, isStrong ? ImVec4(0.95f, 0.65f, 0.25f, 0.9f) : ImVec4(0.42f, 0.5f, 0.62f, 0.9f));
-    ImGui::ProgressBar(of > 0.0 && milliseconds > 0.0 ? float(milliseconds / of) : 0.0f, ImVec2(70.0f, 12.0f), "");
+    ImGui::ProgressBar(of > 0.0 && milliseconds > 0.0 ? float(milliseconds / of) : 0.0f, ImVec2(60.0f, 12.0f), "");
     ImGui::PopStyleColor();
     ImGui::SameLine();
     ImGui::Text(milliseconds < 0.0 ? "      -" : "%7.2f", milliseconds);
@@ -174,7 +175,7 @@ void Panels::takeKeys(App& app) {
 
 void Panels::drawTechnique(App& app) {
     const LWDeviceInfo& device = app.indirect().deviceInfo();
-    wrapped(kGrey, fmt::format("{}, {} units, width {}", shortName(device.name), device.computeUnits, device.width));
+    wrapped(kGrey, fmt::format("{}, width {}", shortName(device.name), device.width));
     Settings settings = app.settings();
     std::vector<std::string> names;
     for (std::uint32_t i = 0; i < lwCountTechniques(); ++i) {
@@ -195,6 +196,7 @@ void Panels::drawTechnique(App& app) {
         if (drawParameters(describeTechnique(settings.technique), "", settings) || isReset) app.choose(settings);
     }
     if (!app.message().empty()) wrapped(kBad, app.message());
+    if (!app.notice().empty()) wrapped(kGrey, app.notice());
 }
 
 // On: technique "auto" in place of the one that was chosen, which comes back.
@@ -219,7 +221,7 @@ void Panels::drawPlanner(App& app) {
         app.choose(settings);
     }
     for (const auto& [name, reason] : app.indirect().figures().choices)
-        if (name == "technique" || name == "parameters" || name == "reason") wrapped(kWarm, name + ": " + reason);
+        if (name == LW_TECHNIQUE_AUTO) wrapped(kWarm, reason);
 }
 
 bool Panels::drawParameters(const LWTechniqueInfo& info, const std::string& prefix, Settings& settings) {

@@ -33,6 +33,8 @@ void Timings::endStage(const char* name) {
 
 void Timings::endFrame() {
     current_.emplace_back("", millisecondsSince(frameStart_));
+    if (isStale_) frames_.clear();
+    isStale_ = false;
     frames_.push_back(current_);
     if (frames_.size() > kept_) frames_.erase(frames_.begin());
 }

@@ -17,7 +17,7 @@ public:
     // Medians over the last `kept` frames.
     std::vector<std::pair<std::string, double>> stages() const;
     double frameMilliseconds() const;
-    void clear() { frames_.clear(); }  // e.g. after frames that settle caches
+    void restart() { isStale_ = true; }  // the next frame takes the place of all before it, which settled caches
     std::size_t frameCount() const { return frames_.size(); }
     void keep(std::size_t frames) { kept_ = frames; }
 
@@ -27,6 +27,7 @@ private:
     Frame current_;
     std::vector<Frame> frames_;
     std::size_t kept_ = 30;
+    bool isStale_ = false;
     Clock::time_point frameStart_, stageStart_;
 };
 
