@@ -9,9 +9,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 
 #include "app.h"
+#include "panel_parts.h"
 
 namespace viewer {
 namespace {
@@ -19,7 +19,6 @@ namespace {
 constexpr float kLeftWidth = 300.0f, kRightWidth = 326.0f, kMargin = 10.0f;
 constexpr double kSmallPass = 0.02;  // of Lightwell's time: shown with others like it
 constexpr const char* kFont = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
-const ImVec4 kWarm(1.0f, 0.78f, 0.36f, 1.0f), kGrey(0.62f, 0.64f, 0.68f, 1.0f), kBad(1.0f, 0.45f, 0.4f, 1.0f);
 
 void setStyle() {
     ImGui::StyleColorsDark();
@@ -45,52 +44,9 @@ bool fileExists(const char* path) {
     return file != nullptr;
 }
 
-void tip(const char* text) {
-    if (!ImGui::IsItemHovered()) return;
-    ImGui::BeginTooltip();
-    ImGui::PushTextWrapPos(420.0f);
-    ImGui::TextUnformatted(text);
-    ImGui::PopTextWrapPos();
-    ImGui::EndTooltip();
-}
-
-void wrapped(const ImVec4& colour, const std::string& text) {
-    ImGui::PushStyleColor(ImGuiCol_Text, colour);
-    ImGui::PushTextWrapPos(0.0f);
-    ImGui::TextUnformatted(text.c_str());
-    ImGui::PopTextWrapPos();
-    ImGui::PopStyleColor();
-}
-
-// True when another one was picked.
-bool pick(const char* label, std::string& value, const std::vector<std::string>& names) {
-    bool isPicked = false;
-    if (!ImGui::BeginCombo(label, value.c_str(), ImGuiComboFlags_HeightLarge)) return false;
-    for (const std::string& name : names) {
-        if (ImGui::Selectable(name.c_str(), name == value) && name != value) {
-            value = name;
-            isPicked = true;
-        }
-    }
-    ImGui::EndCombo();
-    return isPicked;
-}
-
-std::vector<std::string> choicesOf(const LWParameter& parameter) {
-    std::vector<std::string> names;
-    for (const char* const* choice = parameter.choices; choice != nullptr && *choice != nullptr; ++choice) names.emplace_back(*choice);
-    return names;
-}
-
-// PoCL's names are long.
-std::string shortName(const std::string& name) {
-    constexpr std::size_t kLongest = 32;
-    return name.size() > kLongest ? name.substr(0, kLongest - 3) + "..." : name;
-}
-
-void beginPanel(const char* title, bool isRight, int width, int height, float share) {
+void beginPanel(const char* title, bool isRight, int width, int height, float share, bool isMoved) {
     const float panelWidth = isRight ? kRightWidth : kLeftWidth;
-    ImGui::SetNextWindowPos(ImVec2(isRight ? float(width) - panelWidth - kMargin : kMargin, kMargin), ImGuiCond_Once);
+    ImGui::SetNextWindowPos(ImVec2(isRight ? float(width) - panelWidth - kMargin : kMargin, kMargin), isMoved ? ImGuiCond_Always : ImGuiCond_Once);
     ImGui::SetNextWindowSizeConstraints(ImVec2(panelWidth, 0.0f), ImVec2(panelWidth, std::max(120.0f, share * (float(height) - 2.0f * kMargin))));
     ImGui::Begin(title, nullptr, ImGuiWindowFlags_AlwaysAutoResize);
     ImGui::PushItemWidth(150.0f);
@@ -112,6 +68,36 @@ void bar(const char* name, double milliseconds, double of, bool isStrong) {
 }
 
 }  // namespace
+
+void tip(const char* text) {
+    if (!ImGui::IsItemHovered()) return;
+    ImGui::BeginTooltip();
+    ImGui::PushTextWrapPos(420.0f);
+    ImGui::TextUnformatted(text);
+    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
+}
+
+void wrapped(const ImVec4& colour, const std::string& text) {
+    ImGui::PushStyleColor(ImGuiCol_Text, colour);
+    ImGui::PushTextWrapPos(0.0f);
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::PopStyleColor();
+}
+
+bool pick(const char* label, std::string& value, const std::vector<std::string>& names) {
+    bool isPicked = false;
+    if (!ImGui::BeginCombo(label, value.c_str(), ImGuiComboFlags_HeightLarge)) return false;
+    for (const std::string& name : names) {
+        if (ImGui::Selectable(name.c_str(), name == value) && name != value) {
+            value = name;
+            isPicked = true;
+        }
+    }
+    ImGui::EndCombo();
+    return isPicked;
+}
 
 Panels::Panels(Context& context) : context_(context) {
     IMGUI_CHECKVERSION();
@@ -143,12 +129,15 @@ void Panels::begin(int width, int height, float seconds) {
 
 void Panels::draw(App& app, GLuint target) {
     takeKeys(app);
+    const bool isResized = app.width() != width_ || app.height() != height_;
+    width_ = app.width();
+    height_ = app.height();
     if (!isHidden_) {
-        beginPanel("Lightwell", false, app.width(), app.height(), 0.8f);
+        beginPanel("Lightwell", false, app.width(), app.height(), 0.8f, isResized);
         drawTechnique(app);
         drawLights(app);
         endPanel();
-        beginPanel("Frame", true, app.width(), app.height(), 1.0f);
+        beginPanel("Frame", true, app.width(), app.height(), 1.0f, isResized);
         drawTimes(app);
         drawView(app);
         drawPath(app);
@@ -171,126 +160,6 @@ void Panels::takeKeys(App& app) {
     if (context_.isPressed(GLFW_KEY_K)) app.path().add(app.time(), app.camera().camera());
     const std::vector<std::string>& names = showNames();
     if (context_.isPressed(GLFW_KEY_TAB)) app.look().show = Show((int(app.look().show) + 1) % (int(names.size()) - 2));
-}
-
-void Panels::drawTechnique(App& app) {
-    const LWDeviceInfo& device = app.indirect().deviceInfo();
-    wrapped(kGrey, fmt::format("{}, width {}", shortName(device.name), device.width));
-    Settings settings = app.settings();
-    std::vector<std::string> names;
-    for (std::uint32_t i = 0; i < lwCountTechniques(); ++i) {
-        LWTechniqueInfo info{};
-        info.structSize = sizeof info;
-        if (lwDescribeTechnique(i, &info) == LW_SUCCESS) names.emplace_back(info.name);
-    }
-    if (pick("technique", settings.technique, names)) {
-        settings.assignments.clear();
-        app.choose(settings);
-    }
-    tip(describeTechnique(app.settings().technique).summary);
-    drawPlanner(app);
-    settings = app.settings();
-    if (ImGui::CollapsingHeader("Parameters", ImGuiTreeNodeFlags_DefaultOpen)) {
-        const bool isReset = !settings.assignments.empty() && ImGui::SmallButton("defaults");
-        if (isReset) settings.assignments.clear();
-        if (drawParameters(describeTechnique(settings.technique), "", settings) || isReset) app.choose(settings);
-    }
-    if (!app.message().empty()) wrapped(kBad, app.message());
-    if (!app.notice().empty()) wrapped(kGrey, app.notice());
-}
-
-// On: technique "auto" in place of the one that was chosen, which comes back.
-void Panels::drawPlanner(App& app) {
-    Settings settings = app.settings();
-    bool isOn = settings.technique == LW_TECHNIQUE_AUTO;
-    if (ImGui::Checkbox("planner", &isOn)) {
-        if (isOn) before_ = settings.technique;
-        settings = Settings{isOn ? LW_TECHNIQUE_AUTO : before_, {}};
-        app.choose(settings);
-    }
-    tip("Technique \"auto\": in each frame what the planner finds best within the budget");
-    if (!isOn) return;
-    ImGui::SameLine();
-    const auto given = settings.assignments.find("budget_ms");
-    float budget = held_.count("budget") != 0 ? held_["budget"]
-                                              : given != settings.assignments.end() ? std::strtof(given->second.c_str(), nullptr) : 0.0f;
-    if (ImGui::SliderFloat("ms", &budget, 0.0f, 200.0f, budget > 0.0f ? "budget %.1f" : "no budget")) held_["budget"] = budget;
-    if (ImGui::IsItemDeactivatedAfterEdit()) {
-        held_.erase("budget");
-        settings.assignments["budget_ms"] = fmt::format("{}", budget);
-        app.choose(settings);
-    }
-    for (const auto& [name, reason] : app.indirect().figures().choices)
-        if (name == LW_TECHNIQUE_AUTO) wrapped(kWarm, reason);
-}
-
-bool Panels::drawParameters(const LWTechniqueInfo& info, const std::string& prefix, Settings& settings) {
-    bool isChanged = false;
-    for (std::uint32_t i = 0; i < info.parameterCount; ++i) {
-        const LWParameter& parameter = info.parameters[i];
-        const std::string key = prefix + parameter.name;
-        ImGui::PushID(key.c_str());
-        isChanged = drawParameter(parameter, key, settings) || isChanged;
-        tip(parameter.description);
-        if (parameter.kind == LW_PARAMETER_TECHNIQUE) {
-            const auto chosen = settings.assignments.find(key);
-            const std::string name = chosen != settings.assignments.end() ? chosen->second : defaultText(parameter);
-            ImGui::Indent();
-            if (ImGui::TreeNode("parameters of", "parameters of %s", name.c_str())) {
-                isChanged = drawParameters(describeTechnique(name), key + ".", settings) || isChanged;
-                ImGui::TreePop();
-            }
-            ImGui::Unindent();
-        }
-        ImGui::PopID();
-    }
-    return isChanged;
-}
-
-bool Panels::drawParameter(const LWParameter& parameter, const std::string& key, Settings& settings) {
-    const auto given = settings.assignments.find(key);
-    const std::string before = given != settings.assignments.end() ? given->second : defaultText(parameter);
-    std::string text = before;
-    if (parameter.kind == LW_PARAMETER_ENUM || parameter.kind == LW_PARAMETER_TECHNIQUE) {
-        pick(parameter.name, text, choicesOf(parameter));
-    } else if (parameter.kind == LW_PARAMETER_BOOL) {
-        bool isOn = text == "on" || text == "true" || text == "1";
-        if (ImGui::Checkbox(parameter.name, &isOn)) text = isOn ? "on" : "off";
-    } else if (parameter.allowedCount > 0) {
-        std::vector<std::string> names;
-        for (std::uint32_t i = 0; i < parameter.allowedCount; ++i) names.push_back(fmt::format("{}", parameter.allowed[i]));
-        pick(parameter.name, text, names);
-    } else if (!drawNumber(parameter, key, text)) {
-        return false;
-    }
-    if (text == before) return false;
-    if (parameter.kind == LW_PARAMETER_TECHNIQUE)  // what was set of the technique before goes with it
-        for (auto at = settings.assignments.begin(); at != settings.assignments.end();)
-            at = at->first.rfind(key + ".", 0) == 0 ? settings.assignments.erase(at) : std::next(at);
-    if (text == defaultText(parameter))
-        settings.assignments.erase(key);
-    else
-        settings.assignments[key] = text;
-    return true;
-}
-
-// A change counts when the slider is let go: it may mean other kernels.
-bool Panels::drawNumber(const LWParameter& parameter, const std::string& key, std::string& text) {
-    const bool isWhole = parameter.kind == LW_PARAMETER_UINT;
-    const auto held = held_.find(key);
-    float value = held != held_.end() ? held->second : std::strtof(text.c_str(), nullptr);
-    const float low = float(parameter.minimum), high = float(parameter.maximum);
-    const bool isWide = high > 1000.0f * std::max(1.0f, std::abs(low));
-    const float speed = isWhole ? std::max(0.1f, 0.01f * std::abs(value)) : std::max(1e-4f, 0.005f * std::abs(value) + (isWide ? 0.0f : 0.0005f * (high - low)));
-    const char* const format = isWhole ? "%.0f" : "%.4g";
-    if (ImGui::DragFloat(parameter.name, &value, speed, low, high, format, ImGuiSliderFlags_AlwaysClamp))
-        held_[key] = isWhole ? std::round(value) : value;
-    if (!ImGui::IsItemDeactivatedAfterEdit()) return false;
-    const auto last = held_.find(key);
-    if (last == held_.end()) return false;
-    text = isWhole ? fmt::format("{:.0f}", last->second) : fmt::format("{}", last->second);
-    held_.erase(last);
-    return true;
 }
 
 // Those that take a share worth a line; the rest in one.

@@ -44,6 +44,7 @@ private:
     std::map<std::string, float> held_;  // sliders that are being dragged
     std::string before_ = "ssvp";        // the technique that the planner replaced
     bool isHidden_ = false;
+    int width_ = 0, height_ = 0;  // that panels have been placed in
 };
 
 }  // namespace viewer
