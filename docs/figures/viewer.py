@@ -13,7 +13,7 @@ from PIL import Image
 from program import ROOT, caller, read_options, write_between
 
 PICTURE = {"scene": "sponza_crytek", "technique": "ssvp", "set": ["clusters=64", "visibility=soft", "interleave=2", "cluster_groups=1"],
-           "exposure": "4"}
+           "exposure": "4", "shadows": 4096}
 TIMED = [("cornell", "rsm", []), ("cornell", "ssvp", []), ("sponza_crytek", "rsm", []), ("sponza_crytek", "ssvp", [])]
 SAME_LIGHT = [("rsm", ["vpls=0", "interleave=1"]), ("horizon", [])]
 COLOURS = 256  # of the picture's palette
@@ -29,7 +29,7 @@ def draw(viewer, size, work):
     """The picture that README and page show."""
     shot = work / "viewer.png"
     viewer("--headless", "--size", size, "--scene", PICTURE["scene"], "--technique", PICTURE["technique"], *settings(PICTURE["set"]),
-           "--exposure", PICTURE["exposure"], "--warmup", 3, "--frames", 3, "--screenshot", shot)
+           "--exposure", PICTURE["exposure"], "--shadow-size", PICTURE["shadows"], "--warmup", 3, "--frames", 3, "--screenshot", shot)
     target = ROOT / "docs/images/viewer.png"
     Image.open(shot).convert("RGB").quantize(COLOURS, method=Image.Quantize.MAXCOVERAGE, kmeans=8, dither=Image.Dither.NONE).save(target, optimize=True)
     if target.stat().st_size > LARGEST:

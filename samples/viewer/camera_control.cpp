@@ -86,8 +86,9 @@ bool CameraControl::fly(float seconds) {
     glm::vec3 forward = glm::normalize(camera_.target - camera_.position);
     const glm::vec3 up = glm::normalize(camera_.up);
     bool isMoved = false;
-    if (!io.WantCaptureMouse && (ImGui::IsMouseDown(ImGuiMouseButton_Left) || ImGui::IsMouseDown(ImGuiMouseButton_Right)) &&
-        (io.MouseDelta.x != 0.0f || io.MouseDelta.y != 0.0f)) {
+    // Held since the frame before: the way to where it was pressed is no drag.
+    const bool isHeld = io.MouseDownDuration[ImGuiMouseButton_Left] > 0.0f || io.MouseDownDuration[ImGuiMouseButton_Right] > 0.0f;
+    if (!io.WantCaptureMouse && isHeld && (io.MouseDelta.x != 0.0f || io.MouseDelta.y != 0.0f)) {
         forward = turned(forward, up, io.MouseDelta.x * kRadiansPerPixel, -io.MouseDelta.y * kRadiansPerPixel);
         isMoved = true;
     }

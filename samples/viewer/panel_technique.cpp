@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <iterator>
+#include <stdexcept>
 
 #include "app.h"
 #include "panel_parts.h"
@@ -17,6 +18,14 @@ std::vector<std::string> choicesOf(const LWParameter& parameter) {
     std::vector<std::string> names;
     for (const char* const* choice = parameter.choices; choice != nullptr && *choice != nullptr; ++choice) names.emplace_back(*choice);
     return names;
+}
+
+// std::invalid_argument where there is none of this name.
+LWParameter parameterOf(const std::string& technique, const std::string& name) {
+    const LWTechniqueInfo info = describeTechnique(technique);
+    for (std::uint32_t i = 0; i < info.parameterCount; ++i)
+        if (name == info.parameters[i].name) return info.parameters[i];
+    throw std::invalid_argument(fmt::format("technique {} has no parameter {}", technique, name));
 }
 
 // PoCL's names are long.
@@ -66,8 +75,8 @@ void Panels::drawPlanner(App& app) {
     if (!isOn) return;
     ImGui::SameLine();
     const auto given = settings.assignments.find("budget_ms");
-    float budget = held_.count("budget") != 0 ? held_["budget"]
-                                              : given != settings.assignments.end() ? std::strtof(given->second.c_str(), nullptr) : 0.0f;
+    const std::string text = given != settings.assignments.end() ? given->second : defaultText(parameterOf(settings.technique, "budget_ms"));
+    float budget = held_.count("budget") != 0 ? held_["budget"] : std::strtof(text.c_str(), nullptr);
     if (ImGui::SliderFloat("ms", &budget, 0.0f, 200.0f, budget > 0.0f ? "budget %.1f" : "no budget")) held_["budget"] = budget;
     if (ImGui::IsItemDeactivatedAfterEdit()) {
         held_.erase("budget");

@@ -16,7 +16,7 @@
 namespace viewer {
 namespace {
 
-constexpr float kLeftWidth = 300.0f, kRightWidth = 326.0f, kMargin = 10.0f;
+constexpr float kLeftWidth = 318.0f, kRightWidth = 326.0f, kMargin = 10.0f;
 constexpr double kSmallPass = 0.02;  // of Lightwell's time: shown with others like it
 constexpr const char* kFont = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
 
