@@ -33,11 +33,20 @@ int findCamera(const studio::Scene& scene, const std::string& name) {
     }
 }
 
+Indirect openIndirect(const std::string& selector) {
+    try {
+        return Indirect(selector);
+    } catch (const lightwell::Error& error) {
+        if (selector.empty() || (error.status() != LW_ERROR_NO_DEVICE && error.status() != LW_ERROR_INVALID_ARGUMENT)) throw;
+        throw UsageError(fmt::format("--device '{}': {}", selector, error.what()));
+    }
+}
+
 CameraPath readPath(const std::string& file) {
     try {
         return CameraPath(file);
     } catch (const std::exception& error) {
-        throw UsageError(error.what());
+        throw UsageError(fmt::format("--path: {}", error.what()));
     }
 }
 
@@ -70,7 +79,7 @@ App::App(const Options& options, Context& context)
       lights_(lightsAt(*scene_, options.time)),
       hasMotion_(isKeyed(*scene_)),
       meshes_(*scene_),
-      indirect_(options.device),
+      indirect_(openIndirect(options.device)),
       camera_(scene_->cameraAt(cameraIndex_, options.time), rayScene_->diagonal()),
       path_(options.path.empty() ? CameraPath(*scene_, cameraIndex_) : readPath(options.path)),
       time_(options.time),
@@ -82,6 +91,7 @@ App::App(const Options& options, Context& context)
         maps_.emplace_back();
         maps_.back().light = light;
     }
+    rayScene_->boundsAlong(glm::mat3(1.0f), lower_, upper_);
     poses_ = posesBefore_ = posesAt(*scene_, time_);
     resize();
     try {
@@ -127,7 +137,8 @@ bool App::truthFits() const {
 void App::resize() {
     int width = 0, height = 0;
     context_.size(width, height);
-    width = std::max(width, 1);  // an iconified window has no pixels
+    if (width_ > 0 && (width < 1 || height < 1)) return;  // an iconified window has no pixels
+    width = std::max(width, 1);
     height = std::max(height, 1);
     if (width == width_ && height == height_) return;
     width_ = width;
@@ -144,6 +155,7 @@ void App::choose(const Settings& settings) {
     try {
         indirect_.choose(settings);
         message_.clear();
+        debugViews_.clear();  // their names go with the technique
     } catch (const std::exception& error) {
         message_ = error.what();
     }
@@ -174,6 +186,7 @@ void App::setTime() {
     timeOfScene_ = time_;
     rayScene_ = std::make_unique<studio::RayScene>(scene_, time_);
     triangles_ = studio::sceneTriangles(*rayScene_);
+    rayScene_->boundsAlong(glm::mat3(1.0f), lower_, upper_);
     if (!scene_->lightTracks.empty()) lights_ = lightsAt(*scene_, time_);
     poses_ = posesAt(*scene_, time_);
     lightsMoved_ = true;
@@ -208,13 +221,12 @@ void App::saveScreenshot(const std::string& file) {
         writeScreen(file, screen(), width_, height_);
         notice_ = "wrote " + file;
     } catch (const std::exception& error) {
-        if (context_.window() == nullptr) throw;
         message_ = error.what();
     }
 }
 
 void App::writeOutputs() {
-    if (!options_.screenshot.empty()) saveScreenshot(options_.screenshot);
+    if (!options_.screenshot.empty()) writeScreen(options_.screenshot, screen(), width_, height_);
     if (!options_.out.empty()) writeLayers(options_.out, gbuffer_.images(), light_.texture());
     Report report;
     report.options = &options_;

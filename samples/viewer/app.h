@@ -58,6 +58,7 @@ private:
     void resize();
     void advance(float seconds);
     void setTime();
+    Eye eyeOfCamera() const;
     void placeLights();
     void drawScene();
     void lightIndirectly();
@@ -75,6 +76,7 @@ private:
     int cameraIndex_;
     std::unique_ptr<studio::RayScene> rayScene_;  // at time_: for fitting RSMs and for triangles
     studio::SceneTriangles triangles_;
+    glm::vec3 lower_{0.0f}, upper_{0.0f};  // the scene's bounds, m
     std::vector<studio::Light> lights_;
     bool lightsMoved_ = true, hasMotion_ = false;
     SceneMeshes meshes_;

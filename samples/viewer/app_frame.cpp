@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "app.h"
 
@@ -10,9 +11,22 @@ namespace {
 
 // A sun's RSM is fitted anew when the view has moved by this share of the scene's size, or turned by this (its cosine).
 constexpr float kFitDistance = 0.02f, kFitTurn = 0.996f;
-constexpr int kFitRows = 48;  // of the small picture that it is fitted to
+constexpr int kFitRows = 48, kFitColumns = 192;  // at most, of the small picture that it is fitted to
+
+// The nearest plane as a share of the farthest: nearer needs more of a depth's bits than are left at the far end.
+constexpr float kNearShare = 2e-4f;
 
 }  // namespace
+
+// The studio casts rays, which its cameras' planes don't cut. Here planes hold all of the scene, in powers of two: a camera
+// that flies keeps its projection.
+Eye App::eyeOfCamera() const {
+    studio::Camera camera = camera_.camera();
+    const glm::vec3 reach = glm::max(glm::abs(camera.position - lower_), glm::abs(camera.position - upper_));
+    camera.farPlane = std::exp2(std::ceil(std::log2(std::max(1.001f * glm::length(reach), 1e-6f))));
+    camera.nearPlane = kNearShare * camera.farPlane;
+    return {camera.viewMatrix(), camera.projectionMatrix(width_, height_)};
+}
 
 void App::placeLights() {
     const glm::mat4 now = glm::inverse(eye_.view), fitted = glm::inverse(eyeOfFit_.view);
@@ -21,8 +35,9 @@ void App::placeLights() {
     const bool viewMoved = hasTurned || hasWalked || isFirst_ || eye_.projection != eyeOfFit_.projection;
     if (!lightsMoved_ && !viewMoved) return;
     eyeOfFit_ = eye_;
-    const int columns = std::max(1, kFitRows * width_ / height_);
-    const studio::GBuffer view = studio::renderGBuffer(*rayScene_, camera_.camera(), columns, kFitRows, camera_.camera(), rayScene_->time());
+    const int columns = std::clamp(kFitRows * width_ / height_, 1, kFitColumns);
+    const int rows = std::clamp(columns * height_ / width_, 1, kFitRows);
+    const studio::GBuffer view = studio::renderGBuffer(*rayScene_, camera_.camera(), columns, rows, camera_.camera(), rayScene_->time());
     studio::RsmOptions rsm;
     rsm.size = options_.rsmSize;
     rsm.view = &view;
@@ -65,7 +80,13 @@ void App::lightIndirectly() {
             message_ = error.what();
         }
         timings_.endStage("lightwell");
-        whileMapped();
+        try {
+            whileMapped();
+        } catch (const std::exception& error) {  // e.g. a buffer that is larger than OpenGL's images can be
+            if (context_.window() == nullptr) throw;
+            message_ = error.what();
+            look_.show = Show::Picture;
+        }
     }
     light_.upload();
     timings_.endStage("upload");
@@ -105,9 +126,9 @@ void App::drawFrame(bool isLast) {
     resize();
     setTime();
     eyeBefore_ = eye_;
-    eye_ = {camera_.camera().viewMatrix(), camera_.camera().projectionMatrix(width_, height_)};
+    eye_ = eyeOfCamera();
     if (isFirst_) eyeBefore_ = eye_;
-    if (isLast && options_.checks) wantsCheck_ = true;
+    if (options_.checks && (isLast || (isFirst_ && options_.frames == 0))) wantsCheck_ = true;
     drawScene();
     lightIndirectly();
     if (look_.isAutomatic) look_.exposure = compose_.measureExposure(gbuffer_.images(), light_.texture());

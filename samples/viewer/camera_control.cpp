@@ -40,17 +40,17 @@ glm::vec3 turned(const glm::vec3& forward, const glm::vec3& up, float about, flo
 
 CameraPath::CameraPath(const std::string& file) {
     std::ifstream in(file);
-    if (!in) throw std::runtime_error(fmt::format("--path {}: can't be read", file));
+    if (!in) throw std::runtime_error(fmt::format("{}: can't be read", file));
     nlohmann::json document;
     try {
         document = nlohmann::json::parse(in);
     } catch (const std::exception& error) {
-        throw std::runtime_error(fmt::format("--path {}: {}", file, error.what()));
+        throw std::runtime_error(fmt::format("{}: {}", file, error.what()));
     }
     studio::Scene scene;
     studio::readJsonCamera(studio::JsonValue(document, file, "camera"), scene);
     if (scene.cameraTracks.empty())
-        throw std::runtime_error(fmt::format("--path {}: expected a camera with \"keys\" (docs/viewer.md), got one without", file));
+        throw std::runtime_error(fmt::format("{}: expected a camera with \"keys\" (docs/viewer.md), got one without", file));
     keys_ = scene.cameraTracks[0].keys;
 }
 
@@ -67,7 +67,7 @@ studio::Camera CameraPath::at(float time) const {
 }
 
 void CameraPath::add(float time, const studio::Camera& camera) {
-    if (!keys_.empty()) time = std::max(time, keys_.back().first + 1e-3f);
+    if (!keys_.empty() && time <= keys_.back().first) time = keys_.back().first + 1.0f;
     keys_.emplace_back(time, camera);
 }
 

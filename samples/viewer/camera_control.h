@@ -18,7 +18,7 @@ public:
     bool isEmpty() const { return keys_.empty(); }
     studio::Camera at(float time) const;
     float duration() const { return keys_.empty() ? 0.0f : keys_.back().first; }
-    void add(float time, const studio::Camera& camera);  // after all others
+    void add(float time, const studio::Camera& camera);  // after all others: a second after the last where the clock has not moved on
     void write(const std::string& file) const;
 
 private:

@@ -1,5 +1,6 @@
 // A context without any window system: EGL on Mesa's surfaceless platform, else on EGL's default display with a small
 // pbuffer. GLFW 3.3 can't do that. Everything is drawn into framebuffer objects.
+#include <dlfcn.h>
 #include <epoxy/egl.h>
 
 #include <stdexcept>
@@ -19,6 +20,9 @@ bool hasClientExtension(const char* name) {
 class EglContext final : public Context {
 public:
     EglContext(int width, int height) : width_(width), height_(height) {
+        // libepoxy opens it at the first call, and aborts where it isn't there.
+        if (dlopen("libEGL.so.1", RTLD_LAZY | RTLD_LOCAL) == nullptr)
+            throw std::runtime_error(fmt::format("--headless: expected libEGL.so.1 (Debian's libegl1), got: {}", dlerror()));
         if (!(hasClientExtension("EGL_MESA_platform_surfaceless") && open(true)) && !open(false))
             throw std::runtime_error(fmt::format(
                 "--headless: expected EGL with desktop OpenGL 3.3 core, got EGL error 0x{:x}; install a driver, e.g. Debian's "

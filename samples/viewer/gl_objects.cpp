@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 #include <vector>
 
@@ -68,8 +69,10 @@ Texture::Texture(const PixelFormat& format, int width, int height, int layers)
     glTexParameteri(target(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     glTexParameteri(target(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
     glTexParameteri(target(), GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-    if (glGetError() == GL_OUT_OF_MEMORY)
-        throw std::runtime_error(fmt::format("OpenGL has no memory for an image of {}x{}", width, height));
+    const GLenum error = glGetError();
+    if (error == GL_OUT_OF_MEMORY) throw std::runtime_error(fmt::format("OpenGL has no memory for an image of {}x{}", width, height));
+    if (error == GL_INVALID_VALUE)
+        throw std::runtime_error(fmt::format("this OpenGL driver has no images of {}x{} in {} layers", width, height, std::max(1, layers)));
 }
 
 void Texture::bind(int unit) const {

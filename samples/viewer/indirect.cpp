@@ -116,12 +116,12 @@ void Indirect::addStaticVpls(LWFrame& frame, const studio::RayScene& scene) {
 
 void Indirect::render(FrameInputs& inputs, const IndirectImages& images, const studio::RayScene& scene) {
     LWFrame& frame = inputs.frame();
-    const LWSourceView source{view_->get(), &inputs.gbuffer()};
-    frame.sourceViews = &source;
-    frame.sourceViewCount = 1;
     frame.frameIndex = frameIndex_++;
     frame.reset = reset_ ? 1 : 0;
     if (settings_.uses("static_vpl")) addStaticVpls(frame, scene);
+    const LWSourceView source{view_->get(), &inputs.gbuffer()};
+    frame.sourceViews = &source;
+    frame.sourceViewCount = 1;
     LWOutput output = lightwell::make<LWOutput>();
     output.irradiance = images.irradiance();
     output.validity = images.validity();

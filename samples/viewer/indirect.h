@@ -22,7 +22,7 @@ struct Settings {
     bool uses(const std::string& name) const;  // it, or a technique that is a parameter
 };
 
-LWTechniqueInfo describeTechnique(const std::string& name);  // std::runtime_error listing the techniques
+LWTechniqueInfo describeTechnique(const std::string& name);  // std::invalid_argument listing the techniques
 std::string defaultText(const LWParameter& parameter);
 
 struct PassTime {
@@ -55,7 +55,6 @@ public:
     // Waits for the light. What `inputs` and `output` describe is free again afterwards.
     void render(FrameInputs& inputs, const IndirectImages& images, const studio::RayScene& scene);
     const IndirectFigures& figures() const { return figures_; }
-    void forget() { reset_ = true; }  // what techniques remember of frames before
 
     // While the last frame's inputs are still mapped.
     std::vector<LWDebugView> debugViews() const { return technique_->debugViews(view_.get()); }

@@ -4,7 +4,10 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <utility>
 
 namespace viewer {
 namespace {
@@ -15,16 +18,24 @@ constexpr int kLargestSide = 8192;
 struct Words {
     std::string size = "1280x720", show = "picture", exposure, split;
     std::vector<std::string> assignments;
+    int frames = 0;
     bool noPanels = false;
 };
+
+// CLI11's own range check lets "nan" through.
+CLI::Validator finite() {
+    return CLI::Validator(
+        [](std::string& text) { return std::isfinite(std::strtod(text.c_str(), nullptr)) ? "" : "expected a finite number, got " + text; }, "");
+}
 
 void declareScene(CLI::App& app, Options& options, Words& words) {
     app.add_option("--scene", options.scene, "A scene's name or path, as `lightwell render` takes it")->capture_default_str();
     app.add_option("--camera", options.camera, "Of the scene; default: its first");
     app.add_option("--size", words.size, "WIDTHxHEIGHT")->capture_default_str();
-    app.add_option("--time", options.time, "Seconds at which keyframed scenes and paths begin")->capture_default_str();
+    app.add_option("--time", options.time, "Seconds at which keyframed scenes and paths begin")->check(finite())->capture_default_str();
     app.add_option("--path", options.path, "FILE.json: a camera with keys, played back (docs/viewer.md)");
     app.add_option("--step", options.step, "Seconds from frame to frame of --headless; default: 1/30 along a --path, else 0")
+        ->check(finite())
         ->check(CLI::Range(0.0, 1e6));
     app.add_option("--truth", options.truth, "FILE.exr of `lightwell reference` or `render`, of the view's size: for the split view");
 }
@@ -41,8 +52,8 @@ void declareTechnique(CLI::App& app, Options& options, Words& words) {
 
 void declareOutputs(CLI::App& app, Options& options, Words& words) {
     app.add_flag("--headless", options.isHeadless, "Without a window or a display");
-    app.add_option("--frames", options.frames, "End after so many measured frames; 0: when the window is closed; of --headless 1 or more")
-        ->check(CLI::Range(0, 1000000));
+    app.add_option("--frames", words.frames, "End after so many measured frames; default: when the window is closed, of --headless 1")
+        ->check(CLI::Range(1, 1000000));
     app.add_option("--warmup", options.warmUp, "Frames before these, not measured")->check(CLI::Range(0, 100000))->capture_default_str();
     app.add_option("--screenshot", options.screenshot, "FILE.png: the last frame as shown, panels included");
     app.add_option("--out", options.out,
@@ -71,7 +82,7 @@ float parseFloat(const char* option, const std::string& text, float low, float h
 
 void takeSize(const std::string& text, Options& options) {
     int used = 0;
-    if (std::sscanf(text.c_str(), "%dx%d%n", &options.width, &options.height, &used) != 2 || std::size_t(used) != text.size() ||
+    if (std::sscanf(text.c_str(), "%5dx%5d%n", &options.width, &options.height, &used) != 2 || std::size_t(used) != text.size() ||
         std::min(options.width, options.height) < 1 || std::max(options.width, options.height) > kLargestSide)
         throw UsageError(fmt::format("--size '{}': expected WIDTHxHEIGHT, 1 to {} each", text, kLargestSide));
 }
@@ -88,6 +99,15 @@ void requireEnding(const char* option, const std::string& path, const std::strin
     if (path.empty()) return;
     if (path.size() <= ending.size() || path.compare(path.size() - ending.size(), ending.size(), ending) != 0)
         throw UsageError(fmt::format("{} '{}': expected a file name ending in {}", option, path, ending));
+}
+
+void takeFrames(const Words& words, Options& options) {
+    options.frames = words.frames > 0 ? words.frames : options.isHeadless ? 1 : 0;
+    if (options.frames > 0) return;
+    const std::pair<const char*, bool> outputs[] = {
+        {"--screenshot", !options.screenshot.empty()}, {"--out", !options.out.empty()}, {"--json", options.asJson}};
+    for (const auto& [name, isGiven] : outputs)
+        if (isGiven) throw UsageError(fmt::format("{}: expected --frames N or --headless too: it is written after the last frame", name));
 }
 
 void takeWords(const Words& words, Options& options) {
@@ -109,7 +129,7 @@ void takeWords(const Words& words, Options& options) {
     requireEnding("--screenshot", options.screenshot, ".png");
     requireEnding("--out", options.out, ".exr");
     options.hasPanels = !words.noPanels;
-    if (options.isHeadless) options.frames = std::max(1, options.frames);
+    takeFrames(words, options);
 }
 
 }  // namespace

@@ -4,9 +4,9 @@
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <bitset>
+#include <cstddef>
 #include <stdexcept>
-#include <vector>
 
 #include "context.h"
 
@@ -38,7 +38,7 @@ public:
         glfwSetWindowUserPointer(window_, this);
         // Dear ImGui's own call-back calls this one.
         glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
-            if (action == GLFW_PRESS) static_cast<Window*>(glfwGetWindowUserPointer(window))->pressed_.push_back(key);
+            if (action == GLFW_PRESS && key >= 0) static_cast<Window*>(glfwGetWindowUserPointer(window))->pressed_.set(std::size_t(key));
         });
     }
     ~Window() override {
@@ -52,16 +52,16 @@ public:
     GLFWwindow* window() const override { return window_; }
     bool wantsToClose() const override { return glfwWindowShouldClose(window_) == GLFW_TRUE; }
     void beginFrame() override {
-        pressed_.clear();
+        pressed_.reset();
         glfwPollEvents();
     }
-    bool isPressed(int key) const override { return std::find(pressed_.begin(), pressed_.end(), key) != pressed_.end(); }
+    bool isPressed(int key) const override { return pressed_.test(std::size_t(key)); }
     void endFrame() override { glfwSwapBuffers(window_); }
     void size(int& width, int& height) const override { glfwGetFramebufferSize(window_, &width, &height); }
 
 private:
     GLFWwindow* window_ = nullptr;
-    std::vector<int> pressed_;
+    std::bitset<GLFW_KEY_LAST + 1> pressed_;  // a call-back of C must not throw: nothing is allocated
 };
 
 }  // namespace
