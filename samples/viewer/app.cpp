@@ -33,9 +33,9 @@ int findCamera(const studio::Scene& scene, const std::string& name) {
     }
 }
 
-Indirect openIndirect(const std::string& selector) {
+Indirect openIndirect(const std::string& selector, bool wantsCopies) {
     try {
-        return Indirect(selector);
+        return Indirect(selector, wantsCopies);
     } catch (const lightwell::Error& error) {
         if (selector.empty() || (error.status() != LW_ERROR_NO_DEVICE && error.status() != LW_ERROR_INVALID_ARGUMENT)) throw;
         throw UsageError(fmt::format("--device '{}': {}", selector, error.what()));
@@ -79,7 +79,7 @@ App::App(const Options& options, Context& context)
       lights_(lightsAt(*scene_, options.time)),
       hasMotion_(isKeyed(*scene_)),
       meshes_(*scene_),
-      indirect_(openIndirect(options.device)),
+      indirect_(openIndirect(options.device, options.wantsCopies)),
       camera_(scene_->cameraAt(cameraIndex_, options.time), rayScene_->diagonal()),
       path_(options.path.empty() ? CameraPath(*scene_, cameraIndex_) : readPath(options.path)),
       time_(options.time),
@@ -93,6 +93,8 @@ App::App(const Options& options, Context& context)
     }
     rayScene_->boundsAlong(glm::mat3(1.0f), lower_, upper_);
     poses_ = posesBefore_ = posesAt(*scene_, time_);
+    inputs_.share(indirect_.glSharing());
+    light_.share(indirect_.glSharing());
     resize();
     try {
         indirect_.choose(options.settings);

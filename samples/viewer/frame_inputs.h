@@ -1,4 +1,4 @@
-// What the viewer hands to Lightwell for a frame: its images as they lie in host memory after the read-back, described by
+// What the viewer hands to Lightwell for a frame: its images as they lie in pixel buffers after the read-back, described by
 // lightwell.h's structs without a further copy. This file is the one to copy from for a host with OpenGL.
 #pragma once
 
@@ -13,6 +13,7 @@ namespace viewer {
 
 class FrameInputs {
 public:
+    void share(const std::shared_ptr<GlSharing>& sharing) { gbufferPixels_.share(sharing), rsmPixels_.share(sharing); }
     // Asks for the copies out of OpenGL's images.
     void read(const GBufferImages& images, const std::vector<LightMaps>& lights);
     // Waits for them, and describes everything. What is given must stay until unmap().

@@ -35,8 +35,12 @@ std::size_t ReadBack::add(const Texture& texture, LWFormat format) {
 
 void ReadBack::read() {
     glBindBuffer(GL_PIXEL_PACK_BUFFER, buffer_.get());
-    if (allocated_ != byteCount_) glBufferData(GL_PIXEL_PACK_BUFFER, GLsizeiptr(byteCount_), nullptr, GL_STREAM_READ);
-    allocated_ = byteCount_;
+    if (allocated_ != byteCount_) {
+        shared_.reset();  // of the storage that goes
+        glBufferData(GL_PIXEL_PACK_BUFFER, GLsizeiptr(byteCount_), nullptr, sharing_ ? GL_STREAM_COPY : GL_STREAM_READ);
+        allocated_ = byteCount_;
+        if (sharing_ && byteCount_ > 0) shared_.emplace(sharing_, buffer_.get(), false);
+    }
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     for (const Plane& plane : planes_) {
         const Texture& texture = *plane.texture;
@@ -50,12 +54,14 @@ void ReadBack::read() {
 
 void ReadBack::map() {
     if (byteCount_ == 0) return;  // a scene without lights has no maps
+    if (shared_) return shared_->acquire();
     glBindBuffer(GL_PIXEL_PACK_BUFFER, buffer_.get());
     memory_ = static_cast<const char*>(mapBuffer(GL_PIXEL_PACK_BUFFER, byteCount_, GL_MAP_READ_BIT));
     glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
 }
 
 void ReadBack::unmap() {
+    if (shared_) shared_->release();
     if (memory_ != nullptr) unmapBuffer(GL_PIXEL_PACK_BUFFER, buffer_);
     memory_ = nullptr;
 }
@@ -63,7 +69,12 @@ void ReadBack::unmap() {
 LWImage ReadBack::image(std::size_t index) const {
     const Plane& plane = planes_.at(index);
     LWImage image{};
-    image.host = memory_ + plane.byteOffset;
+    if (shared_) {
+        image.clMem = shared_->memory();
+        image.byteOffset = plane.byteOffset;
+    } else {
+        image.host = memory_ + plane.byteOffset;
+    }
     image.format = plane.format;
     image.width = std::uint32_t(plane.texture->width());
     image.height = std::uint32_t(plane.texture->height());
@@ -73,10 +84,12 @@ LWImage ReadBack::image(std::size_t index) const {
 
 void IndirectImages::resize(int width, int height) {
     texture_ = Texture({GL_R32F, GL_RED, GL_FLOAT, 4}, width, height, 4);
+    shared_.reset();
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, buffer_.get());
     const std::vector<char> zeros(byteCount());
-    glBufferData(GL_PIXEL_UNPACK_BUFFER, GLsizeiptr(zeros.size()), zeros.data(), GL_STREAM_DRAW);
+    glBufferData(GL_PIXEL_UNPACK_BUFFER, GLsizeiptr(zeros.size()), zeros.data(), sharing_ ? GL_STREAM_COPY : GL_STREAM_DRAW);
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+    if (sharing_) shared_.emplace(sharing_, buffer_.get(), true);
 }
 
 std::size_t IndirectImages::planeBytes() const {
@@ -84,15 +97,25 @@ std::size_t IndirectImages::planeBytes() const {
 }
 
 void IndirectImages::map() {
+    if (shared_) return shared_->acquire();
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, buffer_.get());
-    // Reading too: memory that is written only may be slow to touch in any other way, and files are written from it.
+    // Reading too: memory that is written only may be slow to touch in any other way.
     memory_ = static_cast<char*>(mapBuffer(GL_PIXEL_UNPACK_BUFFER, byteCount(), GL_MAP_READ_BIT | GL_MAP_WRITE_BIT));
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
 }
 
+void IndirectImages::place(LWImage& image, std::size_t byteOffset) const {
+    if (shared_) {
+        image.clMem = shared_->memory();
+        image.byteOffset = byteOffset;
+    } else {
+        image.host = memory_ + byteOffset;
+    }
+}
+
 LWImage IndirectImages::irradiance() const {
     LWImage image{};
-    image.host = memory_;
+    place(image, 0);
     image.format = LW_FORMAT_PLANAR_FLOAT3;
     image.width = std::uint32_t(texture_.width());
     image.height = std::uint32_t(texture_.height());
@@ -103,17 +126,14 @@ LWImage IndirectImages::irradiance() const {
 
 LWImage IndirectImages::validity() const {
     LWImage image = irradiance();
-    image.host = memory_ + 3 * planeBytes();
+    place(image, 3 * planeBytes());
     image.format = LW_FORMAT_FLOAT1;
     image.bytePlaneStride = 0;
     return image;
 }
 
-const float* IndirectImages::plane(int index) const {
-    return reinterpret_cast<const float*>(memory_ + std::size_t(index) * planeBytes());
-}
-
 void IndirectImages::unmap() {
+    if (shared_) shared_->release();
     if (memory_ != nullptr) unmapBuffer(GL_PIXEL_UNPACK_BUFFER, buffer_);
     memory_ = nullptr;
 }

@@ -11,9 +11,20 @@
 namespace viewer {
 namespace {
 
-lightwell::Device openDevice(const std::string& selector) {
+// Opened twice where it shares: the second time on a context of the viewer's own, made with OpenGL's.
+lightwell::Device openDevice(const std::string& selector, bool wantsCopies, std::shared_ptr<GlSharing>& sharing, std::string& text) {
     LWDeviceDesc desc = lightwell::Device::defaults();
     if (!selector.empty()) desc.selector = selector.c_str();
+    lightwell::Device device(desc);
+    const LWDeviceInfo info = device.info();
+    std::string reason;
+    sharing = GlSharing::open(info, wantsCopies, reason);
+    text = fmt::format("mapped copies: {}; {}", reason,
+                       info.hostUnifiedMemory != 0 ? "the device works in the pixel buffers' memory" : "Lightwell uploads from the pixel buffers");
+    if (!sharing) return device;
+    text = fmt::format("shared by {}: pixel buffers stay in the device's memory", reason);
+    desc.clContext = sharing->context();
+    desc.clQueue = sharing->queue();
     return lightwell::Device(desc);
 }
 
@@ -67,11 +78,8 @@ bool Settings::uses(const std::string& name) const {
     return false;
 }
 
-Indirect::Indirect(const std::string& selector) : device_(openDevice(selector)), info_(device_.info()) {
-    sharing_ = info_.hostUnifiedMemory != 0
-                   ? "mapped copies: this viewer does not share images by cl_khr_gl_sharing; the device works in the pixel buffers' memory"
-                   : "mapped copies: this viewer does not share images by cl_khr_gl_sharing; Lightwell uploads from the pixel buffers";
-}
+Indirect::Indirect(const std::string& selector, bool wantsCopies)
+    : device_(openDevice(selector, wantsCopies, sharing_, sharingText_)), info_(device_.info()) {}
 
 void Indirect::resize(int width, int height) {
     view_ = std::make_unique<lightwell::View>(device_, std::uint32_t(width), std::uint32_t(height));

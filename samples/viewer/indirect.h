@@ -41,11 +41,13 @@ struct IndirectFigures {
 
 class Indirect {
 public:
-    // `selector` as LWDeviceDesc's, "": its default. lightwell::Error.
-    explicit Indirect(const std::string& selector);
+    // `selector` as LWDeviceDesc's, "": its default. OpenGL's buffers are shared where that can be done, unless copies are
+    // wanted. lightwell::Error.
+    Indirect(const std::string& selector, bool wantsCopies);
     const LWDeviceInfo& deviceInfo() const { return info_; }
-    // Why OpenGL's images are copied instead of being shared with this device.
-    const std::string& sharing() const { return sharing_; }
+    // How OpenGL's images come to this device, and why so.
+    const std::string& sharing() const { return sharingText_; }
+    const std::shared_ptr<GlSharing>& glSharing() const { return sharing_; }  // null: copies
 
     void resize(int width, int height);
     // lightwell::Error naming what is wrong; the technique before stays in force.
@@ -66,9 +68,10 @@ private:
     void addStaticVpls(LWFrame& frame, const studio::RayScene& scene);
     void readFigures(double wallMilliseconds);
 
+    std::shared_ptr<GlSharing> sharing_;
+    std::string sharingText_;
     lightwell::Device device_;
     LWDeviceInfo info_{};
-    std::string sharing_;
     std::unique_ptr<lightwell::View> view_;
     std::optional<lightwell::Technique> technique_;
     Settings settings_;

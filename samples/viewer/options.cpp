@@ -44,6 +44,7 @@ void declareTechnique(CLI::App& app, Options& options, Words& words) {
     app.add_option("--technique", options.settings.technique, "As `lightwell render` has them; auto: the planner chooses")->capture_default_str();
     app.add_option("--set", words.assignments, "key=value, one or several: parameters of the technique");
     app.add_option("--device", options.device, "gpu, cpu, PLATFORM:DEVICE indices or part of a name; default: LIGHTWELL_DEVICE, else the best");
+    app.add_flag("--copies", options.wantsCopies, "Copies through host memory, also where the device shares OpenGL's buffers");
     app.add_option("--rsm-size", options.rsmSize, "Texels along each side of an RSM")->check(CLI::Range(16, kLargestSide))->capture_default_str();
     app.add_option("--shadow-size", options.shadowSize, "Texels along each side of a shadow map")
         ->check(CLI::Range(16, kLargestSide))

@@ -17,7 +17,7 @@ struct Options {
     Settings settings;
     Look look;
     int rsmSize = 512, shadowSize = 2048;
-    bool isHeadless = false, hasPanels = true, asJson = false, checks = false;
+    bool isHeadless = false, wantsCopies = false, hasPanels = true, asJson = false, checks = false;
     int frames = 0, warmUp = 2;  // 0 frames: until the window is closed; headless: 1
     std::string debugView;
 };

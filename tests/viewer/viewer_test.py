@@ -1,6 +1,6 @@
 """The viewer without a window: its rasterised inputs against the studio's ray-cast ones and against closed forms.
 
-Usage: viewer_test.py VIEWER LIGHTWELL [unittest options]. Python's standard library only; exit code 77 (skipped) where
+Usage: viewer_test.py VIEWER LIGHTWELL GL_SHARING_DOUBLE [unittest options]. Python's standard library only; exit code 77 (skipped) where
 there is no EGL with OpenGL 3.3.
 """
 import json
@@ -14,6 +14,7 @@ import unittest
 
 VIEWER = os.path.abspath(sys.argv[1]) if len(sys.argv) > 2 else ""
 LIGHTWELL = os.path.abspath(sys.argv[2]) if len(sys.argv) > 2 else ""
+DOUBLE = os.path.abspath(sys.argv[3]) if len(sys.argv) > 3 else ""
 SKIPPED = 77
 TIMEOUT = 300
 SIZE = ["--size", "192x108", "--rsm-size", "64"]
@@ -66,8 +67,8 @@ class Viewer(unittest.TestCase):
     def run_program(self, *arguments, environment=None):
         return subprocess.run(arguments, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=TIMEOUT, env=environment)
 
-    def view(self, *arguments):
-        result = self.run_program(VIEWER, "--headless", "--json", "--warmup", "0", *arguments)
+    def view(self, *arguments, environment=None):
+        result = self.run_program(VIEWER, "--headless", "--json", "--warmup", "0", *arguments, environment=environment)
         self.assertEqual(result.returncode, 0, "%s: %s" % (arguments, result.stderr))
         return json.loads(result.stdout)
 
@@ -134,7 +135,38 @@ class Viewer(unittest.TestCase):
         self.assertGreater(report["lightwell_ms"], 0)
         self.assertGreaterEqual(report["host_ms"], report["stages_ms"]["gbuffer"])
         self.assertIn("panels", report["stages_ms"])
-        self.assertIn("mapped copies", report["lightwell"]["sharing"])
+
+    def test_sharing(self):
+        """Buffers shared by a driver's double give the bits of mapped ones; where they can't be shared, the viewer says why."""
+        copied, shared = self.path("copied.exr"), self.path("shared.exr")
+        common = ["--scene", "cornell", *SIZE, "--technique", "ssvp", "--no-panels", "--frames", "2"]
+        with_double = dict(os.environ, LD_PRELOAD=DOUBLE, ASAN_OPTIONS="verify_asan_link_order=0")
+        report = self.view(*common, "--out", shared, "--check", environment=with_double)
+        self.assertTrue(report["lightwell"]["sharing"].startswith("shared by cl_khr_gl_sharing"), report["lightwell"]["sharing"])
+        self.assertEqual([finding for finding in report["findings"] if finding["severity"] == 2], [])
+        report = self.view(*common, "--out", copied, "--copies", environment=with_double)
+        self.assertTrue(report["lightwell"]["sharing"].startswith("mapped copies: asked for by --copies"), report["lightwell"]["sharing"])
+        with open(copied, "rb") as ours, open(shared, "rb") as theirs:
+            self.assertEqual(ours.read(), theirs.read())
+        refusing = dict(with_double, GL_SHARING_DOUBLE="refuse")
+        for environment, reason in ((None, "does not offer cl_khr_gl_sharing"), (refusing, "not with this OpenGL context")):
+            report = self.view("--scene", "cornell", "--size", "16x16", "--technique", "rsm", "--no-panels", environment=environment)
+            self.assertTrue(report["lightwell"]["sharing"].startswith("mapped copies: the device"), report["lightwell"]["sharing"])
+            self.assertIn(reason, report["lightwell"]["sharing"])
+
+    def test_planes_cut_nothing(self):
+        """A camera's near and far planes are no matter of rays: what they would cut is drawn."""
+        room = [quad([[-1, -1, s], [1, -1, s], [1, 1, s], [-1, 1, s]]) for s in (-1, 1)]
+        document = scene_of(room, [lamp("bulb", "point", 1.0, 0.0, 180.0)])
+        pictures = []
+        for near, far in ((0.01, 100.0), (1.0, 1.1)):
+            document["cameras"][0].update({"near": near, "far": far})
+            out = self.path("planes.exr")
+            self.view("--scene", self.write("planes.json", document), "--technique", "rsm", "--size", "32x18", "--rsm-size", "32", "--no-panels",
+                      "--out", out)
+            with open(out, "rb") as file:
+                pictures.append(file.read())
+        self.assertEqual(pictures[0], pictures[1])
 
     def test_wrong_arguments(self):
         out = ["--headless", "--size", "64x36"]
@@ -149,7 +181,11 @@ class Viewer(unittest.TestCase):
         self.refused([*out, "--show", "picure"], "--show", "picure", "irradiance")
         self.refused(["--headless", "--size", "1280"], "'1280'", "WIDTHxHEIGHT")
         self.refused([*out, "--technique", "rsm", "--show", "debug", "--debug-view", "nothing"], "nothing", "there are")
-        self.refused([*out, "--device", "no such device"], "no such device", code=1)
+        self.refused([*out, "--device", "no such device"], "no such device")
+        for arguments in (["--time", "nan"], ["--step", "nan"], ["--frames", "0"], ["--size", "4294967376x45"]):
+            self.refused([*out, *arguments], arguments[0])
+        self.refused(["--json"], "--json", "--headless")
+        self.refused([*out, "--technique", "rsm", "--screenshot", "/no/such/a.png"], "/no/such/a.png", code=1)
         bare = {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}
         self.refused(["--scene", "cornell"], "no window", "--headless", code=1, environment=bare)
 
@@ -161,4 +197,4 @@ if __name__ == "__main__":
     if probe.returncode == 1:
         print("skipped: " + probe.stderr.strip())
         sys.exit(SKIPPED)
-    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
+    unittest.main(argv=[sys.argv[0], *sys.argv[4:]])
