@@ -13,8 +13,8 @@ namespace {
 constexpr float kFitDistance = 0.02f, kFitTurn = 0.996f;
 constexpr int kFitRows = 48, kFitColumns = 192;  // at most, of the small picture that it is fitted to
 
-// The nearest plane as a share of the farthest: nearer needs more of a depth's bits than are left at the far end.
-constexpr float kNearShare = 2e-4f;
+// The nearest plane as a share of the farthest: 2e-4 without a reversed depth put the Cornell box's lamp into its ceiling.
+constexpr float kNearShare = 1e-4f, kNearShareOfGl = 5e-3f;
 
 }  // namespace
 
@@ -23,8 +23,8 @@ constexpr float kNearShare = 2e-4f;
 Eye App::eyeOfCamera() const {
     studio::Camera camera = camera_.camera();
     const glm::vec3 reach = glm::max(glm::abs(camera.position - lower_), glm::abs(camera.position - upper_));
-    camera.farPlane = std::exp2(std::ceil(std::log2(std::max(1.001f * glm::length(reach), 1e-6f))));
-    camera.nearPlane = kNearShare * camera.farPlane;
+    camera.farPlane = std::exp2(std::ceil(std::log2(std::max(1.01f * glm::length(reach), 1e-6f))));
+    camera.nearPlane = (DepthTest::isReversed() ? kNearShare : kNearShareOfGl) * camera.farPlane;
     return {camera.viewMatrix(), camera.projectionMatrix(width_, height_)};
 }
 

@@ -72,21 +72,19 @@ void GBufferPass::resize(int width, int height) {
 
 void GBufferPass::draw(const SceneMeshes& meshes, const Eye& now, const Eye& before, const Poses& posesNow, const Poses& posesBefore) {
     target_.bind(images_.width, images_.height);
-    glEnable(GL_DEPTH_TEST);
+    const DepthTest test;
     glEnable(GL_FRAMEBUFFER_SRGB);  // albedo alone is an sRGB image
-    const float zero[4] = {0.0f, 0.0f, 0.0f, 0.0f}, farthest = 1.0f;
+    const float zero[4] = {0.0f, 0.0f, 0.0f, 0.0f};
     const GLint noSurface[4] = {-32768, -32768, -32768, -32768};
     for (const GLint colour : {0, 2, 3}) glClearBufferfv(GL_COLOR, colour, zero);
     glClearBufferiv(GL_COLOR, 1, noSurface);
-    glClearBufferfv(GL_DEPTH, 0, &farthest);
-    programs_.set("clipFromWorld", rasterMatrix(now.projection, now.view));
+    programs_.set("clipFromWorld", rasterMatrix(now.projection, now.view, DepthTest::isReversed()));
     programs_.set("previousClipFromWorld", rasterMatrix(before.projection, before.view));
     programs_.set("eyePosition", glm::vec3(glm::inverse(now.view)[3]));
     programs_.set("axial", axialRow(now.view));
     programs_.set("imageSize", glm::vec2(images_.width, images_.height));
     meshes.draw(programs_, posesNow, &posesBefore);
     glDisable(GL_FRAMEBUFFER_SRGB);
-    glDisable(GL_DEPTH_TEST);
 }
 
 }  // namespace viewer

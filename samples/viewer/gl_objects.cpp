@@ -151,6 +151,29 @@ void Program::set(const char* name, int unit, const Texture& texture) const {
     glUniform1i(at(name), unit);
 }
 
+bool DepthTest::isReversed() {
+    static const bool isThere = epoxy_has_gl_extension("GL_ARB_clip_control");  // of the one context that there is
+    return isThere;
+}
+
+DepthTest::DepthTest() {
+    glEnable(GL_DEPTH_TEST);
+    if (isReversed()) {
+        glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+        glDepthFunc(GL_GREATER);
+    }
+    const float farthest = isReversed() ? 0.0f : 1.0f;
+    glClearBufferfv(GL_DEPTH, 0, &farthest);
+}
+
+DepthTest::~DepthTest() {
+    if (isReversed()) {
+        glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+        glDepthFunc(GL_LESS);
+    }
+    glDisable(GL_DEPTH_TEST);
+}
+
 const char* const kWholeImageVertex = R"(#version 330 core
 void main() {
     vec2 corner = vec2((gl_VertexID << 1) & 2, gl_VertexID & 2);

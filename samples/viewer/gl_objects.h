@@ -100,6 +100,17 @@ private:
     GlName<removeProgram> name_;
 };
 
+// Nearest surfaces win between construction and destruction, the bound framebuffer's depth cleared. Depth falls from 1 at the
+// near plane to 0 at the far one, where floats lie densest, with GL_ARB_clip_control (OpenGL 4.5's), which most drivers of 3.3 have.
+class DepthTest {
+public:
+    DepthTest();
+    ~DepthTest();
+    DepthTest(const DepthTest&) = delete;
+    DepthTest& operator=(const DepthTest&) = delete;
+    static bool isReversed();
+};
+
 // One triangle that covers the viewport; the vertex shader of all passes over whole images.
 extern const char* const kWholeImageVertex;
 void drawWholeImage();

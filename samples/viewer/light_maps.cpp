@@ -148,7 +148,6 @@ void LightPasses::place(LightMaps& maps, const studio::RayScene& scene, const st
 }
 
 void LightPasses::drawRsms(const LightMaps& maps, const SceneMeshes& meshes, const Poses& poses) const {
-    glEnable(GL_DEPTH_TEST);
     setLight(rsmPrograms_, maps.light);
     for (const RsmImages& rsm : maps.rsms) {
         rsm.target.bind(rsm.flux.width(), rsm.flux.height());
@@ -157,14 +156,13 @@ void LightPasses::drawRsms(const LightMaps& maps, const SceneMeshes& meshes, con
         glClearBufferfv(GL_COLOR, 0, zero);
         glClearBufferiv(GL_COLOR, 1, noSurface);
         glClearBufferfv(GL_COLOR, 2, zero);
-        clearDepth();
-        rsmPrograms_.set("clipFromWorld", rasterMatrix(rsm.eye.projection, rsm.eye.view));
+        const DepthTest test;
+        rsmPrograms_.set("clipFromWorld", rasterMatrix(rsm.eye.projection, rsm.eye.view, DepthTest::isReversed()));
         rsmPrograms_.set("axial", axialRow(rsm.eye.view));
         rsmPrograms_.set("axis", glm::vec3(axialRow(rsm.eye.view)));
         rsmPrograms_.set("texelMeasure", float(studio::rsmTexelMeasure(rsm.eye.projection, rsm.flux.width())));
         meshes.draw(rsmPrograms_, poses);
     }
-    glDisable(GL_DEPTH_TEST);
 }
 
 void LightPasses::drawShadows(const LightMaps& maps, const SceneMeshes& meshes, const Poses& poses) const {

@@ -61,11 +61,11 @@ Poses posesAt(const studio::Scene& scene, float time) {
     return poses;
 }
 
-glm::mat4 rasterMatrix(const glm::mat4& projection, const glm::mat4& view) {
+glm::mat4 rasterMatrix(const glm::mat4& projection, const glm::mat4& view, bool isReversed) {
     glm::dmat4 toGl(1.0);
     toGl[1][1] = -1.0;
-    toGl[2][2] = 2.0;
-    toGl[3][2] = -1.0;
+    toGl[2][2] = isReversed ? -1.0 : 2.0;
+    toGl[3][2] = isReversed ? 1.0 : -1.0;
     return glm::mat4(toGl * glm::dmat4(projection) * glm::dmat4(view));
 }
 

@@ -14,8 +14,8 @@ Poses posesAt(const studio::Scene& scene, float time);
 
 // From world space to OpenGL's clip space, upside down: row 0 of what is drawn is the picture's top row, so that memory
 // has the order that Lightwell, PNG and EXR expect and nothing is ever flipped. `projection`: clip z in [0,1], which
-// becomes OpenGL's -1 .. 1.
-glm::mat4 rasterMatrix(const glm::mat4& projection, const glm::mat4& view);
+// becomes OpenGL's -1 .. 1, or 1 .. 0 within a DepthTest that is reversed.
+glm::mat4 rasterMatrix(const glm::mat4& projection, const glm::mat4& view, bool isReversed = false);
 // dot(axialRow(view), (x, y, z, 1)): a position's distance along the camera's axis.
 glm::vec4 axialRow(const glm::mat4& view);
 
