@@ -148,6 +148,7 @@ void App::resize() {
     gbuffer_.resize(width, height);
     light_.resize(width, height);
     indirect_.resize(width, height);
+    timings_.restart();  // medians of one size, and of one technique
     if (context_.window() != nullptr) return;
     screenImage_ = Texture({GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, 4}, width, height);
     screenTarget_ = Framebuffer({&screenImage_}, nullptr);
@@ -158,6 +159,7 @@ void App::choose(const Settings& settings) {
         indirect_.choose(settings);
         message_.clear();
         debugViews_.clear();  // their names go with the technique
+        timings_.restart();
     } catch (const std::exception& error) {
         message_ = error.what();
     }
