@@ -25,6 +25,7 @@ started=$SECONDS
 lightwell_need "build and test" "${LIGHTWELL_LIBRARY_PACKAGES[@]}" "${LIGHTWELL_SAMPLE_PACKAGES[@]}" \
     "${LIGHTWELL_TEST_PACKAGES[@]}" || exit 2
 lightwell_want "extra suites" "${LIGHTWELL_TEST_TOOLS[@]}"
+lightwell_want "the viewer" "${LIGHTWELL_VIEWER_PACKAGES[@]}"
 
 # --- environment: nobody's settings but ours --------------------------------------------------------
 scenes=${LIGHTWELL_SCENES:-}

@@ -8,17 +8,14 @@
 #include <stdexcept>
 
 #include <fmt/format.h>
-#include <glm/gtc/matrix_transform.hpp>
 
 #include "gbuffer.h"
 #include "parallel.h"
-#include "sun_fit.h"
+#include "rsm_cameras.h"
 
 namespace studio {
 namespace {
 
-// A frustum this wide spends its texels at the rim; wider spots are drawn as faces of a cube.
-constexpr float kWidestFrustum = 75.0f * kPi / 180.0f;
 constexpr float kFar = std::numeric_limits<float>::infinity();
 
 Rsm makeRsm(int size) {
@@ -38,20 +35,13 @@ void store(Rsm& rsm, int x, int y, const Hit& hit, const glm::vec3& direction,
     rsm.flux.setRgb(x, y, hit.albedo * incident);
 }
 
-glm::dmat4 viewOf(const LightAxes& axes, const glm::dvec3& eye) {
-    const glm::dmat3 rows = glm::transpose(glm::dmat3(axes.right, axes.up, axes.back));
-    glm::dmat4 view(rows);
-    view[3] = glm::dvec4(-(rows * eye), 1.0);
-    return view;
-}
-
 Rsm renderSun(const RayScene& scene, const Light& light, const SunFit& fit, const SunRect& rect,
               int size) {
     Rsm rsm = makeRsm(size);
     const LightAxes axes(light.direction);
-    rsm.view = glm::mat4(viewOf(axes, axes.back * fit.nearBack));
-    rsm.projection = glm::mat4(glm::orthoRH_ZO(rect.lower.x, rect.upper.x, rect.lower.y, rect.upper.y,
-                                               0.0, fit.nearBack - fit.farBack));
+    const RsmCamera camera = rsmCamera(fit, rect, axes);
+    rsm.view = camera.view;
+    rsm.projection = camera.projection;
     const glm::dvec2 texel = rect.size() / double(size);
     const glm::vec3 incident = light.emitted * float(texel.x * texel.y);
     parallelRows(size, [&](int y) {
@@ -78,18 +68,13 @@ void cutFootprint(Rsm& coarse, const SunRect& rect, const SunRect& finer) {
         }
 }
 
-Rsm renderFrustum(const RayScene& scene, const Light& light, const LightAxes& axes, double halfAngle,
-                  int size) {
+Rsm renderFrustum(const RayScene& scene, const Light& light, const RsmFrustum& frustum, int size) {
     Rsm rsm = makeRsm(size);
-    const double tangent = std::tan(halfAngle);
-    const glm::dvec3 eye(light.position);
-    // Clip planes for depth outputs only: the farthest corner of the scene, and a share of that.
-    glm::vec3 lower, upper;
-    scene.boundsAlong(glm::mat3(1.0f), lower, upper);
-    const double farPlane =
-        glm::length(glm::max(glm::abs(eye - glm::dvec3(lower)), glm::abs(eye - glm::dvec3(upper))));
-    rsm.view = glm::mat4(viewOf(axes, eye));
-    rsm.projection = glm::mat4(glm::perspectiveRH_ZO(2.0 * halfAngle, 1.0, 1e-4 * farPlane, farPlane));
+    const LightAxes& axes = frustum.axes;
+    const double tangent = std::tan(frustum.halfAngle);
+    const RsmCamera camera = rsmCamera(scene, light.position, frustum);
+    rsm.view = camera.view;
+    rsm.projection = camera.projection;
     const double areaAtUnit = 4.0 * tangent * tangent / (double(size) * size);
     parallelRows(size, [&](int y) {
         for (int x = 0; x < size; ++x) {
@@ -117,23 +102,6 @@ std::vector<Rsm> renderSuns(const RayScene& scene, const Light& light, const Rsm
     return rsms;
 }
 
-// Cube around the light; the first face looks along `forward`, the last the other way.
-std::vector<Rsm> renderFaces(const RayScene& scene, const Light& light, const glm::vec3& forward,
-                             int faces, int size) {
-    const LightAxes cube(forward);
-    // Each face's "up" is an axis of the cube too, so that the faces tile the sphere.
-    const LightAxes axes[6] = {cube,
-                               {cube.right, cube.up},
-                               {-cube.right, cube.up},
-                               {cube.up, cube.back},
-                               {-cube.up, -cube.back},
-                               {cube.back, cube.up}};
-    std::vector<Rsm> rsms;
-    for (int i = 0; i < faces; ++i)
-        rsms.push_back(renderFrustum(scene, light, axes[i], 0.25 * double(kPi), size));
-    return rsms;
-}
-
 }  // namespace
 
 std::vector<Rsm> renderRsms(const RayScene& scene, const Light& light, const RsmOptions& options) {
@@ -152,13 +120,9 @@ std::vector<Rsm> renderRsms(const RayScene& scene, const Light& light, const Rsm
         throw std::runtime_error(
             fmt::format("cascades of light \"{}\": expected 1 (only suns have more), got {}", light.name,
                         options.cascades));
-    if (light.kind == LightKind::Point)
-        return renderFaces(scene, light, {0.0f, 0.0f, -1.0f}, 6, options.size);
-    if (light.outerCone > kWidestFrustum)
-        return renderFaces(scene, light, light.direction, 5, options.size);
     std::vector<Rsm> rsms;
-    rsms.push_back(
-        renderFrustum(scene, light, LightAxes(light.direction), double(light.outerCone), options.size));
+    for (const RsmFrustum& frustum : rsmFrustums(light))
+        rsms.push_back(renderFrustum(scene, light, frustum, options.size));
     return rsms;
 }
 

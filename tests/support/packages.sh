@@ -25,6 +25,10 @@ LIGHTWELL_TEST_PACKAGES=(catch2 libbenchmark-dev)
 LIGHTWELL_TEST_TOOLS=(oclgrind doxygen mesa-opencl-icd python3 python3-matplotlib python3-cffi
     node-d3)
 
+# The viewer (samples/viewer): without them it is not built, and its suite is left out.
+# shellcheck disable=SC2034
+LIGHTWELL_VIEWER_PACKAGES=(libglfw3-dev libepoxy-dev libimgui-dev libegl1 libgl1-mesa-dri)
+
 lightwell_say() { printf 'lightwell: %s\n' "$*"; }
 lightwell_complain() { printf 'lightwell: %s\n' "$*" >&2; }
 
