@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ._errors import InvalidArgumentError
 
 Kind = TypeVar("Kind")
-Choice = TypeVar("Choice", bound=enum.IntEnum)
+Choice = TypeVar("Choice", enum.IntEnum, enum.IntFlag)
 
 
 def whole(value: Any, name: str, low: int = 0, high: int = 2**32 - 1) -> int:

@@ -118,7 +118,12 @@ class Technique(Handle):
         struct = new_struct("LWOutput", kept)
         width, height = instance(view, View, "view").size
         made = {name: _target(getattr(struct, name), want, height, width, name, kept) for name, want in wanted.items()}
-        self._call(lib.lwRender, view, kept, view.handle, gbuffer_struct(gbuffer, kept), struct)
+        given = Kept()
+        inputs = gbuffer_struct(gbuffer, given)
+        _check_memory(made, given)
+        kept.objects += given.objects
+        kept.copied += given.copied
+        self._call(lib.lwRender, view, kept, view.handle, inputs, struct)
         if wait:
             self.device.finish()
         return Output(made["irradiance"], made["validity"], made["ambientOcclusion"], made["specularRadiance"], made["shadow"],
@@ -198,6 +203,30 @@ class Technique(Handle):
 
 def _ms(milliseconds: float) -> Optional[float]:
     return None if milliseconds < 0.0 else milliseconds
+
+
+_MAX_WORK: Any = 10000  # steps of its search: microseconds
+
+
+def _share(one: Array, other: Array) -> bool:
+    if not np.may_share_memory(one, other):
+        return False
+    try:
+        return bool(np.shares_memory(one, other, max_work=_MAX_WORK))
+    except RuntimeError:  # NumPy's TooHardError: strides for which it is not soon said
+        return False
+
+
+def _check_memory(made: Dict[str, Any], given: Kept) -> None:
+    """Refuses outputs that share memory with each other or with an input, which the device reads while it writes."""
+    arrays = [(name, each.array if isinstance(each, Image) else each) for name, each in made.items()]
+    outputs = [(name, each) for name, each in arrays if each is not None]
+    inputs = [each for each in given.objects if isinstance(each, np.ndarray)]
+    for index, (name, output) in enumerate(outputs):
+        shared = [f"output.{other}" for other, array in outputs[:index] if _share(output, array)]
+        shared += ["an input" for array in inputs if _share(output, array)]
+        if shared:
+            raise InvalidArgumentError(f"output.{name}: expected memory of its own, got some of {shared[0]}")
 
 
 _COLOURS = ("irradiance", "specularRadiance", "refractedRadiance")
