@@ -45,6 +45,15 @@ class Errors(Contract):
         self.assertEqual(pictures[0], pictures[2])
         self.assertNotEqual(pictures[0], pictures[3])
 
+    def test_a_switch_with_three_positions(self):
+        parameter = lw.describe_techniques()["cone_tracing"].parameters["normal_aware"]
+        self.assertEqual(parameter.choices, ("off", "on", "two_sided"))
+        for value in (True, False, np.True_, "on", "off", "two_sided", 2, np.int64(1)):
+            self.device.technique("cone_tracing", normal_aware=value).close()
+        for value in (3, -1, "auto", 1.0, None):
+            with self.subTest(value), self.refused("normal_aware: expected one of off, on, two_sided"):
+                self.device.technique("cone_tracing", normal_aware=value)
+
     def test_arrays(self):
         gbuffer = scenes.floor()
         self.technique.update(scenes.frame())
