@@ -127,6 +127,7 @@ const std::map<std::string, std::function<std::vector<Candidate>(const Place&)>>
         {"--techniques", [](const Place& place) { return variants(place.typed); }},
         {"--set", [](const Place& place) { return assignments(technique(place.before), place.typed); }},
         {"--only", [](const Place& place) { return assignments("", place.typed); }},
+        {"--sweep", [](const Place& place) { return assignments(technique(place.before), place.typed); }},
         {"--plant", [](const Place&) { return plantNames(); }},
         {"--quantity", quantities},
         {"--weighting", [](const Place&) { return named({"cosine", "uniform"}); }},
@@ -141,7 +142,10 @@ const std::map<std::string, std::function<std::vector<Candidate>(const Place&)>>
 }
 
 // Options whose values are paths.
-bool takesFile(const std::string& name) {
+bool takesFile(const std::string& command, const std::string& name) {
+    // `gi` works from files where others have scenes.
+    static const Words given = {"--gbuffer", "--camera", "--rsm", "--light", "--truth"};
+    if (command == "gi" && std::find(given.begin(), given.end(), name) != given.end()) return true;
     static const Words paths = {"SCENE", "--scenes", "IMAGE", "RENDER", "REFERENCE", "--out", "--overlay", "--png", "--maps", "--vpls", "--vpls-out",
                                 "--checkpoint", "--compare", "--truth-cache"};
     return std::find(paths.begin(), paths.end(), name) != paths.end();
@@ -183,7 +187,7 @@ Completions valuesFor(const CLI::Option* option, const Place& place) {
     const std::string name = option->get_positional() ? option->get_name(true) : "--" + option->get_lnames().at(0);
     const auto table = valueTables().find(name);
     if (table != valueTables().end()) result.words = table->second(place);
-    result.files = takesFile(name);
+    result.files = takesFile(place.command, name);
     return result;
 }
 

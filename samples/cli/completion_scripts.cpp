@@ -10,12 +10,13 @@
 namespace cli {
 namespace {
 
-// The line is split here anew: bash takes "key=value" for three words, and replaces only what stands behind the "=".
+// The line is split here anew: bash takes "key=value" for three words, and replaces only what stands behind the "=". Backslashes are
+// read as the line has them, so that names with spaces are whole.
 constexpr char kBash[] = R"sh(# bash completion for lightwell: written by `lightwell completion bash`
 _lightwell() {
     local line=${COMP_LINE:0:COMP_POINT} words current reply candidate
-    read -ra words <<<"$line"
-    case $line in *[[:space:]]) words+=("") ;; esac
+    read -a words <<<"$line"
+    case $line in *\\[[:space:]]) ;; *[[:space:]]) words+=("") ;; esac
     current=${words[${#words[@]}-1]}
     COMPREPLY=()
     while IFS= read -r reply; do

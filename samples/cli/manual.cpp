@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <map>
 #include <sstream>
 
 #include "cli.h"
@@ -10,18 +11,20 @@
 namespace cli {
 namespace {
 
-// Text for roff: no escapes, no requests at a line's start, and "-" as one that can be searched for and copied.
+// Text for roff: no escapes, no requests at a line's start, and what it would turn into typographic signs as characters that can be
+// searched for and copied.
 std::string roff(const std::string& text) {
+    static const std::map<char, const char*> escapes = {{'\\', "\\e"},   {'-', "\\-"},    {'\'', "\\(aq"}, {'`', "\\(ga"},
+                                                        {'^', "\\(ha"}, {'~', "\\(ti"}, {'"', "\\(dq"}};
     std::string result;
     for (const char c : text) {
-        if (c == '\\')
-            result += "\\e";
-        else if (c == '-')
-            result += "\\-";
-        else
+        const auto escape = escapes.find(c);
+        if (escape == escapes.end())
             result += c;
+        else
+            result += escape->second;
     }
-    if (!result.empty() && (result[0] == '.' || result[0] == '\'')) result.insert(0, "\\&");
+    if (!result.empty() && result[0] == '.') result.insert(0, "\\&");
     return result;
 }
 

@@ -1,6 +1,8 @@
 """Turns lightwell.h into the table that cffi calls the library by: nothing of the header is copied by hand.
 
-    python3 bind_header.py include/lightwell/lightwell.h OUT.py     needs cffi, and no compiler
+    python3 bind_header.py include/lightwell/lightwell.h OUT.py ABI     needs cffi, and no compiler
+
+ABI: the number in the library's name, LIGHTWELL_ABI of CMakeLists.txt.
 """
 import re
 import sys
@@ -28,7 +30,7 @@ def functions(header: str) -> list:
 
 
 def main(arguments: list) -> int:
-    if len(arguments) != 2:
+    if len(arguments) != 3 or not arguments[2].isdigit():
         print(__doc__, file=sys.stderr)
         return 2
     import cffi
@@ -39,6 +41,8 @@ def main(arguments: list) -> int:
     builder.cdef(text)
     builder.set_source("lightwell._header", None)
     builder.emit_python_code(arguments[1])
+    with open(arguments[1], "a", encoding="utf-8") as file:
+        file.write(f"ABI = {arguments[2]}\n")
     return 0
 
 

@@ -53,7 +53,8 @@ class Complete(CommandLine):
         program = script + ('\nset_=()\ncompopt() { set_+=("$2"); }\nCOMP_LINE=$1 COMP_POINT=${#1}\n_lightwell "$2"\n'
                             'printf "%s\\n" "${COMPREPLY[@]}"\nprintf "%s\\n" "${set_[@]}" >&2\n')
         with tempfile.TemporaryDirectory() as folder:
-            open(os.path.join(folder, "picture.exr"), "w").close()
+            for name in ("picture.exr", "two words.exr"):
+                open(os.path.join(folder, name), "w").close()
             done = subprocess.run(["bash", "-c", program, "bash", line, PROGRAM], cwd=folder, capture_output=True, text=True)
         return done.stdout.split("\n")[:-1], done.stderr.split()
 
@@ -63,6 +64,9 @@ class Complete(CommandLine):
         self.assertEqual(self.bash("lightwell render --technique rsm --set interleave=")[0], ["1", "2", "4", "8"])
         self.assertEqual(self.bash("lightwell render --technique=rs")[0], ["rsm"])
         self.assertEqual(self.bash("lightwell compare pic"), (["picture.exr"], ["filenames"]))
+        self.assertEqual(self.bash("lightwell compare two\\ wo"), (["two words.exr"], ["filenames"]))
+        self.assertEqual(self.bash("lightwell compare two\\ "), (["two words.exr"], ["filenames"]))
+        self.assertEqual(self.bash("lightwell visibility cornell --technique ssvp --sweep visibility=h")[0], ["hard"])
         self.assertEqual(self.bash("lightwell render --out=pic")[0], ["picture.exr"])
         self.assertIn("cornell", self.bash("lightwell render ")[0])  # the word being typed is empty
 
@@ -108,7 +112,9 @@ zpty -d typing
 class Manual(CommandLine):
     def test_it_has_all_that_help_has(self):
         page = self.done("manual").stdout
-        plain = page.replace("\\-", "-").replace("\\e", "\\").replace("\\&", "")
+        for escape, character in (("-", "-"), ("&", ""), ("(aq", "'"), ("(ga", "`"), ("(ha", "^"), ("(ti", "~"), ("(dq", '"'), ("e", "\\")):
+            page = page.replace("\\" + escape, character)
+        plain = page
         self.assertTrue(page.startswith('.TH LIGHTWELL 1 "" "lightwell '))
         commands = self.done("complete", "").stdout.splitlines()
         for command in (line.split("\t")[0] for line in commands):
@@ -126,6 +132,9 @@ class Manual(CommandLine):
     def test_roff_takes_it(self):
         done = subprocess.run(["groff", "-man", "-ww", "-b", "-z", "-Tutf8"], input=self.done("manual").stdout, capture_output=True, text=True)
         self.assertEqual([line for line in done.stderr.splitlines() if "can't break line" not in line and "cannot break" not in line], [])
+        read = subprocess.run(["groff", "-man", "-Tutf8", "-P-cbou"], input=self.done("manual").stdout, capture_output=True, text=True).stdout
+        self.assertRegex(read, r"with n\^2")  # characters that can be copied, no typographic signs
+        self.assertNotRegex(read, "[\u2018\u2019\u02c6\u02dc]")
 
 
 if __name__ == "__main__":

@@ -1,13 +1,16 @@
 """The package and lightwell.h say the same: every public function is bound or left out on purpose, enumerations and fields have the
 header's names and values, and docs/python.md lists what stands for what."""
+import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
+import tempfile
 import unittest
 
 import lightwell as lw
-from lightwell import _frame
+from lightwell import _frame, _library
 from lightwell._library import ffi, lib
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -98,16 +101,39 @@ class Header(unittest.TestCase):
             self.assertEqual([dtype.fields[name][1] for name in dtype.names], [field.offset for _, field in ffi.typeof(struct).fields])
 
 
+class Library(unittest.TestCase):
+    def importing(self, library, package=None):
+        folder = str(package or pathlib.Path(lw.__file__).resolve().parents[1])
+        done = subprocess.run([sys.executable, "-B", "-c", "import lightwell"], env=dict(os.environ, PYTHONPATH=folder, LIGHTWELL_LIBRARY=str(library)),
+                              stderr=subprocess.PIPE, text=True)
+        return done.stderr.splitlines()[-1] if done.returncode else ""
+
+    def test_what_is_no_library(self):
+        self.assertRegex(self.importing("/nonexistent.so"), "^ImportError: lightwell: cannot open /nonexistent.so")
+        self.assertRegex(self.importing("libc.so.6"), "^ImportError: lightwell: expected Lightwell's library, got libc.so.6")
+
+    def test_a_library_of_another_version(self):
+        library = pathlib.Path(os.environ.get("LIGHTWELL_LIBRARY") or pathlib.Path(lw.__file__).with_name(_library.FILE_NAME)).resolve()
+        self.assertEqual(self.importing(library), "")
+        with tempfile.TemporaryDirectory() as folder:
+            shutil.copytree(pathlib.Path(lw.__file__).parent, pathlib.Path(folder, "lightwell"), ignore=shutil.ignore_patterns("*.so*", "__pycache__"))
+            header = pathlib.Path(folder, "lightwell.h")
+            header.write_text(HEADER.replace("#define LW_VERSION_MAJOR 0", "#define LW_VERSION_MAJOR 7"))
+            made = subprocess.run([sys.executable, str(ROOT / "samples/python/bind_header.py"), str(header), str(pathlib.Path(folder, "lightwell/_header.py")), "0"],
+                                  stdout=subprocess.DEVNULL)
+            self.assertEqual(made.returncode, 0)
+            self.assertRegex(self.importing(library, folder), r"^ImportError: lightwell: expected a library of version 7\.\d+\.\d+, got ")
+
+
 class Documents(unittest.TestCase):
     def test_programs_are_shown_as_they_are(self):
         program = (ROOT / "samples/python/examples/ten_lines.py").read_text()
         self.assertIn("```python\n" + program + "```", (ROOT / "README.md").read_text())
-        self.assertLessEqual(len(program.splitlines()), 14)
+        self.assertLessEqual(len(program.splitlines()), 10)
         for path, code in re.findall(r"<!-- file: (\S+\.py) -->\n```python\n(.*?)```", PAGE, re.S):
             self.assertEqual(code, (ROOT / path).read_text(), path)
 
     def test_examples_run(self):
-        import tempfile
         for name in ("ten_lines.py", "room.py"):
             with self.subTest(name), tempfile.TemporaryDirectory() as folder:
                 small = ["--size", "64x48", "--technique", "rsm vpls=64"] if name == "room.py" else []

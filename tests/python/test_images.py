@@ -79,8 +79,9 @@ class Layouts(unittest.TestCase):
             with self.subTest(dtype=array.dtype, shape=array.shape):
                 with self.assertRaisesRegex(lw.InvalidArgumentError, r"image: expected .*, got \S+ \("):
                     placed(array)
-        with self.assertRaisesRegex(lw.InvalidArgumentError, "image: expected a NumPy array, got list"):
-            placed([[1, 2, 3]])
+        for other in ([[1, 2, 3]], np.float32(1), np.ma.masked_array(good, mask=good > 1)):  # a mask would be passed over
+            with self.assertRaisesRegex(lw.InvalidArgumentError, "image: expected a NumPy array, got (list|float32|MaskedArray)"):
+                placed(other)
         with self.assertRaisesRegex(lw.InvalidArgumentError, "image: expected an array of format OCT16X2, got one of FLOAT3"):
             placed(good, format=lw.Format.OCT16X2)
         with self.assertRaisesRegex(lw.InvalidArgumentError, "image: expected format, width and height beside cl_mem"):

@@ -10,6 +10,8 @@ import numpy as np
 
 import lightwell as lw
 import scenes
+from lightwell._frame import frame_struct
+from lightwell._images import Kept
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
@@ -68,6 +70,18 @@ class Light(unittest.TestCase):
         sums = (bounded[..., np.newaxis] * rsm.flux.reshape(1, -1, 3)).sum(1).reshape(scenes.N, scenes.N, 3)
         np.testing.assert_allclose(irradiance, sums, rtol=1e-5)
         self.assertAlmostEqual(float(irradiance[..., 0].mean()), 0.20004, delta=1e-3)
+
+    def test_the_worlds_origin(self):
+        # Three doubles, to the last bit; what is relative to another point gets the same light.
+        origin = (1e9 + 0.125, -3.5, 2.0**-40)
+        self.assertEqual(tuple(frame_struct(lw.Frame(world_origin=origin), Kept()).worldOrigin), origin)
+        technique, pictures = self.device.technique("rsm", vpls=0, interleave=1), []
+        for world_origin in ((0, 0, 0), np.array(origin)):
+            frame = scenes.frame()
+            frame.world_origin = world_origin
+            technique.update(frame)
+            pictures.append(technique.render(self.device.view(scenes.N, scenes.N), scenes.floor()).irradiance.tobytes())
+        self.assertEqual(pictures[0], pictures[1])
 
     def test_points_and_harmonics(self):
         technique = all_texels(self.device)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ._arguments import instance, numbers
 from ._errors import InvalidArgumentError
 
 
@@ -20,8 +21,8 @@ class Camera:
 
 
 def _vector(values: ArrayLike, name: str) -> NDArray[np.float64]:
-    vector = np.asarray(values, np.float64)
-    if vector.shape != (3,) or not np.isfinite(vector).all():
+    vector = numbers(values, (3,), name)
+    if not np.isfinite(vector).all():
         raise InvalidArgumentError(f"{name}: expected three finite numbers, got {values!r}")
     return vector
 
@@ -67,8 +68,6 @@ def orthographic(width: float, height: float, near: float = 0.0, far: float = 10
 def fill_camera(target: Any, camera: "Camera | None", name: str) -> None:
     if camera is None:
         return
+    instance(camera, Camera, name)
     for field in ("view", "projection"):
-        matrix = np.asarray(getattr(camera, field), np.float64)
-        if matrix.shape != (4, 4):
-            raise InvalidArgumentError(f"{name}.{field}: expected a 4 x 4 matrix, got shape {matrix.shape}")
-        getattr(target, field)[0:16] = matrix.ravel().tolist()
+        getattr(target, field)[0:16] = numbers(getattr(camera, field), (4, 4), f"{name}.{field}").ravel().tolist()

@@ -2,11 +2,13 @@
 from __future__ import annotations
 
 import dataclasses
+import os
 import traceback
-from typing import Any, Callable, List, Optional
+from typing import Any, Callable, List, Optional, Union
 
+from ._arguments import whole, words
 from ._enums import LogLevel
-from ._errors import InvalidArgumentError, check
+from ._errors import check
 from ._frame import Frame, frame_struct, new_struct
 from ._handles import Handle, InFlight, finish_and_release, release_deferred
 from ._images import Kept
@@ -89,21 +91,20 @@ class Device(Handle):
     _what = "device"
 
     def __init__(self, selector: Optional[str] = None, *, width: int = 0, max_compute_units: int = 0, profiling: bool = True,
-                 cache_directory: Optional[str] = None, log: Optional[Log] = None) -> None:
+                 cache_directory: "Union[str, os.PathLike[str], None]" = None, log: Optional[Log] = None) -> None:
         """`width`: lanes per work-item, 0: by probe. `cache_directory`: of compiled kernels; "": none. `log` is called as
         log(level, message) and must not call Lightwell; without it warnings and errors go to stderr."""
         release_deferred()
         desc = new_struct("LWDeviceDesc")
         lib.lwDefaultDevice(desc)
         kept = []
-        for field, value in (("selector", selector), ("cacheDirectory", cache_directory)):
+        directory = None if cache_directory is None else os.fspath(cache_directory)
+        for name, field, value in (("selector", "selector", selector), ("cache_directory", "cacheDirectory", directory)):
             if value is not None:
-                kept.append(ffi.new("char[]", value.encode()))
+                kept.append(ffi.new("char[]", words(value, name)))
                 setattr(desc, field, kept[-1])
-        for name, number in (("width", width), ("max_compute_units", max_compute_units)):
-            if not 0 <= number < 2**32:
-                raise InvalidArgumentError(f"{name}: expected 0 or more, got {number}")
-        desc.width, desc.maxComputeUnits, desc.noProfiling = width, max_compute_units, int(not profiling)
+        desc.width, desc.maxComputeUnits = whole(width, "width"), whole(max_compute_units, "max_compute_units")
+        desc.noProfiling = int(not profiling)
         callback = _log_callback(log) if log is not None else None
         if callback is not None:
             desc.log = callback
@@ -155,10 +156,10 @@ class Device(Handle):
         kept = Kept()
         desc = descriptor(name, settings, kept)
         view = new_struct("LWViewDesc", kept)
-        view.maxWidth, view.maxHeight = width, height
+        view.maxWidth, view.maxHeight = whole(width, "width"), whole(height, "height")
         size = ffi.new("uint64_t*")
         if frame is None:
-            check(lib.lwEstimateMemory(self.handle, name.encode(), desc, view, rsm_texels, size), self.handle)
+            check(lib.lwEstimateMemory(self.handle, name.encode(), desc, view, whole(rsm_texels, "rsm_texels", high=2**64 - 1), size), self.handle)
         else:
             struct = frame_struct(frame, kept)
             check(lib.lwEstimateFrameMemory(self.handle, name.encode(), desc, view, struct, size), self.handle)

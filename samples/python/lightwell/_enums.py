@@ -117,3 +117,4 @@ class InputFault(enum.IntEnum):
     SPACES_DIFFER = 32
     UNITS_DIFFER = 33
     LIGHT_CAMERA = 34
+    FAR_FROM_ORIGIN = 35

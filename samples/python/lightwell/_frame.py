@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING, Any, Optional, Sequence, Tuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ._arguments import choice, instance, numbers, real, sequence, whole
 from ._camera import Camera, fill_camera
 from ._enums import DepthKind, LightKind, Receivers
 from ._errors import InvalidArgumentError
-from ._images import Array, ImageLike, Kept, describe, fill_image
+from ._images import Array, ImageLike, Kept, describe, fill_image, plain_array
 from ._library import ffi
 from ._records import BLOCKER, STATIC_VPL, VPL, records_pointer
 
@@ -110,7 +111,8 @@ class Geometry:
 @dataclasses.dataclass(eq=False)
 class Frame:
     """What `Technique.update` takes: the world part, once per frame. `vpls`, `static_vpls` and `blockers` are structured arrays
-    (`vpls()`, `static_vpls()` and `blockers()` make them); `source_views` are pairs of a view and its G-buffer."""
+    (`vpls()`, `static_vpls()` and `blockers()` make them); `source_views` are pairs of a view and its G-buffer. All positions and
+    matrices are relative to `world_origin`, three numbers that keep their 53 bits."""
 
     lights: Sequence[Light] = ()
     vpls: Optional[Array] = None
@@ -120,6 +122,7 @@ class Frame:
     geometry: Optional[Geometry] = None
     environment: Vector = _ORIGIN
     focus: Optional[Vector] = None
+    world_origin: Vector = _ORIGIN
     index: int = 0
     reset: bool = False
 
@@ -138,17 +141,14 @@ def new_struct(kind: str, kept: Optional[Kept] = None) -> Any:
 
 
 def fill_vector(target: Any, values: Any, name: str) -> None:
-    numbers = np.asarray(values, np.float64)
-    if numbers.shape != (3,):
-        raise InvalidArgumentError(f"{name}: expected three numbers, got {values!r}")
-    target[0:3] = numbers.tolist()
+    target[0:3] = numbers(values, (3,), name).tolist()
 
 
 _PIXELS = ("position", "depth", "normal", "albedo", "direct_radiance", "roughness", "motion", "receive_mask", "baked_mask", "flux")
 
 
 def _fill_pictures(target: Any, source: Any, name: str, kept: Kept) -> None:
-    target.depthKind = int(DepthKind(source.depth_kind))
+    target.depthKind = choice(DepthKind, source.depth_kind, f"{name}.depth_kind")
     for field in _PIXELS:
         if hasattr(source, field):
             fill_image(getattr(target, camel(field)), getattr(source, field), f"{name}.{field}", kept)
@@ -156,8 +156,7 @@ def _fill_pictures(target: Any, source: Any, name: str, kept: Kept) -> None:
 
 
 def gbuffer_struct(gbuffer: GBuffer, kept: Kept, name: str = "gbuffer") -> Any:
-    if not isinstance(gbuffer, GBuffer):
-        raise InvalidArgumentError(f"{name}: expected a GBuffer, got {type(gbuffer).__name__}")
+    instance(gbuffer, GBuffer, name)
     struct = new_struct("LWGBuffer", kept)
     _fill_pictures(struct, gbuffer, name, kept)
     fill_camera(struct.previousCamera, gbuffer.previous_camera, f"{name}.previous_camera")
@@ -166,7 +165,7 @@ def gbuffer_struct(gbuffer: GBuffer, kept: Kept, name: str = "gbuffer") -> Any:
 
 def _floats(values: Any, name: str, kept: Kept, columns: int = 0, kind: str = "float32") -> Tuple[Any, int]:
     """A packed array in host memory for as long as the call lasts: its pointer and its length."""
-    array = np.asarray(values) if not isinstance(values, np.ndarray) else values
+    array = plain_array(values, name)
     right_shape = array.ndim == 2 and array.shape[1] == columns if columns else array.ndim == 1
     if array.dtype != np.dtype(kind) or not right_shape:
         wanted = f"(n, {columns})" if columns else "(n,)"
@@ -179,23 +178,22 @@ def _floats(values: Any, name: str, kept: Kept, columns: int = 0, kind: str = "f
 
 
 def _fill_light(target: Any, light: Light, name: str, kept: Kept) -> None:
-    if not isinstance(light, Light):
-        raise InvalidArgumentError(f"{name}: expected a Light, got {type(light).__name__}")
+    instance(light, Light, name)
     target.structSize = ffi.sizeof("LWLight")
-    target.kind = int(LightKind(light.kind))
+    target.kind = choice(LightKind, light.kind, f"{name}.kind")
     for field in ("position", "direction", "irradiance", "radiant_intensity"):
         fill_vector(getattr(target, camel(field)), getattr(light, field), f"{name}.{field}")
-    target.innerConeAngle, target.outerConeAngle = light.inner_cone_angle, light.outer_cone_angle
-    target.mask, target.receivers = light.mask, int(light.receivers)
+    target.innerConeAngle = real(light.inner_cone_angle, f"{name}.inner_cone_angle")
+    target.outerConeAngle = real(light.outer_cone_angle, f"{name}.outer_cone_angle")
+    target.mask, target.receivers = whole(light.mask, f"{name}.mask"), choice(Receivers, light.receivers, f"{name}.receivers")
     if light.profile is not None:
         target.profile, target.profileCount = _floats(light.profile, f"{name}.profile", kept)
     if light.hit is not None:
         target.hit = kept.add(ffi.new("float[3]"))
         fill_vector(target.hit, light.hit, f"{name}.hit")
-    rsms = kept.add(ffi.new("LWRsm[]", len(light.rsms)))
+    rsms = kept.add(ffi.new("LWRsm[]", len(sequence(light.rsms, f"{name}.rsms", "Rsm"))))
     for index, rsm in enumerate(light.rsms):
-        if not isinstance(rsm, Rsm):
-            raise InvalidArgumentError(f"{name}.rsms[{index}]: expected an Rsm, got {type(rsm).__name__}")
+        instance(rsm, Rsm, f"{name}.rsms[{index}]")
         rsms[index].structSize = ffi.sizeof("LWRsm")
         _fill_pictures(rsms[index], rsm, f"{name}.rsms[{index}]", kept)
     target.rsms, target.rsmCount = rsms, len(light.rsms)
@@ -203,14 +201,16 @@ def _fill_light(target: Any, light: Light, name: str, kept: Kept) -> None:
 
 def _surfels(array: Array, name: str) -> Array:
     """(n, 3) or (n,) as one row of pixels."""
-    if not isinstance(array, np.ndarray):
-        raise InvalidArgumentError(f"{name}: expected a NumPy array, got {type(array).__name__}")
+    array = plain_array(array, name)
+    if array.ndim not in (1, 2):
+        raise InvalidArgumentError(f"{name}: expected float32 (n, 3) or (n,), got {describe(array)}")
     return array[np.newaxis]
 
 
 def _geometry_struct(geometry: Geometry, kept: Kept) -> Any:
+    instance(geometry, Geometry, "frame.geometry")
     struct = new_struct("LWGeometry", kept)
-    struct.version = geometry.version
+    struct.version = whole(geometry.version, "frame.geometry.version", high=2**64 - 1)
     for field in ("surfel_position", "surfel_normal", "surfel_albedo", "surfel_emission", "surfel_area"):
         array = getattr(geometry, field)
         if array is not None:
@@ -234,26 +234,34 @@ def _geometry_struct(geometry: Geometry, kept: Kept) -> Any:
     return struct
 
 
+def _sources(frame: Frame, kept: Kept) -> Tuple[Any, int]:
+    pairs = sequence(frame.source_views, "frame.source_views", "pairs of a View and its GBuffer")
+    sources = kept.add(ffi.new("LWSourceView[]", len(pairs)))
+    for index, pair in enumerate(pairs):
+        name = f"frame.source_views[{index}]"
+        if not isinstance(pair, tuple) or len(pair) != 2 or getattr(pair[0], "_what", "") != "view":
+            raise InvalidArgumentError(f"{name}: expected a pair of a View and its GBuffer, got {pair!r}")
+        sources[index].view = pair[0].handle
+        sources[index].gbuffer = gbuffer_struct(pair[1], kept, f"{name}.gbuffer")
+    return sources, len(pairs)
+
+
 def frame_struct(frame: Frame, kept: Kept) -> Any:
-    if not isinstance(frame, Frame):
-        raise InvalidArgumentError(f"frame: expected a Frame, got {type(frame).__name__}")
+    instance(frame, Frame, "frame")
     struct = new_struct("LWFrame", kept)
-    struct.reset, struct.frameIndex = int(frame.reset), frame.index
-    lights = kept.add(ffi.new("LWLight[]", len(frame.lights)))
+    struct.reset, struct.frameIndex = int(bool(frame.reset)), whole(frame.index, "frame.index", high=2**64 - 1)
+    lights = kept.add(ffi.new("LWLight[]", len(sequence(frame.lights, "frame.lights", "Light"))))
     for index, light in enumerate(frame.lights):
         _fill_light(lights[index], light, f"frame.lights[{index}]", kept)
     struct.lights, struct.lightCount = lights, len(frame.lights)
     struct.vpls, struct.vplCount = records_pointer(frame.vpls, "LWVpl", VPL, "frame.vpls", kept)
     struct.staticVpls, struct.staticVplCount = records_pointer(frame.static_vpls, "LWStaticVpl", STATIC_VPL, "frame.static_vpls", kept)
     struct.blockers, struct.blockerCount = records_pointer(frame.blockers, "LWBlocker", BLOCKER, "frame.blockers", kept)
-    sources = kept.add(ffi.new("LWSourceView[]", len(frame.source_views)))
-    for index, (view, gbuffer) in enumerate(frame.source_views):
-        sources[index].view = view.handle
-        sources[index].gbuffer = gbuffer_struct(gbuffer, kept, f"frame.source_views[{index}].gbuffer")
-    struct.sourceViews, struct.sourceViewCount = sources, len(frame.source_views)
+    struct.sourceViews, struct.sourceViewCount = _sources(frame, kept)
     if frame.geometry is not None:
         struct.geometry = _geometry_struct(frame.geometry, kept)
     fill_vector(struct.environment, frame.environment, "frame.environment")
+    fill_vector(struct.worldOrigin, frame.world_origin, "frame.world_origin")
     if frame.focus is not None:
         struct.focus = kept.add(ffi.new("float[3]"))
         fill_vector(struct.focus, frame.focus, "frame.focus")

@@ -2,6 +2,7 @@
 the interpreter's end; and what commands in flight still read and write."""
 from __future__ import annotations
 
+import os
 import threading
 import weakref
 from typing import Any, Callable, List, Tuple, Type, TypeVar
@@ -13,19 +14,21 @@ from ._library import NULL, lib
 Self = TypeVar("Self", bound="Handle")
 
 # Handles whose owner was collected inside a log function, where the library takes no calls: with what must outlive them.
-_deferred: List[Tuple[Callable[[Any], int], Any, Any]] = []
+_deferred: List[Tuple[Callable[[Any], int], Any, Any, int]] = []
 
 
 def release_deferred() -> None:
     """Gives back what could not be at its time."""
     waiting, _deferred[:] = _deferred[:], []
-    for release, handle, kept in waiting:
-        _release(release, handle, kept)
+    for each in waiting:
+        _release(*each)
 
 
-def _release(release: Callable[[Any], int], handle: Any, kept: Any) -> None:
+def _release(release: Callable[[Any], int], handle: Any, kept: Any, process: int) -> None:
+    if os.getpid() != process:
+        return  # a fork: the driver's threads did not come along, and the handle is the parent's to give back
     if release(handle) == Status.REENTRANT:
-        _deferred.append((release, handle, kept))
+        _deferred.append((release, handle, kept, process))
 
 
 class InFlight:
@@ -67,14 +70,20 @@ class Handle:
 
     def __init__(self, handle: Any, release: Callable[[Any], int], kept: Any = None) -> None:
         self._handle = handle
-        self._end = weakref.finalize(self, _release, release, handle, kept)
+        self._process = os.getpid()
+        self._end = weakref.finalize(self, _release, release, handle, kept, self._process)
 
     @property
     def handle(self) -> Any:
         """The C handle, for calls through cffi. Raises where this is closed."""
         if self._handle == NULL:
             raise InvalidHandleError(f"{self._what}: expected an open one, got one that was closed")
+        if os.getpid() != self._process:
+            raise InvalidHandleError(f"{self._what}: expected one that this process made, got one from before a fork")
         return self._handle
+
+    def __reduce__(self) -> "str | Tuple[Any, ...]":
+        raise TypeError(f"{self._what}: a handle of this process cannot be copied or pickled; make another one")
 
     @property
     def closed(self) -> bool:

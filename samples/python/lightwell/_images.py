@@ -54,6 +54,13 @@ def describe(array: Array) -> str:
     return f"{array.dtype} {array.shape}"
 
 
+def plain_array(array: Any, name: str) -> Array:
+    """An array whose memory is all there is to it; a masked one's mask would be passed over."""
+    if not isinstance(array, np.ndarray) or isinstance(array, np.ma.MaskedArray):
+        raise InvalidArgumentError(f"{name}: expected a NumPy array, got {type(array).__name__}")
+    return array
+
+
 def _format_of(array: Array, name: str) -> Format:
     if array.ndim not in (2, 3):
         raise InvalidArgumentError(f"{name}: expected {_EXPECTED}, got {describe(array)}")
@@ -76,7 +83,7 @@ def _strides(array: Array) -> List[int]:
 
 def _layout(array: Array, format: Format) -> Optional[Tuple[Format, int, int, int]]:
     """Format, row, pixel and plane stride by which LWImage names the array's memory; None where it cannot."""
-    if array.size == 0 or not array.flags.aligned:
+    if not array.flags.aligned:
         return None
     height, width = array.shape[:2]
     row, pixel, channel = _strides(array)
@@ -143,14 +150,14 @@ def fill_image(target: Any, source: Optional[ImageLike], name: str, kept: Kept, 
             raise InvalidArgumentError(f"{name}: expected an array or cl_mem, got neither")
         _fill_cl(target, image, name)
         return
-    array = image.array
-    if not isinstance(array, np.ndarray):
-        raise InvalidArgumentError(f"{name}: expected a NumPy array, got {type(array).__name__}")
+    array = plain_array(image.array, name)
     format = _stated_format(image, _format_of(array, name), name)
+    if array.size == 0:
+        raise InvalidArgumentError(f"{name}: expected an array of one pixel or more, got {describe(array)}")
     if written and not array.flags.writeable:
         raise InvalidArgumentError(f"{name}: expected an array that may be written, got a read-only one")
     layout = _layout(array, format)
-    if layout is None and array.size and not written:
+    if layout is None and not written:
         array = np.array(array, order="C", copy=True)
         kept.copied += array.nbytes
         layout = _layout(array, format)

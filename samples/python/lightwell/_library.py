@@ -11,15 +11,15 @@ import sys
 from typing import Any
 
 try:
-    from ._header import ffi as _ffi  # written by bind_header.py when the package is built
+    from ._header import ABI as _ABI, ffi as _ffi  # written by bind_header.py when the package is built
 except ImportError as error:  # the source folder is no package yet
     raise ImportError("lightwell: expected lightwell/_header.py, which the build writes beside the library: "
                       "`pip install .` in Lightwell's root, or the folder build/<preset>/python on PYTHONPATH"
                       f" ({error})") from error
 
 ffi: Any = _ffi
-_NAMES = {"darwin": "liblightwell.0.dylib", "win32": "lightwell.dll"}
-FILE_NAME = _NAMES.get(sys.platform, "liblightwell.so.0")
+_NAMES = {"darwin": f"liblightwell.{_ABI}.dylib", "win32": "lightwell.dll"}
+FILE_NAME = _NAMES.get(sys.platform, f"liblightwell.so.{_ABI}")
 
 
 def _path() -> str:
@@ -37,6 +37,10 @@ def _open() -> Any:
     except OSError as error:
         raise ImportError(f"lightwell: cannot open {path}: {error}. An OpenCL loader (Debian: ocl-icd-libopencl1) must "
                           "be installed; LIGHTWELL_LIBRARY names another file") from error
+    try:
+        library.lwVersion
+    except (AttributeError, ffi.error) as error:
+        raise ImportError(f"lightwell: expected Lightwell's library, got {path}: {error}") from error
     header = f"{library.LW_VERSION_MAJOR}.{library.LW_VERSION_MINOR}.{library.LW_VERSION_PATCH}"
     version = text(library.lwVersion())
     if version != header:

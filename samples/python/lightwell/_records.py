@@ -34,16 +34,18 @@ LISTED_LIGHT = record_type("LWListedLight")
 
 def _make_records(dtype: "np.dtype[Any]", fields: Dict[str, Any]) -> Array:
     """One record for each row of the first field; the others may be one value for all."""
-    first = np.asarray(next(iter(fields.values())))
+    try:
+        first = np.asarray(next(iter(fields.values())))
+    except ValueError as error:
+        raise InvalidArgumentError(f"{next(iter(fields))}: expected (n, 3) numbers: {error}") from error
     if first.ndim != 2:
         raise InvalidArgumentError(f"{next(iter(fields))}: expected (n, 3) numbers, got shape {first.shape}")
     records = np.zeros(len(first), dtype)
     for name, value in fields.items():
         try:
             records[name] = value
-        except ValueError as error:
-            raise InvalidArgumentError(f"{name}: expected {records[name].shape} numbers, or one for all, got shape "
-                                       f"{np.shape(value)}") from error
+        except (TypeError, ValueError, OverflowError) as error:
+            raise InvalidArgumentError(f"{name}: expected {records[name].shape} numbers, or one for all: {error}") from error
     return records
 
 
@@ -71,8 +73,8 @@ def records_pointer(values: Any, struct: str, dtype: "np.dtype[Any]", name: str,
     if not isinstance(values, np.ndarray) or values.dtype != dtype or values.ndim != 1:
         got = describe(values) if isinstance(values, np.ndarray) else type(values).__name__
         raise InvalidArgumentError(f"{name}: expected a one-dimensional array of lightwell.{name.split('.')[-1]}(), got {got}")
-    if not values.flags.c_contiguous:
-        values = np.ascontiguousarray(values)
+    if not values.flags.c_contiguous or not values.flags.aligned:
+        values = np.array(values, order="C", copy=True)
         kept.copied += values.nbytes
     kept.add(values)
     return ffi.cast(struct + "*", values.ctypes.data), len(values)

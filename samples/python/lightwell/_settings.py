@@ -7,6 +7,8 @@ import functools
 import math
 from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Tuple, Union
 
+import numpy as np
+
 from ._enums import ParameterKind
 from ._errors import InvalidArgumentError, check
 from ._images import Kept
@@ -86,7 +88,7 @@ def describe_techniques() -> Dict[str, TechniqueInfo]:
 
 
 def technique_info(name: str) -> TechniqueInfo:
-    if name not in _techniques():
+    if not isinstance(name, str) or name not in _techniques():
         raise InvalidArgumentError(f"technique: expected one of {', '.join(_techniques())}, got {name!r}")
     return _techniques()[name]
 
@@ -100,11 +102,11 @@ def _number(parameter: Parameter, value: Any) -> float:
     expected = f"{'a whole number' if whole else 'a number'}, {parameter.minimum:.10g} .. {parameter.maximum:.10g}"
     if parameter.allowed:
         expected = "one of " + ", ".join(f"{each:.10g}" for each in parameter.allowed)
-    if isinstance(value, (bool, str)):
+    if isinstance(value, (bool, np.bool_, str, bytes)) or np.ndim(value):
         raise _refuse(parameter, expected, value)
     try:
         number = float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise _refuse(parameter, expected, value) from None
     in_range = parameter.minimum <= number <= parameter.maximum and (not whole or number == math.floor(number))
     # The library takes a 0 that is out of range for the default; here a default is had by leaving the setting out.
@@ -116,20 +118,24 @@ def _number(parameter: Parameter, value: Any) -> float:
 def _choice(parameter: Parameter, value: Any) -> int:
     if isinstance(value, str) and value in parameter.choices:
         return parameter.choices.index(value)
-    if isinstance(value, int) and not isinstance(value, bool) and 0 <= value < len(parameter.choices):
-        return value
+    if isinstance(value, (bool, np.bool_)):
+        # A switch with more than two positions.
+        if {"on", "off"} <= set(parameter.choices):
+            return parameter.choices.index("on" if value else "off")
+    elif isinstance(value, (int, np.integer)) and 0 <= value < len(parameter.choices):
+        return int(value)
     raise _refuse(parameter, "one of " + ", ".join(parameter.choices), value)
 
 
 def _assign(at: Any, parameter: Parameter, value: Any, kept: Kept) -> None:
     if parameter.kind == ParameterKind.TECHNIQUE:
-        if not hasattr(value, "handle"):
+        if getattr(value, "_what", "") != "technique":
             raise _refuse(parameter, "a Technique", value)
         ffi.cast("LWTechnique*", at)[0] = kept.add(value).handle
     elif parameter.kind == ParameterKind.ENUM:
         ffi.cast("int32_t*", at)[0] = _choice(parameter, value)
     elif parameter.kind == ParameterKind.BOOL:
-        if not isinstance(value, bool) and value not in (0, 1):
+        if not isinstance(value, (bool, np.bool_)) and not (isinstance(value, (int, np.integer)) and value in (0, 1)):
             raise _refuse(parameter, "True or False", value)
         ffi.cast("uint32_t*", at)[0] = int(value)
     elif parameter.kind == ParameterKind.UINT:

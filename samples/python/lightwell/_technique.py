@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Any, Dict, List, Optional, Union
 import numpy as np
 from numpy.typing import NDArray
 
+from ._arguments import instance, words
 from ._errors import InvalidArgumentError, check
 from ._frame import Frame, GBuffer, frame_struct, gbuffer_struct, new_struct
 from ._handles import Handle
-from ._images import Array, Image, Kept, describe, empty_image, fill_image
+from ._images import Array, Image, Kept, describe, empty_image, fill_image, plain_array
 from ._library import NULL, ffi, lib, text
 from ._records import LISTED_LIGHT
 from ._settings import Setting, descriptor, technique_info
@@ -74,7 +75,7 @@ class Technique(Handle):
         """By assignments as a Plan and the command line have them: "first=horizon second=ssvp second.vpls=256"."""
         technique_info(name)
         handle = ffi.new("LWTechnique*")
-        check(lib.lwCreateTechniqueFromText(device.handle, name.encode(), settings.encode(), handle), device.handle)
+        check(lib.lwCreateTechniqueFromText(device.handle, name.encode(), words(settings, "settings"), handle), device.handle)
         made = cls.__new__(cls)
         made._begin(device, name, handle[0], Kept())
         return made
@@ -99,7 +100,7 @@ class Technique(Handle):
 
     def prewarm(self, view: View) -> None:
         """Compiles all kernels that frames of this view can need."""
-        check(lib.lwPrewarm(self.handle, view.handle), self.device.handle)
+        check(lib.lwPrewarm(self.handle, instance(view, View, "view").handle), self.device.handle)
 
     def update(self, frame: Frame) -> None:
         """The world part, once per frame. Its arrays must not be changed before `Device.finish` or a `render` that waits."""
@@ -115,9 +116,14 @@ class Technique(Handle):
         wanted = dict(irradiance=irradiance, validity=validity, ambientOcclusion=ambient_occlusion, specularRadiance=specular_radiance,
                       shadow=shadow, refractedRadiance=refracted_radiance)
         struct = new_struct("LWOutput", kept)
-        width, height = view.size
+        width, height = instance(view, View, "view").size
         made = {name: _target(getattr(struct, name), want, height, width, name, kept) for name, want in wanted.items()}
-        self._call(lib.lwRender, view, kept, view.handle, gbuffer_struct(gbuffer, kept), struct)
+        given = Kept()
+        inputs = gbuffer_struct(gbuffer, given)
+        _check_memory(made, given)
+        kept.objects += given.objects
+        kept.copied += given.copied
+        self._call(lib.lwRender, view, kept, view.handle, inputs, struct)
         if wait:
             self.device.finish()
         return Output(made["irradiance"], made["validity"], made["ambientOcclusion"], made["specularRadiance"], made["shadow"],
@@ -128,13 +134,13 @@ class Technique(Handle):
         """The light at (n, 3) positions: irradiance of their normals, and two bands of spherical harmonics of what arrives, from all
         around. `describe_techniques()[name].points` says who can."""
         kept = Kept()
-        count = len(positions)
+        count = len(plain_array(positions, "positions")) if np.ndim(positions) else 0
         images = []
         for name, points in (("positions", positions), ("normals", normals)):
             if points is None:
                 images.append(NULL)
                 continue
-            if points.ndim != 2 or len(points) != count:
+            if plain_array(points, name).ndim != 2 or len(points) != count:
                 raise InvalidArgumentError(f"{name}: expected ({count}, 3) float32, got {describe(points)}")
             images.append(kept.add(ffi.new("LWImage*")))
             fill_image(images[-1], points[np.newaxis], name, kept)
@@ -199,11 +205,37 @@ def _ms(milliseconds: float) -> Optional[float]:
     return None if milliseconds < 0.0 else milliseconds
 
 
+_MAX_WORK: Any = 10000  # steps of its search: microseconds
+
+
+def _share(one: Array, other: Array) -> bool:
+    if not np.may_share_memory(one, other):
+        return False
+    try:
+        return bool(np.shares_memory(one, other, max_work=_MAX_WORK))
+    except RuntimeError:  # NumPy's TooHardError: strides for which it is not soon said
+        return False
+
+
+def _check_memory(made: Dict[str, Any], given: Kept) -> None:
+    """Refuses outputs that share memory with each other or with an input, which the device reads while it writes."""
+    arrays = [(name, each.array if isinstance(each, Image) else each) for name, each in made.items()]
+    outputs = [(name, each) for name, each in arrays if each is not None]
+    inputs = [each for each in given.objects if isinstance(each, np.ndarray)]
+    for index, (name, output) in enumerate(outputs):
+        shared = [f"output.{other}" for other, array in outputs[:index] if _share(output, array)]
+        shared += ["an input" for array in inputs if _share(output, array)]
+        if shared:
+            raise InvalidArgumentError(f"output.{name}: expected memory of its own, got some of {shared[0]}")
+
+
 _COLOURS = ("irradiance", "specularRadiance", "refractedRadiance")
 
 
 def _target(image: Any, want: Wanted, height: int, width: int, name: str, kept: Kept, channels: int = 0) -> Any:
     """Where one output goes: a new array, the caller's, or nowhere."""
+    if isinstance(want, (bool, np.bool_)):
+        want = bool(want)
     if want is False or want is None:
         return None
     target = empty_image(height, width, channels or (3 if name in _COLOURS else 1)) if want is True else want

@@ -4,8 +4,9 @@ from __future__ import annotations
 import dataclasses
 from typing import TYPE_CHECKING, Any, List, Literal, Optional, Tuple, Union, overload
 
+from ._arguments import real, whole
 from ._enums import InputFault, Severity
-from ._errors import InvalidArgumentError, check
+from ._errors import check
 from ._frame import Frame, GBuffer, frame_struct, gbuffer_struct, new_struct
 from ._handles import Handle
 from ._images import Array, Kept, empty_image, fill_image
@@ -91,11 +92,8 @@ class View(Handle):
 
     def __init__(self, device: "Device", width: int, height: int) -> None:
         self.device = device
-        for name, number in (("width", width), ("height", height)):
-            if not 0 <= number < 2**32:
-                raise InvalidArgumentError(f"{name}: expected 1 .. 16384, got {number}")
         desc = new_struct("LWViewDesc")
-        desc.maxWidth, desc.maxHeight = width, height
+        desc.maxWidth, desc.maxHeight = whole(width, "width"), whole(height, "height")
         handle = ffi.new("LWView*")
         check(lib.lwCreateView(device.handle, desc, handle), device.handle)
         super().__init__(handle[0], lib.lwReleaseView, device.log_callback)
@@ -109,9 +107,7 @@ class View(Handle):
 
     def resize(self, width: int, height: int) -> None:
         """Dynamic resolution: any size up to the first."""
-        if width < 1 or height < 1:
-            raise InvalidArgumentError(f"resize: expected a size of 1 or more, got {width} x {height}")
-        check(lib.lwSetViewSize(self.handle, width, height), self.device.handle)
+        check(lib.lwSetViewSize(self.handle, whole(width, "width", 1), whole(height, "height", 1)), self.device.handle)
 
     def plan(self, frame: Frame, gbuffer: GBuffer, *, budget_ms: float = 0.0, error_target: float = 0.0, views: int = 1) -> Plan:
         """The technique and settings for this frame: the cheapest that is predicted to reach `error_target`, else the most accurate
@@ -137,7 +133,8 @@ class View(Handle):
         self.device.handle  # closed: refused
         kept = Kept()
         desc = new_struct("LWPlanDesc", kept)
-        desc.budgetMs, desc.errorTarget, desc.views = budget_ms, error_target, views
+        desc.budgetMs, desc.errorTarget = real(budget_ms, "budget_ms"), real(error_target, "error_target")
+        desc.views = whole(views, "views")
         return frame_struct(frame, kept), gbuffer_struct(gbuffer, kept), desc, kept
 
     @overload
