@@ -85,6 +85,7 @@ int main(int argc, char** argv) {
         cli::addPlaceVpls(app);
         cli::addCheck(app);
         cli::addPlan(app);
+        cli::addGi(app);
         return parse(app, argc, argv);
     } catch (const cli::UsageError& error) {
         printError(error.what());
