@@ -2,8 +2,9 @@
 
     blender -b --factory-startup -P docs/hosts/blender.py -- --out DIR [--scene spot|sun|sphere] [--size 384x256] [--rsm 256] [--spp 1024] [--half]
 
-Writes SCENE.exr (what Lightwell is given: Position, Normal, Depth, DiffCol, DiffDir), SCENE_rsm*.exr (the same from the lamp), SCENE_one.exr and
-SCENE_all.exr (pass DiffInd of one indirect bounce and of all, the truth), and the camera and light files, from Blender's own matrices.
+Writes SCENE.exr (what Lightwell is given: Position, Normal, Depth, DiffCol, DiffDir), SCENE_rsm*.exr (the same from the lamp), SCENE_one_a.exr,
+SCENE_one_b.exr, SCENE_all_a.exr and SCENE_all_b.exr (pass DiffInd of one indirect bounce and of all, the truth, in two halves by which its noise is
+known), and the camera and light files, from Blender's own matrices.
 """
 import argparse
 import json
@@ -100,17 +101,18 @@ def camera_json(camera):
 
 
 def write_json(path, what, content):
-    path.write_text(json.dumps({"format": "lightwell-" + what, "version": 1, **content}, indent=1) + "\n")
+    content = {"format": "lightwell-" + what, "version": 1, **content}
+    path.write_text("{" + ",\n ".join(f"{json.dumps(key)}: {json.dumps(value)}" for key, value in content.items()) + "}\n")
 
 
-def render(path, camera, size, passes, samples=1, bounces=0, half=False):
+def render(path, camera, size, passes, samples=1, bounces=0, half=False, seed=1):
     scene = bpy.context.scene
     scene.camera = camera
     scene.render.engine = "CYCLES"
     scene.render.resolution_x, scene.render.resolution_y = size
     scene.render.resolution_percentage = 100
     cycles = scene.cycles
-    cycles.device, cycles.samples, cycles.seed = "CPU", samples, 1
+    cycles.device, cycles.samples, cycles.seed = "CPU", samples, seed
     cycles.use_adaptive_sampling = cycles.use_denoising = False
     cycles.pixel_filter_type, cycles.filter_width = "BLACKMAN_HARRIS", 0.01  # every path through the pixel's centre
     cycles.max_bounces = cycles.diffuse_bounces = bounces
@@ -130,6 +132,17 @@ SEEN = ("position", "normal", "z", "diffuse_color", "diffuse_direct")
 SEEN_BY_LAMP = ("position", "normal", "diffuse_color")
 
 
+def spot_profile(lamp, steps=360):
+    """How a spot of Blender 3.4 falls off from its axis, at even steps from 0 to 180 degrees: with the cosine, as measured
+    (docs/hosts.md), and smoothly towards the cone's edge where spot_blend is above 0."""
+    edge, factors = math.cos(0.5 * lamp.spot_size), []
+    for i in range(steps + 1):
+        cosine = math.cos(math.pi * i / steps)
+        ramp = min(max((cosine - edge) / max((1.0 - edge) * lamp.spot_blend, 1e-9), 0.0), 1.0) if lamp.spot_blend > 0.0 else 1.0
+        factors.append(round(max(cosine, 0.0) * ramp * ramp * (3.0 - 2.0 * ramp), 6))
+    return factors
+
+
 def build_spot():
     spot = room.SPOT
     ahead = room.minus(spot["target"], spot["position"])
@@ -140,7 +153,7 @@ def build_spot():
     camera = add_camera(spot["position"], ahead, spot["up"], 2.0 * spot["outer_cone_degrees"])
     half_angle = 0.5 * math.degrees(lamp.spot_size)
     light = {"kind": "spot", "position": list(spot["position"]), "direction": list(ahead), "power": lamp.energy,
-             "inner_cone_degrees": half_angle, "outer_cone_degrees": half_angle}
+             "inner_cone_degrees": half_angle, "outer_cone_degrees": half_angle, "profile": spot_profile(lamp)}
     return light, [camera]
 
 
@@ -181,9 +194,10 @@ def main():
     for i, lamp_camera in enumerate(maps):
         number = str(i) if len(maps) > 1 else ""
         render(out / f"{name}_rsm{number}.exr", lamp_camera, (options.rsm, options.rsm), SEEN_BY_LAMP, half=options.half)
-    render(out / f"{name}_one.exr", camera, size, ("diffuse_indirect",), options.spp, 1, options.half)
-    render(out / f"{name}_all.exr", camera, size, ("diffuse_indirect",), options.spp, ALL_BOUNCES, options.half)
-    write_json(out / f"{name}_camera.json", "camera", camera_json(camera))
+    for bounces, what in ((1, "one"), (ALL_BOUNCES, "all")):
+        for seed, part in ((1, "a"), (2, "b")):
+            render(out / f"{name}_{what}_{part}.exr", camera, size, ("diffuse_indirect",), options.spp // 2, bounces, options.half, seed)
+    write_json(out / f"{name}_camera.json", "camera", {"camera": camera_json(camera)})
     light["cameras"] = [camera_json(each) for each in maps]
     write_json(out / f"{name}_light.json", "light", light)
 

@@ -155,7 +155,12 @@ LWCamera HostCamera::describe(int width, int height, double farthest) const {
 }
 
 HostCamera readCameraFile(const std::string& path) {
-    return readHostFile(path, "lightwell-camera", [](JsonObject& object) { return HostCamera(object); });
+    return readHostFile(path, "lightwell-camera", [](JsonObject& file) {
+        JsonObject object = file.need("camera", "an object").object();
+        HostCamera camera(object);
+        object.finish();
+        return camera;
+    });
 }
 
 }  // namespace cli

@@ -1,11 +1,11 @@
 """Renders the scenes of room.py with Mitsuba 3, for docs/hosts.md. Nothing here knows Lightwell.
 
     python3 -m venv build/mitsuba && build/mitsuba/bin/pip install mitsuba
-    build/mitsuba/bin/python docs/hosts/mitsuba_room.py --out DIR [--scene spot|sun|sphere] [--size 384x256] [--rsm 256] [--spp 1024] [--half]
+    build/mitsuba/bin/python docs/hosts/mitsuba3.py --out DIR [--scene spot|sun|sphere] [--size 384x256] [--rsm 256] [--spp 1024] [--half]
 
 Writes SCENE.exr (integrator `aov` around `path` of depth 2: position, sh_normal, albedo, depth and direct radiance), SCENE_rsm*.exr (the same from
-the lamp), SCENE_one.exr and SCENE_all.exr (irradiance of one indirect bounce and of all, W/m^2, the truth: paths of one length less those of direct
-light, times pi over albedo), and the camera and light files. Y is up here, and the camera looks down +z.
+the lamp), SCENE_one_a.exr, SCENE_one_b.exr, SCENE_all_a.exr and SCENE_all_b.exr (irradiance of one indirect bounce and of all, W/m^2, the truth in
+two halves by which its noise is known: paths of one length less those of direct light, times pi over albedo), and the camera and light files. Y is up here, and the camera looks down +z.
 """
 import argparse
 import json
@@ -58,11 +58,11 @@ def looking(eye, ahead, up):
     return mi.ScalarTransform4f().look_at(origin=y_up(eye), target=y_up(room.plus(eye, ahead)), up=y_up(up))
 
 
-def sensor(to_world, size, fov_degrees=None):
+def sensor(to_world, size, half, fov_degrees=None):
     lens = {"type": "perspective", "fov": fov_degrees, "fov_axis": "y"} if fov_degrees else {"type": "orthographic"}
     return mi.load_dict({**lens, "to_world": to_world, "near_clip": NEAR, "far_clip": 100.0,
                          "film": {"type": "hdrfilm", "width": size[0], "height": size[1], "rfilter": {"type": "box"},
-                                  "component_format": "float32"},
+                                  "component_format": "float16" if half else "float32"},
                          "sampler": {"type": "stratified", "sample_count": 1, "jitter": False}})  # the pixel's centre
 
 
@@ -75,22 +75,18 @@ def camera_json(to_world, fov_degrees=None):
 
 
 def write_json(path, what, content):
-    path.write_text(json.dumps({"format": "lightwell-" + what, "version": 1, **content}, indent=1) + "\n")
+    content = {"format": "lightwell-" + what, "version": 1, **content}
+    path.write_text("{" + ",\n ".join(f"{json.dumps(key)}: {json.dumps(value)}" for key, value in content.items()) + "}\n")
 
 
-def write(path, bitmap, half):
-    wanted = mi.Struct.Type.Float16 if half else mi.Struct.Type.Float32
-    bitmap.convert(component_format=wanted).write(str(path)) if half else bitmap.write(str(path))
-
-
-def render_aovs(path, scene, view, half):
+def render_aovs(path, scene, view):
     inner = {"type": "path", "max_depth": DIRECT, "hide_emitters": True}
     integrator = mi.load_dict({"type": "aov", "aovs": AOVS, "direct": inner})
     mi.render(scene, sensor=view, integrator=integrator, spp=1)
-    write(path, view.film().bitmap(), half)
+    view.film().bitmap().write(str(path))
 
 
-def radiance(scene, view, size, depth, spp):
+def radiance(scene, view, size, depth, spp, seed=1):
     """Mean radiance of Mitsuba's own path tracer along the rays of the pixels' centres."""
     width, height = size
     index = dr.arange(mi.UInt32, width * height)
@@ -103,7 +99,7 @@ def radiance(scene, view, size, depth, spp):
     while done < spp:
         count = min(at_once, spp - done)
         sampler = mi.load_dict({"type": "independent"})
-        sampler.seed(1000 + done, width * height * count)
+        sampler.seed(100000 * seed + done, width * height * count)
         which = dr.arange(mi.UInt32, width * height * count) // count
         place = mi.Vector2f(dr.gather(mi.Float, film.x, which), dr.gather(mi.Float, film.y, which))
         ray, _ = view.sample_ray_differential(0.0, 0.5, place, mi.Vector2f(0.5))
@@ -115,16 +111,18 @@ def radiance(scene, view, size, depth, spp):
     return total / spp, film
 
 
-def write_truth(path, scene, view, size, depth, spp, half):
+def write_truth(path, scene, view, size, depth, spp, half, seed):
     width, height = size
-    more, film = radiance(scene, view, size, depth, spp)
+    more, film = radiance(scene, view, size, depth, spp, seed)
     direct, _ = radiance(scene, view, size, DIRECT, 1)  # from a point: without noise
     ray, _ = view.sample_ray_differential(0.0, 0.5, film, mi.Vector2f(0.5))
     hit = scene.ray_intersect(ray)
     albedo = hit.bsdf(ray).eval_diffuse_reflectance(hit, hit.is_valid())
     irradiance = [dr.select(hit.is_valid() & (albedo[c] > 0.0), dr.pi * (more[c] - direct[c]) / albedo[c], 0.0) for c in range(3)]
     flat = dr.ravel(mi.Color3f(*irradiance))
-    write(path, mi.Bitmap(mi.TensorXf(flat, shape=(height, width, 3)), channel_names=["R", "G", "B"]), half)
+    picture = mi.Bitmap(mi.TensorXf(flat, shape=(height, width, 3)), pixel_format=mi.Bitmap.PixelFormat.RGB)
+    kind = mi.Struct.Type.Float16 if half else mi.Struct.Type.Float32
+    picture.convert(pixel_format=mi.Bitmap.PixelFormat.RGB, component_format=kind, srgb_gamma=False).write(str(path))
 
 
 def build(name, folder):
@@ -173,15 +171,16 @@ def main():
     scene = mi.load_dict({"type": "scene", "lamp": lamp, **build(name, out)})
     of = room.SPHERE_CAMERA if name == "sphere" else room.CAMERA
     to_world, fov = looking(of["position"], room.minus(of["target"], of["position"]), of["up"]), of["vertical_fov_degrees"]
-    view = sensor(to_world, size, fov)
+    view = sensor(to_world, size, options.half, fov)
 
-    render_aovs(out / f"{name}.exr", scene, view, options.half)
+    render_aovs(out / f"{name}.exr", scene, view)
     for i, (place, angle) in enumerate(maps):
         number = str(i) if len(maps) > 1 else ""
-        render_aovs(out / f"{name}_rsm{number}.exr", scene, sensor(place, (options.rsm, options.rsm), angle), options.half)
-    write_truth(out / f"{name}_one.exr", scene, view, size, ONE_BOUNCE, options.spp, options.half)
-    write_truth(out / f"{name}_all.exr", scene, view, size, ALL_BOUNCES, options.spp, options.half)
-    write_json(out / f"{name}_camera.json", "camera", camera_json(to_world, fov))
+        render_aovs(out / f"{name}_rsm{number}.exr", scene, sensor(place, (options.rsm, options.rsm), options.half, angle))
+    for depth, what in ((ONE_BOUNCE, "one"), (ALL_BOUNCES, "all")):
+        for seed, part in ((1, "a"), (2, "b")):
+            write_truth(out / f"{name}_{what}_{part}.exr", scene, view, size, depth, options.spp // 2, options.half, seed)
+    write_json(out / f"{name}_camera.json", "camera", {"camera": camera_json(to_world, fov)})
     light["cameras"] = [camera_json(*each) for each in maps]
     write_json(out / f"{name}_light.json", "light", light)
     for path in out.glob("quad*.ply"):
