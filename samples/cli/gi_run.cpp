@@ -85,7 +85,6 @@ GiLight renderGi(const HostFrame& host, const Parameters& parameters, const Devi
             const LWFrame frame = describeFrameOf(host, source, 0);
             *findings = lightwell::checkInputs(view, &frame, &host.gbuffer());
         }
-        technique.prewarm(view);
         for (int i = 0; i < frames; ++i) {
             const auto start = std::chrono::steady_clock::now();
             technique.update(describeFrameOf(host, source, i));
