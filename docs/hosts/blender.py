@@ -1,6 +1,6 @@
 """Renders the scenes of room.py with Blender's Cycles, for docs/hosts.md. Nothing here knows Lightwell.
 
-    blender -b --factory-startup -P docs/hosts/blender.py -- --out DIR [--scene spot|sun|sphere] [--size 384x256] [--rsm 256] [--spp 1024] [--half]
+    blender -b --factory-startup -P docs/hosts/blender.py -- --out DIR [--scene spot|empty|sun|sphere] [--size 384x256] [--rsm 256] [--spp 1024] [--half]
 
 Writes SCENE.exr (what Lightwell is given: Position, Normal, Depth, DiffCol, DiffDir), SCENE_rsm*.exr (the same from the lamp), SCENE_one_a.exr,
 SCENE_one_b.exr, SCENE_all_a.exr and SCENE_all_b.exr (pass DiffInd of one indirect bounce and of all, the truth, in two halves by which its noise is
@@ -24,7 +24,7 @@ ALL_BOUNCES = 64
 def parse():
     parser = argparse.ArgumentParser(prog="blender.py")
     parser.add_argument("--out", required=True)
-    parser.add_argument("--scene", default="spot", choices=["spot", "sun", "sphere"])
+    parser.add_argument("--scene", default="spot", choices=["spot", "empty", "sun", "sphere"])
     parser.add_argument("--size", default="384x256")
     parser.add_argument("--rsm", type=int, default=256)
     parser.add_argument("--spp", type=int, default=1024)
@@ -184,8 +184,8 @@ def main():
     if name == "sphere":
         add_sphere()
     else:
-        add_surfaces(room.room_surfaces())
-    light, maps = {"spot": build_spot, "sun": build_sun, "sphere": build_sphere}[name]()
+        add_surfaces(room.room_surfaces(blocks=name != "empty"))
+    light, maps = {"spot": build_spot, "empty": build_spot, "sun": build_sun, "sphere": build_sphere}[name]()
     view = room.SPHERE_CAMERA if name == "sphere" else room.CAMERA
     camera = add_camera(view["position"], room.minus(view["target"], view["position"]), view["up"], view["vertical_fov_degrees"])
     bpy.context.view_layer.update()

@@ -1,7 +1,7 @@
 """Renders the scenes of room.py with Mitsuba 3, for docs/hosts.md. Nothing here knows Lightwell.
 
     python3 -m venv build/mitsuba && build/mitsuba/bin/pip install mitsuba
-    build/mitsuba/bin/python docs/hosts/mitsuba3.py --out DIR [--scene spot|sun|sphere] [--size 384x256] [--rsm 256] [--spp 1024] [--half]
+    build/mitsuba/bin/python docs/hosts/mitsuba3.py --out DIR [--scene spot|empty|sun|sphere] [--size 384x256] [--rsm 256] [--spp 1024] [--half]
 
 Writes SCENE.exr (integrator `aov` around `path` of depth 2: position, sh_normal, albedo, depth and direct radiance), SCENE_rsm*.exr (the same from
 the lamp), SCENE_one_a.exr, SCENE_one_b.exr, SCENE_all_a.exr and SCENE_all_b.exr (irradiance of one indirect bounce and of all, W/m^2, the truth in
@@ -28,7 +28,7 @@ AOVS = "position:position,normal:sh_normal,albedo:albedo,depth:depth"
 def parse():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", required=True)
-    parser.add_argument("--scene", default="spot", choices=["spot", "sun", "sphere"])
+    parser.add_argument("--scene", default="spot", choices=["spot", "empty", "sun", "sphere"])
     parser.add_argument("--size", default="384x256")
     parser.add_argument("--rsm", type=int, default=256)
     parser.add_argument("--spp", type=int, default=1024)
@@ -132,7 +132,7 @@ def build(name, folder):
                   "bsdf": {"type": "diffuse", "reflectance": {"type": "rgb", "value": room.SPHERE["reflectance"]}}}
         shapes = {"sphere": sphere}
     else:
-        shapes = {f"quad{i}": surface(*each) for i, each in enumerate(room.room_surfaces())}
+        shapes = {f"quad{i}": surface(*each) for i, each in enumerate(room.room_surfaces(blocks=name != "empty"))}
     return shapes
 
 
@@ -167,7 +167,7 @@ def main():
     out, name = pathlib.Path(options.out).resolve(), options.scene
     out.mkdir(parents=True, exist_ok=True)
     size = tuple(int(part) for part in options.size.split("x"))
-    lamp, light, maps = {"spot": spot, "sun": sun, "sphere": point}[name]()
+    lamp, light, maps = {"spot": spot, "empty": spot, "sun": sun, "sphere": point}[name]()
     scene = mi.load_dict({"type": "scene", "lamp": lamp, **build(name, out)})
     of = room.SPHERE_CAMERA if name == "sphere" else room.CAMERA
     to_world, fov = looking(of["position"], room.minus(of["target"], of["position"]), of["up"]), of["vertical_fov_degrees"]

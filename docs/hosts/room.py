@@ -1,7 +1,8 @@
 """The scenes that blender.py and mitsuba3.py build: plain numbers, no imports of either program.
 
 Lengths in metres, Z up, right-handed, as Blender has them; mitsuba3.py turns them to Y up. A surface is four corners, counter-clockwise seen from
-its lit side, and a diffuse reflectance. `room` is a box that is open to the camera, with two blocks; `sphere` is the analytic case: inside a
+its lit side, and a diffuse reflectance. The room is a box that is open to the camera, with two blocks; without
+them (`empty`) nothing hides anything, and a gather without visibility has the truth. `sphere` is the analytic case: inside a
 sphere of reflectance rho the irradiance of a lamp of intensity I at the centre is I / R^2 on every point, and each bounce is rho times the one before.
 """
 import math
@@ -25,14 +26,14 @@ def block(x, y, width, height, degrees, colour=WHITE):
     return sides + [quad(*high, colour)]
 
 
-def room_surfaces():
+def room_surfaces(blocks=True):
     l, r, f, b, t = -1.0, 1.0, -1.0, 1.0, 2.0  # left, right, front, back, top
     return [quad((l, f, 0), (r, f, 0), (r, b, 0), (l, b, 0), WHITE),  # floor
             quad((l, f, t), (l, b, t), (r, b, t), (r, f, t), WHITE),  # ceiling
             quad((l, b, 0), (r, b, 0), (r, b, t), (l, b, t), WHITE),  # back
             quad((l, f, 0), (l, b, 0), (l, b, t), (l, f, t), RED),
             quad((r, f, 0), (r, f, t), (r, b, t), (r, b, 0), GREEN),
-            *block(-0.35, 0.3, 0.6, 1.2, 17.0), *block(0.35, -0.3, 0.6, 0.6, -18.0)]
+            *(block(-0.35, 0.3, 0.6, 1.2, 17.0) + block(0.35, -0.3, 0.6, 0.6, -18.0) if blocks else [])]
 
 
 # Eye, the point looked at, up; whole vertical angle. 3 : 2 pictures show some black outside of the room. Off the middle, or rays through pixels

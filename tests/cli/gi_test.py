@@ -194,6 +194,15 @@ class Analytic(Gi):
             self.near(planes["R"], expected, TEXELS)
         self.assertNotIn("albedo.R", planes)
 
+    def test_flux_from_direct(self):
+        """A map's own direct light instead of the lamp's figures."""
+        arguments = self.sphere(blender_planes, "blender", {})
+        with open(self.path("light.json"), encoding="utf-8") as file:
+            light = json.load(file)
+        self.write("light.json", {**light, "intensity": 17.0, "flux_from": "direct"})
+        _, planes, _ = self.irradiance([*arguments, *ALL_TEXELS, "--no-check"])
+        self.near(planes["R"], RHO * INTENSITY / RADIUS ** 2, DISCS)
+
     def test_lamps_add_up(self):
         """Two lamps, one of them given by its power, with the same maps: twice the light."""
         arguments = self.sphere(blender_planes, "blender", {})
@@ -238,20 +247,31 @@ class Programs(Gi):
         self.assertEqual([f["fault"] for f in report["findings"] if f["severity"] == "error"], [])
         return self.json("compare", out, truth, "--json")
 
-    # What stands on the page, with room for another device's rounding: relMSE, bias; a factor of pi, or of two, would show in each.
-    def test_one_bounce(self):
+    def test_nothing_hidden(self):
+        """In the room without blocks a gather without visibility has the truth of one bounce: a factor of pi or of two, a wrong axis, a wrong cone
+        would show at once. What is left is the maps' 48 x 48 texels and noise."""
+        for program in ("blender", "mitsuba"):
+            errors = self.errors(program, "empty", ALL_TEXELS[1:], "one")
+            self.assertLess(errors["relMSE"], EMPTY_RELMSE, program)
+            self.assertLess(abs(errors["bias"]), EMPTY_BIAS, program)
+
+    def test_visibility_and_bounces(self):
+        """With blocks, by ssvp: one bounce, and the most that it has against all."""
         for program in ("blender", "mitsuba"):
             errors = self.errors(program, "spot", ["ssvp", "--set", "bounces=1"], "one")
-            self.assertLess(errors["relMSE"], ONE_RELMSE, program)
+            self.assertLess(errors["nrmse"], ONE_NRMSE, program)
             self.assertLess(abs(errors["bias"]), ONE_BIAS, program)
-
-    def test_all_bounces(self):
-        for program in ("blender", "mitsuba"):
-            errors = self.errors(program, "spot", ["ssvp", "--set", "bounces=2"], "all")
-            self.assertLess(abs(errors["bias"]), ALL_BIAS, program)
+        errors = self.errors("blender", "spot", ["ssvp", "--set", "bounces=4", "clusters=64"], "all")
+        self.assertLess(errors["nrmse"], ALL_NRMSE)
+        self.assertLess(abs(errors["bias"]), ALL_BIAS)
 
 
-ONE_RELMSE, ONE_BIAS, ALL_BIAS = 0.1, 0.1, 0.3
+# Measured 0.0012 (Blender) and 0.0048 (Mitsuba, whose truth has a noise of 0.0041), -1.1 %.
+EMPTY_RELMSE, EMPTY_BIAS = 0.008, 0.02
+# 0.40 and 0.44, +2.7 % and +2.4 %; another device's clusters differ.
+ONE_NRMSE, ONE_BIAS = 0.6, 0.08
+# 0.32, -14 %: what four bounces lack of all, and clusters.
+ALL_NRMSE, ALL_BIAS = 0.45, 0.2
 
 
 class Refusals(Gi):
