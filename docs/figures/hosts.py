@@ -46,6 +46,7 @@ def gi(options, call, program, scene, technique, sets, out, *more):
     name = options.frames / program / scene
     maps = [f"{name}_rsm{i}.exr" for i in range(6)] if scene == "sphere" else [f"{name}_rsm.exr"]
     setting = ["--set", *sets.split()] if sets else []
+    more = [*more, "--two-sided"] if program == "mitsuba" and scene == "sun" else more  # the outer sides of its walls
     call("gi", "--gbuffer", f"{name}.exr", "--camera", f"{name}_camera.json", "--rsm", *maps, "--light", f"{name}_light.json",
          "--technique", technique, *setting, *more, "--out", out)
     return out
@@ -92,7 +93,7 @@ def error_tables(options, call):
                 out = gi(options, call, program, scene, technique, sets, options.work / f"{name}.exr")
                 errors = json.loads(call("compare", out, truths[bounces], "--json"))
                 noise[bounces] = errors["reference_noise"]
-                rows.append(f"| `{technique}` {sets} | {BOUNCES[bounces]} | {errors['relMSE']:.3f} | {errors['nrmse']:.3f} | {100 * errors['bias']:+.1f} % |")
+                rows.append(f"| `{technique}`{' ' + sets if sets else ''} | {BOUNCES[bounces]} | {errors['relMSE']:.3f} | {errors['nrmse']:.3f} | {100 * errors['bias']:+.1f} % |")
                 if (technique, sets, bounces) == PICTURED and scene != CONVEX:
                     call("triptych", out, truths[bounces], "--out", ROOT / f"docs/images/hosts_{program}_{scene}.png")
             lines += [f"#### {program_title}: {title}", ""]

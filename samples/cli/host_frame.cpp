@@ -161,10 +161,11 @@ studio::PlanarBuffer texelFlux(const HostSurfaces& map, const HostLight& host, c
     for (int y = 0; y < map.height; ++y)
         for (int x = 0; x < map.width; ++x) {
             const glm::dvec3 normal(map.normal.rgb(x, y));
-            if (normal == glm::dvec3(0.0)) continue;
             const glm::dvec3 ray = camera.rayThrough(x, y, map.width, map.height).direction;
             const double length = glm::length(ray);  // 1 over the cosine to the axis; of parallel rays 1
             const glm::dvec3 toSurface = ray / length;
+            // Background, or the lamp shines on the back of a one-sided surface: what its front would send never arrived there.
+            if (!(glm::dot(normal, toSurface) < 0.0)) continue;
             const double solidAngle = area / (length * length * length);  // of a sun: the area itself
             glm::dvec3 value = glm::dvec3(map.albedo.rgb(x, y)) * host.emittedAlong(toSurface) * solidAngle;
             if (host.fluxFromDirect) {

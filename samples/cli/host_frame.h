@@ -31,7 +31,7 @@ struct HostSurfaces {
 HostSurfaces readSurfaces(const std::string& path, const HostCamera& camera, const ChannelMap& channels, bool twoSided, bool needsAlbedo);
 
 // A texel's reflected flux, W (docs/conventions.md), three planes: albedo times what the lamp sends through the texel; or, with
-// HostLight::fluxFromDirect, pi times the direct radiance times the texel's surface.
+// HostLight::fluxFromDirect, pi times the direct radiance times the texel's surface. None from surfaces whose normal points away from the lamp.
 studio::PlanarBuffer texelFlux(const HostSurfaces& map, const HostLight& light, const HostCamera& camera);
 
 // The structs point into the buffers beside them: made once, never moved.
