@@ -4,6 +4,7 @@
     docs/figures/hosts.py [--lightwell build/release/bin/lightwell] [--frames build/hosts] [--work build/figures]
 
 Needs what docs/hosts/blender.py and docs/hosts/mitsuba3.py have left in FRAMES/blender and FRAMES/mitsuba (scenes empty, spot, sun, sphere).
+Pictures in WORK are made again only where they are missing.
 """
 import argparse
 import json
@@ -24,7 +25,7 @@ SCENES = {"empty": "room without blocks, spot", "spot": "room, spot", "sun": "ro
 CONVEX = "empty"  # nothing hides anything there: a gather without visibility has the truth
 # Technique, setting, the truth that holds as many bounces as it knows of.
 SETTINGS = [("rsm", "", "one"), ("rsm", "vpls=0 interleave=1 filter=off", "one"), ("rsm", "visibility=voxel", "one"), ("ssvp", "bounces=1", "one"),
-            ("ssvp", "bounces=1 vpls=1024 clusters=64", "one"), ("lpv", "", "one"), ("screen_space", "", "one"),
+            ("ssvp", "bounces=1 vpls=1024 clusters=64", "one"), ("lpv", "", "one"), ("cone_tracing", "", "one"), ("screen_space", "", "one"),
             ("ssvp", "bounces=2", "all"), ("ssvp", "bounces=4 vpls=1024 clusters=64", "all")]
 PICTURED = ("ssvp", "bounces=4 vpls=1024 clusters=64", "all")
 BOUNCES = {"one": "one", "all": "all"}
@@ -47,6 +48,8 @@ def gi(options, call, program, scene, technique, sets, out, *more):
     maps = [f"{name}_rsm{i}.exr" for i in range(6)] if scene == "sphere" else [f"{name}_rsm.exr"]
     setting = ["--set", *sets.split()] if sets else []
     more = [*more, "--two-sided"] if program == "mitsuba" and scene == "sun" else more  # the outer sides of its walls
+    if out.exists():
+        return out
     call("gi", "--gbuffer", f"{name}.exr", "--camera", f"{name}_camera.json", "--rsm", *maps, "--light", f"{name}_light.json",
          "--technique", technique, *setting, *more, "--out", out)
     return out
