@@ -39,7 +39,7 @@ def main():
     options = parser.parse_args()
     options.work.mkdir(parents=True, exist_ok=True)
     call = caller(options.lightwell)
-    lines = ["", *sphere_table(options, call), *error_tables(options, call), *agreement(options, call)]
+    lines = ["", *sphere_table(options, call), *spot_falloff(options), *error_tables(options, call), *agreement(options, call)]
     write_between(ROOT / "docs/hosts.md", BEGIN, END, lines)
 
 
@@ -81,6 +81,23 @@ def sphere_table(options, call):
         ours = gi(options, call, program, "sphere", "rsm", "vpls=0 interleave=1 filter=off", options.work / f"{program}_sphere_rsm.exr")
         lines.append(f"| its frame, `rsm` of all texels | | {mean(exr.read(ours)[2], ['R']):.4f} | |")
     return [*lines, ""]
+
+
+def spot_falloff(options):
+    """What Blender's spot sends towards each pixel that it lights, by its own DiffDir: E = I c / d^2."""
+    planes = exr.read(options.frames / "blender" / "spot.exr")[2]
+    eye, axis = room.SPOT["position"], room.unit(room.minus(room.SPOT["target"], room.SPOT["position"]))
+    along = []
+    for i, radiance in enumerate(planes["ViewLayer.DiffDir.R"]):
+        way = room.minus([planes["ViewLayer.Position." + c][i] for c in "XYZ"], eye)
+        squared, normal = sum(p * p for p in way), [planes["ViewLayer.Normal." + c][i] for c in "XYZ"]
+        cosine = -sum(p * q for p, q in zip(way, normal)) / math.sqrt(squared)
+        if radiance > 0.0 and cosine > 0.05:
+            along.append((math.pi * radiance * squared / cosine, sum(p * q for p, q in zip(way, axis)) / math.sqrt(squared)))
+    intensities, ratios = [i for i, _ in along], [i / c for i, c in along]
+    return ["### Blender's spot", "",
+            f"Its power is 4 pi x {room.SPOT['intensity'][0]:.0f} W. Towards the {len(along)} pixels that it lights in the room it sends {min(intensities):.3f} to "
+            f"{max(intensities):.3f} W/sr;", f"divided by the cosine of the angle to its axis, {min(ratios):.4f} to {max(ratios):.4f} W/sr.", ""]
 
 
 def error_tables(options, call):
