@@ -9,7 +9,6 @@ two halves by which its noise is known: paths of one length less those of direct
 """
 import argparse
 import json
-import math
 import pathlib
 import sys
 
