@@ -55,6 +55,10 @@ Parameters parseParameters(const GiOptions& options) {
 
 void noteOddities(const std::string& path, const HostSurfaces& surfaces, bool twoSided) {
     const std::uint64_t shown = std::uint64_t(surfaces.width) * std::uint64_t(surfaces.height) - surfaces.background;
+    if (!surfaces.hasOwnNormals)
+        fmt::print(stderr, "note: {}: no layer with the normal; they are made of neighbouring pixels' places, turned to the camera{}\n", path,
+                   surfaces.lonely == 0 ? ""
+                                        : fmt::format("; {} surface pixels without a usable neighbour are taken as background", surfaces.lonely));
     if (surfaces.spoiled > 0)
         fmt::print(stderr, "note: {}: {} surface pixels whose albedo or direct radiance is negative or no number are taken as background\n", path,
                    surfaces.spoiled);
@@ -98,7 +102,8 @@ void addLights(const GiOptions& options, HostFrame& frame) {
 
 nlohmann::ordered_json surfacesJson(const HostSurfaces& surfaces) {
     return {{"size", {surfaces.width, surfaces.height}}, {"background", surfaces.background}, {"spoiled", surfaces.spoiled},
-            {"away", surfaces.away},                     {"mixed", surfaces.mixed}};
+            {"away", surfaces.away},                     {"mixed", surfaces.mixed},           {"normals_made", !surfaces.hasOwnNormals},
+            {"lonely", surfaces.lonely}};
 }
 
 // As `lightwell render` writes it, and what the light adds to the picture where the albedo is known.
@@ -186,7 +191,7 @@ void runGi(const GiOptions& options) {
 }
 
 void declareInputs(CLI::App& command, GiOptions& options) {
-    command.add_option("--gbuffer", options.gbuffer, "EXR with position or depth, normal, and where known albedo and direct radiance")->required();
+    command.add_option("--gbuffer", options.gbuffer, "EXR with position or depth, and where known normal, albedo and direct radiance")->required();
     command.add_option("--camera", options.camera, "Camera file (JSON) of that picture")->required();
     command.add_option("--rsm", options.rsms, "EXR rendered from a lamp, with albedo; one for each camera of the --light files, in order");
     command.add_option("--light", options.lights, "Light file (JSON): a lamp and the cameras of its maps; may be repeated");

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "cli.h"
+#include "host_normals.h"
 #include "lightwell/lightwell.hpp"
 #include "render_inputs.h"
 
@@ -32,7 +33,7 @@ glm::vec3 at(const Planes& planes, std::size_t i) {
     return {planes[0][i], planes[1][i], planes[2][i]};
 }
 
-bool isFinite(const glm::vec3& v) {
+bool isFinite(const glm::dvec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
@@ -44,6 +45,7 @@ bool isLight(const glm::vec3& v) {
 struct Layers {
     std::optional<Planes> position, depth, normal, albedo, direct;
     bool isUncoloured = false;  // `direct` is L_d over albedo
+    bool hasNormal = false;     // the file's own; else makeMissingNormals sets `normal`
 
     Layers(const studio::ExrLayers& file, const ChannelMap& channels, bool needsAlbedo) {
         position = readRole(file, channels, Role::Position);
@@ -52,7 +54,8 @@ struct Layers {
             throw UsageError(fmt::format("{}: expected a layer with the position or the depth (or --channels position=... or depth=...), "
                                          "got the channels {}",
                                          file.path(), joinNames(file.names())));
-        normal = file.planes(channels.need(file, Role::Normal));
+        normal = readRole(file, channels, Role::Normal);
+        hasNormal = normal.has_value();
         if (needsAlbedo)
             albedo = file.planes(channels.need(file, Role::Albedo));
         else
@@ -64,16 +67,32 @@ struct Layers {
         }
     }
 
-    // False: background.
-    bool findPlace(const HostCamera::Ray& ray, const HostCamera& camera, std::size_t i, glm::vec3& place) const {
+    // None: background.
+    std::optional<glm::dvec3> findPlace(const HostCamera::Ray& ray, const HostCamera& camera, std::size_t i) const {
+        glm::dvec3 place(0.0);
         if (position) {
             place = at(*position, i);
+            // What programs write where they show nothing, if no normal tells.
+            if (!hasNormal && place == glm::dvec3(0.0)) return std::nullopt;
         } else {
             const float value = (*depth)[0][i];
-            if (!std::isfinite(value) || value <= 0.0f || value >= kReach) return false;
-            place = glm::vec3(camera.placeAt(ray, double(value)));
+            if (!std::isfinite(value) || value <= 0.0f || value >= kReach) return std::nullopt;
+            place = camera.placeAt(ray, double(value));
         }
-        return isFinite(place) && glm::length(place) < kReach;
+        if (!isFinite(place) || !(glm::length(place) < double(kReach))) return std::nullopt;
+        return place;
+    }
+
+    // Returns how many surface pixels get none.
+    std::uint64_t makeMissingNormals(const HostCamera& camera, int width, int height) {
+        if (hasNormal) return 0;
+        std::vector<std::optional<glm::dvec3>> places;
+        places.reserve(std::size_t(width) * std::size_t(height));
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x) places.push_back(findPlace(camera.rayThrough(x, y, width, height), camera, places.size()));
+        MadeNormals made = makeNormals(width, height, places, camera);
+        normal = std::move(made.planes);
+        return made.lonely;
     }
 };
 
@@ -81,12 +100,14 @@ struct Layers {
 void readPixel(HostSurfaces& to, const Layers& layers, const HostCamera& camera, bool twoSided, int x, int y) {
     const std::size_t i = std::size_t(y) * std::size_t(to.width) + std::size_t(x);
     const HostCamera::Ray ray = camera.rayThrough(x, y, to.width, to.height);
-    glm::vec3 place(0.0f), normal = at(*layers.normal, i);
+    glm::vec3 normal = at(*layers.normal, i);
     const float length = glm::length(normal);
-    if (!isFinite(normal) || !(length > 0.0f) || !layers.findPlace(ray, camera, i, place)) {
+    const std::optional<glm::dvec3> found = layers.findPlace(ray, camera, i);
+    if (!isFinite(normal) || !(length > 0.0f) || !found) {
         ++to.background;
         return;
     }
+    const glm::vec3 place(*found);
     const glm::vec3 albedo = layers.albedo ? at(*layers.albedo, i) : glm::vec3(0.0f);
     glm::vec3 direct = layers.direct ? at(*layers.direct, i) : glm::vec3(0.0f);
     if (layers.isUncoloured) direct *= albedo;
@@ -134,12 +155,14 @@ LWLight describeLight(const HostLight& host, const std::vector<LWRsm>& rsms) {
 
 HostSurfaces readSurfaces(const std::string& path, const HostCamera& camera, const ChannelMap& channels, bool twoSided, bool needsAlbedo) {
     const studio::ExrLayers file(path);
-    const Layers layers(file, channels, needsAlbedo);
     HostSurfaces surfaces;
     surfaces.width = file.width();
     surfaces.height = file.height();
-    if (surfaces.width > kMaxSize || surfaces.height > kMaxSize)
+    if (surfaces.width > kMaxSize || surfaces.height > kMaxSize)  // before anything of that size is made
         throw UsageError(fmt::format("{}: expected at most {} pixels a side, got {}x{}", path, kMaxSize, surfaces.width, surfaces.height));
+    Layers layers(file, channels, needsAlbedo);
+    surfaces.lonely = layers.makeMissingNormals(camera, surfaces.width, surfaces.height);
+    surfaces.hasOwnNormals = layers.hasNormal;
     for (studio::PlanarBuffer* buffer : {&surfaces.position, &surfaces.normal, &surfaces.albedo, &surfaces.direct})
         *buffer = studio::PlanarBuffer(surfaces.width, surfaces.height, 3);
     surfaces.hasAlbedo = layers.albedo.has_value();

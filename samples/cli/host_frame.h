@@ -20,15 +20,17 @@ struct HostSurfaces {
     int width = 0, height = 0;
     studio::PlanarBuffer position, normal, albedo, direct;  // 3 planes; world; normals unit; direct: L_d, W/(sr m^2)
     bool hasAlbedo = false, hasDirect = false;
+    bool hasOwnNormals = true;     // else made of the places (host_normals.h); then a place of exactly zero is background, too
     double farthest = 1.0;         // along the camera's axis
     std::uint64_t background = 0;  // pixels
     std::uint64_t spoiled = 0;     // of these, pixels that show a surface, but whose albedo or direct radiance is not finite or negative
+    std::uint64_t lonely = 0;      // of these, surfaces that no normal could be made for
     std::uint64_t away = 0;        // surfaces whose normal points away from the camera (with `twoSided`: that were turned about)
     std::uint64_t mixed = 0;       // surfaces whose normal was shorter than 0.99: averaged over several
 };
 
-// `twoSided`: normals that point away from the camera are turned about. Needs position, or depth, and normal; albedo where `needsAlbedo`; takes
-// direct radiance where the file has it. UsageError naming the file and what it has.
+// `twoSided`: normals that point away from the camera are turned about. Needs position or depth; albedo where `needsAlbedo`; takes normals
+// (makes them where it has none) and direct radiance where the file has them. UsageError naming the file and what it has.
 HostSurfaces readSurfaces(const std::string& path, const HostCamera& camera, const ChannelMap& channels, bool twoSided, bool needsAlbedo);
 
 // A texel's reflected flux, W (docs/conventions.md), three planes: albedo times what the lamp sends through the texel; or, with
