@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 
 #include "check_findings.h"
 #include "cli.h"
@@ -27,6 +28,20 @@ bool usesLibrary(const GiOptions& options) {
     return options.technique != kDirectOnly && options.technique != kTruth;
 }
 
+// What is written over an input is gone, and the same call a second time would read its own result.
+void requireOtherThanInputs(const GiOptions& options) {
+    std::vector<std::pair<std::string, std::string>> inputs = {{"--gbuffer", options.gbuffer}, {"--camera", options.camera}};
+    for (const std::string& path : options.rsms) inputs.emplace_back("--rsm", path);
+    for (const std::string& path : options.lights) inputs.emplace_back("--light", path);
+    for (const std::string& path : options.truths) inputs.emplace_back("--truth", path);
+    for (const std::string& out : options.outs)
+        for (const auto& [option, path] : inputs) {
+            std::error_code missing;
+            if (std::filesystem::equivalent(out, path, missing))
+                throw UsageError(fmt::format("--out '{}': expected another file than {} '{}', which is read", out, option, path));
+        }
+}
+
 void checkOptions(const GiOptions& options) {
     std::vector<std::string> techniques = techniqueNames();
     techniques.insert(techniques.end(), {kDirectOnly, kTruth});
@@ -40,6 +55,7 @@ void checkOptions(const GiOptions& options) {
         outputs.emplace_back("--out", out);
     }
     requireDistinct(outputs);
+    requireOtherThanInputs(options);
     if (!usesLibrary(options) && !options.assignments.empty())
         throw UsageError(fmt::format("--set: technique {} has no parameters", options.technique));
     if (options.technique == kTruth && options.truths.empty()) throw UsageError("--technique truth: expected --truth FILE.exr with it");
@@ -163,6 +179,13 @@ void print(const GiOptions& options, const HostFrame& frame, const RenderReport&
     fmt::print("{}\n", json.dump(2));
 }
 
+bool isZero(const studio::PlanarBuffer& light) {
+    for (int y = 0; y < light.height(); ++y)
+        for (int x = 0; x < light.width(); ++x)
+            if (light.rgb(x, y) != glm::vec3(0.0f)) return false;
+    return true;
+}
+
 void runGi(const GiOptions& options) {
     checkOptions(options);
     if (usesLibrary(options)) parseParameters(options);  // refuse before reading anything
@@ -185,6 +208,8 @@ void runGi(const GiOptions& options) {
                          options.noCheck ? nullptr : &findings);
     else if (options.technique == kTruth)
         light.irradiance = asUsage([&] { return readTruth(options.truths, truthChannels, frame.view(), image); });
+    if (usesLibrary(options) && frame.lights().empty() && isZero(light.irradiance))
+        fmt::print(stderr, "note: the light is zero everywhere: {} lights by lamps' maps, and there is no --light\n", options.technique);
     report.hash = hashBits(light.irradiance);
     writeOutputs(options, frame, assemble(frame, light, report, std::move(image)), report);
     print(options, frame, report, findings);

@@ -78,9 +78,9 @@ GiLight renderGi(const HostFrame& host, const Parameters& parameters, const Devi
     LWOutput output = lightwell::make<LWOutput>();
     output.irradiance = describePlanes(light.irradiance);
     output.validity = describePlanes(light.validity);
-    report.figures.estimatedBytes = device.estimateMemory(parameters.technique().c_str(), descriptor.get(), std::uint32_t(width),
-                                                          std::uint32_t(height), describeFrameOf(host, source, 0));
     asFrame(parameters, [&] {
+        report.figures.estimatedBytes = device.estimateMemory(parameters.technique().c_str(), descriptor.get(), std::uint32_t(width),
+                                                              std::uint32_t(height), describeFrameOf(host, source, 0));
         if (findings != nullptr) {
             const LWFrame frame = describeFrameOf(host, source, 0);
             *findings = lightwell::checkInputs(view, &frame, &host.gbuffer());

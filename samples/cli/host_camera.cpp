@@ -106,7 +106,10 @@ void HostCamera::readDepth(JsonObject& o) {
         if (kind != "axial" && kind != "radial") depth->fail("\"axial\" or \"radial\"");
         isRadial_ = kind == "radial";
     }
-    if (const auto from = o.find("depth_from_near")) near_ = from->number(0.0f, 1e9f);
+    if (const auto from = o.find("depth_from_near")) {
+        near_ = from->number();
+        if (near_ < 0.0 || near_ > 1e9) from->fail("a number from 0 to 1e9");
+    }
 }
 
 glm::dvec2 HostCamera::halfExtent(int width, int height) const {

@@ -20,7 +20,8 @@ constexpr float kRadians = float(kPi / 180.0);
 constexpr double kSamePlace = 1e-4;
 // Cosine of the angle between a sun's rays and its map's axis.
 constexpr double kSameWay = 0.99999;
-constexpr std::size_t kMostProfile = 1024;  // as LWLight
+constexpr std::size_t kMostProfile = 1024;  // as LWLight, as is the largest factor
+constexpr float kLargestFactor = 1e6f;
 
 void readSpotCone(JsonObject& o, Light& light) {
     light.direction = o.need("direction", "three numbers").direction();
@@ -52,7 +53,7 @@ std::vector<float> readProfile(JsonObject& o) {
     if (!value) return profile;
     for (const JsonValue& item : value->list()) {
         profile.push_back(item.number());
-        if (profile.back() < 0.0f) item.fail("a factor, 0 or more");
+        if (profile.back() < 0.0f || profile.back() > kLargestFactor) item.fail("a factor from 0 to 1e6");
     }
     if (profile.size() < 2 || profile.size() > kMostProfile) value->fail(fmt::format("2 to {} factors", kMostProfile));
     return profile;

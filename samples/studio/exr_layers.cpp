@@ -14,15 +14,22 @@ struct Place {
     int part = 0, channel = 0;
 };
 
+// Where the picture lies in a part's data window, which may reach beyond it (overscan).
+struct Window {
+    int left = 0, top = 0, width = 0, height = 0;
+};
+
 void checkPart(const std::string& path, const OIIO::ImageSpec& spec, int part) {
     if (spec.deep || spec.depth > 1)
         throw std::runtime_error(path + ": expected a flat image, got a deep or volume image");
     if (!spec.format.is_floating_point())
         throw std::runtime_error(fmt::format("{}: expected floating-point channels (EXR), got {}", path, spec.format.c_str()));
-    const bool isWhole = spec.x == spec.full_x && spec.y == spec.full_y && spec.width == spec.full_width && spec.height == spec.full_height;
+    const bool isWhole = spec.x <= spec.full_x && spec.y <= spec.full_y && spec.x + spec.width >= spec.full_x + spec.full_width &&
+                         spec.y + spec.height >= spec.full_y + spec.full_height;
     if (!isWhole)
-        throw std::runtime_error(fmt::format("{}: part {}: expected all pixels of the picture of {}x{}, got a data window of {}x{} at ({}, {})", path,
-                                             part, spec.full_width, spec.full_height, spec.width, spec.height, spec.x, spec.y));
+        throw std::runtime_error(fmt::format("{}: part {}: expected all pixels of the picture of {}x{} at ({}, {}), got a data window of {}x{} at ({}, {})", path,
+                                             part, spec.full_width, spec.full_height, spec.full_x, spec.full_y, spec.width, spec.height, spec.x,
+                                             spec.y));
 }
 
 std::string fullName(const OIIO::ImageSpec& spec, const std::string& channel, bool hasParts) {
@@ -35,7 +42,8 @@ std::string fullName(const OIIO::ImageSpec& spec, const std::string& channel, bo
 
 struct ExrLayers::File {
     std::unique_ptr<OIIO::ImageInput> input;
-    std::vector<Place> places;  // of each name
+    std::vector<Place> places;    // of each name
+    std::vector<Window> windows;  // of each part
 };
 
 ExrLayers::ExrLayers(const std::string& path) : file_(std::make_unique<File>()), path_(path) {
@@ -45,13 +53,16 @@ ExrLayers::ExrLayers(const std::string& path) : file_(std::make_unique<File>()),
     for (int part = 0; file_->input->seek_subimage(part, 0); ++part) {
         const OIIO::ImageSpec spec = file_->input->spec();
         checkPart(path, spec, part);
-        if (part > 0 && (spec.width != width_ || spec.height != height_))
+        if (part > 0 && (spec.full_width != width_ || spec.full_height != height_))
             throw std::runtime_error(fmt::format("{}: expected all parts of the first one's {}x{} pixels, part {} has {}x{}", path, width_,
-                                                 height_, part, spec.width, spec.height));
-        width_ = spec.width;
-        height_ = spec.height;
+                                                 height_, part, spec.full_width, spec.full_height));
+        width_ = spec.full_width;
+        height_ = spec.full_height;
+        file_->windows.push_back({spec.full_x - spec.x, spec.full_y - spec.y, spec.width, spec.height});
         for (int channel = 0; channel < spec.nchannels; ++channel) {
-            names_.push_back(fullName(spec, spec.channelnames[std::size_t(channel)], hasParts));
+            const std::string name = fullName(spec, spec.channelnames[std::size_t(channel)], hasParts);
+            if (has(name)) throw std::runtime_error(fmt::format("{}: expected channels of different names, got {} twice", path, name));
+            names_.push_back(name);
             file_->places.push_back({part, channel});
         }
     }
@@ -77,11 +88,16 @@ std::vector<std::vector<float>> ExrLayers::planes(const std::vector<std::string>
         std::size_t end = i + 1;
         while (end < places.size() && places[end].part == places[i].part && places[end].channel == places[end - 1].channel + 1) ++end;
         const std::size_t count = end - i;
-        std::vector<float> values(pixels * count);
+        const Window& window = file_->windows[std::size_t(places[i].part)];
+        std::vector<float> values(std::size_t(window.width) * std::size_t(window.height) * count);
         if (!file_->input->read_image(places[i].part, 0, places[i].channel, places[i].channel + int(count), OIIO::TypeFloat, values.data()))
             throw std::runtime_error(path_ + ": cannot read: " + file_->input->geterror());
         for (std::size_t c = 0; c < count; ++c)
-            for (std::size_t pixel = 0; pixel < pixels; ++pixel) result[i + c][pixel] = values[pixel * count + c];
+            for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
+                const std::size_t x = pixel % std::size_t(width_), y = pixel / std::size_t(width_);
+                const std::size_t from = (y + std::size_t(window.top)) * std::size_t(window.width) + x + std::size_t(window.left);
+                result[i + c][pixel] = values[from * count + c];
+            }
         i = end;
     }
     return result;

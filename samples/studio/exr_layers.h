@@ -12,7 +12,8 @@ namespace studio {
 class ExrLayers {
 public:
     // Errors (std::runtime_error, naming the path): not an image; not floating point; deep; parts of different sizes; a data window
-    // that is not the display window (a cropped picture: which pixels of the camera's it holds would be lost).
+    // that lacks pixels of the display window (a cropped picture). Of one that reaches beyond it (overscan) the display window is read, which is
+    // the camera's picture.
     explicit ExrLayers(const std::string& path);
     ~ExrLayers();
     ExrLayers(const ExrLayers&) = delete;
