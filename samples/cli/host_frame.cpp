@@ -151,6 +151,17 @@ LWLight describeLight(const HostLight& host, const std::vector<LWRsm>& rsms) {
     return to;
 }
 
+void requireSurfaces(const std::string& path, const HostSurfaces& surfaces) {
+    if (surfaces.farthest > 0.0) return;
+    std::string got = "all of them behind it; position and camera do not fit together";
+    if (surfaces.background == std::uint64_t(surfaces.width) * std::uint64_t(surfaces.height)) {
+        got = "background alone";
+        if (surfaces.lonely > 0)
+            got += fmt::format(" (no layer with the normal, and {} surface pixels without neighbours to make one of)", surfaces.lonely);
+    }
+    throw UsageError(fmt::format("{}: expected a surface before the camera, got {}", path, got));
+}
+
 }  // namespace
 
 HostSurfaces readSurfaces(const std::string& path, const HostCamera& camera, const ChannelMap& channels, bool twoSided, bool needsAlbedo) {
@@ -170,11 +181,7 @@ HostSurfaces readSurfaces(const std::string& path, const HostCamera& camera, con
     surfaces.farthest = 0.0;
     for (int y = 0; y < surfaces.height; ++y)
         for (int x = 0; x < surfaces.width; ++x) readPixel(surfaces, layers, camera, twoSided, x, y);
-    if (!(surfaces.farthest > 0.0))
-        throw UsageError(fmt::format("{}: expected a surface before the camera, got {}", path,
-                                     surfaces.background == std::uint64_t(surfaces.width) * std::uint64_t(surfaces.height)
-                                         ? "background alone"
-                                         : "all of them behind it; position and camera do not fit together"));
+    requireSurfaces(path, surfaces);
     return surfaces;
 }
 
