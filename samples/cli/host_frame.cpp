@@ -46,6 +46,7 @@ struct Layers {
     std::optional<Planes> position, depth, normal, albedo, direct;
     bool isUncoloured = false;  // `direct` is L_d over albedo
     bool hasNormal = false;     // the file's own; else makeMissingNormals sets `normal`
+    bool hasHalfPlaces = false;
 
     Layers(const studio::ExrLayers& file, const ChannelMap& channels, bool needsAlbedo) {
         position = readRole(file, channels, Role::Position);
@@ -54,6 +55,7 @@ struct Layers {
             throw UsageError(fmt::format("{}: expected a layer with the position or the depth (or --channels position=... or depth=...), "
                                          "got the channels {}",
                                          file.path(), joinNames(file.names())));
+        hasHalfPlaces = file.isHalf(channels.find(file, position ? Role::Position : Role::Depth)->front());
         normal = readRole(file, channels, Role::Normal);
         hasNormal = normal.has_value();
         if (needsAlbedo)
@@ -174,6 +176,7 @@ HostSurfaces readSurfaces(const std::string& path, const HostCamera& camera, con
     Layers layers(file, channels, needsAlbedo);
     surfaces.lonely = layers.makeMissingNormals(camera, surfaces.width, surfaces.height);
     surfaces.hasOwnNormals = layers.hasNormal;
+    surfaces.hasHalfPlaces = layers.hasHalfPlaces;
     for (studio::PlanarBuffer* buffer : {&surfaces.position, &surfaces.normal, &surfaces.albedo, &surfaces.direct})
         *buffer = studio::PlanarBuffer(surfaces.width, surfaces.height, 3);
     surfaces.hasAlbedo = layers.albedo.has_value();

@@ -21,6 +21,7 @@ struct HostSurfaces {
     studio::PlanarBuffer position, normal, albedo, direct;  // 3 planes; world; normals unit; direct: L_d, W/(sr m^2)
     bool hasAlbedo = false, hasDirect = false;
     bool hasOwnNormals = true;     // else made of the places (host_normals.h); then a place of exactly zero is background, too
+    bool hasHalfPlaces = false;    // position or depth were half floats
     double farthest = 1.0;         // along the camera's axis
     std::uint64_t background = 0;  // pixels
     std::uint64_t spoiled = 0;     // of these, pixels that show a surface, but whose albedo or direct radiance is not finite or negative

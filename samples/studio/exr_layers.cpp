@@ -12,6 +12,7 @@ namespace {
 
 struct Place {
     int part = 0, channel = 0;
+    bool isHalf = false;
 };
 
 // Where the picture lies in a part's data window, which may reach beyond it (overscan).
@@ -63,7 +64,7 @@ ExrLayers::ExrLayers(const std::string& path) : file_(std::make_unique<File>()),
             const std::string name = fullName(spec, spec.channelnames[std::size_t(channel)], hasParts);
             if (has(name)) throw std::runtime_error(fmt::format("{}: expected channels of different names, got {} twice", path, name));
             names_.push_back(name);
-            file_->places.push_back({part, channel});
+            file_->places.push_back({part, channel, spec.channelformat(channel) == OIIO::TypeHalf});
         }
     }
 }
@@ -72,6 +73,11 @@ ExrLayers::~ExrLayers() = default;
 
 bool ExrLayers::has(const std::string& name) const {
     return std::find(names_.begin(), names_.end(), name) != names_.end();
+}
+
+bool ExrLayers::isHalf(const std::string& name) const {
+    const auto found = std::find(names_.begin(), names_.end(), name);
+    return found != names_.end() && file_->places[std::size_t(found - names_.begin())].isHalf;
 }
 
 std::vector<std::vector<float>> ExrLayers::planes(const std::vector<std::string>& names) const {

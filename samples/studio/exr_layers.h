@@ -26,6 +26,7 @@ public:
     // part's already.
     const std::vector<std::string>& names() const { return names_; }
     bool has(const std::string& name) const;
+    bool isHalf(const std::string& name) const;  // held as half floats; false where there is none of that name
     // Each row after row, the top one first. Throws where there is none of a name, or the file is damaged. One call for channels that belong
     // together: the file is decompressed anew for each.
     std::vector<std::vector<float>> planes(const std::vector<std::string>& names) const;
