@@ -109,7 +109,8 @@ studio::PlanarBuffer readIrradiance(const std::string& path, const ChannelMap& c
     if (file.width() != view.width || file.height() != view.height)
         throw UsageError(fmt::format("--truth {}: expected the G-buffer's {}x{} pixels, got {}x{}", path, view.width, view.height, file.width(),
                                      file.height()));
-    const auto uncoloured = channels.find(file, Role::IndirectUncoloured);
+    const bool wantsIrradiance = channels.preferred(Role::IndirectUncoloured, Role::Irradiance) == Role::Irradiance;
+    const auto uncoloured = wantsIrradiance ? std::nullopt : channels.find(file, Role::IndirectUncoloured);
     const auto planes = file.planes(uncoloured ? *uncoloured : channels.need(file, Role::Irradiance));
     const float factor = uncoloured ? kPi : 1.0f;
     studio::PlanarBuffer irradiance(view.width, view.height, 3);

@@ -33,6 +33,9 @@ public:
     // The channels of `role` in `file`, 1 or 3; none where the file has none. UsageError where the map names one that the file lacks, or
     // where several layers of the file would do: lists them.
     std::optional<std::vector<std::string>> find(const studio::ExrLayers& file, Role role) const;
+    bool names(Role role) const { return given_.count(role) != 0; }  // by the user
+    // Of two roles that serve the same end: `second` where the user has named that one alone, else `first`.
+    Role preferred(Role first, Role second) const { return names(second) && !names(first) ? second : first; }
     // UsageError that lists the file's channels where there is none.
     std::vector<std::string> need(const studio::ExrLayers& file, Role role) const;
 

@@ -49,7 +49,7 @@ struct Layers {
     bool hasHalfPlaces = false;
 
     Layers(const studio::ExrLayers& file, const ChannelMap& channels, bool needsAlbedo) {
-        position = readRole(file, channels, Role::Position);
+        if (channels.preferred(Role::Position, Role::Depth) == Role::Position) position = readRole(file, channels, Role::Position);
         if (!position) depth = readRole(file, channels, Role::Depth);
         if (!position && !depth)
             throw UsageError(fmt::format("{}: expected a layer with the position or the depth (or --channels position=... or depth=...), "
@@ -62,7 +62,10 @@ struct Layers {
             albedo = file.planes(channels.need(file, Role::Albedo));
         else
             albedo = readRole(file, channels, Role::Albedo);
-        direct = readRole(file, channels, Role::Direct);
+        if (!albedo && channels.names(Role::DirectUncoloured))
+            throw UsageError(fmt::format("{}: expected an albedo beside the direct-uncoloured that is named, for it is over the albedo; got the channels {}",
+                                         file.path(), joinNames(file.names())));
+        if (channels.preferred(Role::Direct, Role::DirectUncoloured) == Role::Direct) direct = readRole(file, channels, Role::Direct);
         if (!direct && albedo) {
             direct = readRole(file, channels, Role::DirectUncoloured);
             isUncoloured = direct.has_value();

@@ -179,6 +179,16 @@ class Files(Inputs):
         self.assertEqual(report["size"], list(SIZE))
         self.assertEqual(read, made)
 
+    def test_named_channels_win(self):
+        """A depth that the user names is taken instead of positions that have a known name."""
+        planes = depths([plane((0.0, -1.0, 0.0), 2.0)])
+        planes = {"far": planes["depth"], **{"P." + c: [1.0] * len(planes["depth"]) for c in "XYZ"}}
+        name, camera = self.write_exr("both.exr", SIZE, planes), self.camera(VIEW.keys("blender"))
+        _, made, _ = self.surfaces(name, camera, "--channels", "depth=far")
+        self.assertLess(max(degrees((0, -1, 0), n) for n in made), EXACT_DEGREES)
+        self.refused(["gi", "--gbuffer", name, "--camera", camera, "--technique", "none", "--out", self.path("x.exr"), "--channels", "depth=far",
+                      "direct-uncoloured=P.X,P.Y,P.Z"], "albedo beside the direct-uncoloured")
+
     def test_whole_numbers(self):
         """A channel of whole numbers beside floats, as renderers write identifiers: the floats are read."""
         planes = depths([plane((0.0, -1.0, 0.0), 2.0)])
