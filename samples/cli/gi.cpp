@@ -73,8 +73,8 @@ void noteOddities(const std::string& path, const HostSurfaces& surfaces, bool tw
     const std::uint64_t shown = std::uint64_t(surfaces.width) * std::uint64_t(surfaces.height) - surfaces.background;
     if (!surfaces.hasOwnNormals)
         fmt::print(stderr, "note: {}: no layer with the normal; they are made of neighbouring pixels' places, turned to the camera{}{}\n", path,
-                   surfaces.hasHalfPlaces ? "; places in half floats are rounded to 1/2048 of themselves, which tilts the normals of pixels that lie close "
-                                            "together: full floats avoid that"
+                   surfaces.hasHalfPlaces ? "; places in half floats are rounded to 1/2048 of themselves, which tilts the normals of pixels that lie "
+                                            "close together: full floats avoid that"
                                           : "",
                    surfaces.lonely == 0 ? ""
                                         : fmt::format("; {} surface pixels without a usable neighbour are taken as background", surfaces.lonely));

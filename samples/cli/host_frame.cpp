@@ -63,7 +63,8 @@ struct Layers {
         else
             albedo = readRole(file, channels, Role::Albedo);
         if (!albedo && channels.names(Role::DirectUncoloured))
-            throw UsageError(fmt::format("{}: expected an albedo beside the direct-uncoloured that is named, for it is over the albedo; got the channels {}",
+            throw UsageError(fmt::format("{}: expected an albedo beside the direct-uncoloured that is named, for it is over the albedo; "
+                                         "got the channels {}",
                                          file.path(), joinNames(file.names())));
         if (channels.preferred(Role::Direct, Role::DirectUncoloured) == Role::Direct) direct = readRole(file, channels, Role::Direct);
         if (!direct && albedo) {

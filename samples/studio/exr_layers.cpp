@@ -28,9 +28,10 @@ void checkPart(const std::string& path, const OIIO::ImageSpec& spec, int part) {
     const bool isWhole = spec.x <= spec.full_x && spec.y <= spec.full_y && spec.x + spec.width >= spec.full_x + spec.full_width &&
                          spec.y + spec.height >= spec.full_y + spec.full_height;
     if (!isWhole)
-        throw std::runtime_error(fmt::format("{}: part {}: expected all pixels of the picture of {}x{} at ({}, {}), got a data window of {}x{} at ({}, {})", path,
-                                             part, spec.full_width, spec.full_height, spec.full_x, spec.full_y, spec.width, spec.height, spec.x,
-                                             spec.y));
+        throw std::runtime_error(fmt::format("{}: part {}: expected all pixels of the picture of {}x{} at ({}, {}), got a data window of {}x{} at "
+                                             "({}, {})",
+                                             path, part, spec.full_width, spec.full_height, spec.full_x, spec.full_y, spec.width, spec.height,
+                                             spec.x, spec.y));
 }
 
 std::string fullName(const OIIO::ImageSpec& spec, const std::string& channel, bool hasParts) {

@@ -99,7 +99,8 @@ class MadeNormals(Inputs):
         self.assertTrue(all(rsm["normals_made"] for rsm in report["rsms"]))
         view = Camera((0.4, -0.3, 0.2), (0.6, 0.8, 0.0), (0.8, -0.6, 0.0), 0.7)
         places = sphere_picture(view, *SIZE, lambda camera, ray, place: dict(zip("xyz", place)))
-        step = math.degrees(2 * view.tangent / SIZE[1]) * math.sqrt(2.0)  # of a pixel along both axes; seen from the middle it is no more than twice that
+        # Of a pixel along both axes; seen from the middle it is no more than twice that.
+        step = math.degrees(2 * view.tangent / SIZE[1]) * math.sqrt(2.0)
         for i, n in enumerate(zip(*(planes["normal." + c] for c in "RGB"))):
             self.assertLess(degrees([-places[c][i] / RADIUS for c in "xyz"], n), 2.0 * step)
         self.near(planes["R"], RHO * INTENSITY / RADIUS ** 2, 0.1)
