@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "check_findings.h"
 #include "check_light.h"
 #include "check_plant.h"
 #include "cli.h"
@@ -22,19 +23,6 @@ struct CheckOptions {
     int rsmSize = 256, cascades = 1;
     bool asJson = false;
 };
-
-constexpr const char* kSeverities[] = {"note", "warning", "error"};
-
-const char* faultName(LWInputFault fault) {
-    auto info = lightwell::make<LWInputFaultInfo>();
-    lightwell::check(lwDescribeInputFault(std::uint32_t(fault), &info));
-    return info.name;
-}
-
-std::string colourText(const float (&colour)[3]) {
-    const auto byte = [&](int c) { return int(std::lround(255.0f * studio::srgbEncode(colour[c]))); };
-    return fmt::format("#{:02x}{:02x}{:02x}", byte(0), byte(1), byte(2));
-}
 
 const Plant* findPlant(const std::string& name) {
     if (name.empty()) return nullptr;
@@ -64,14 +52,6 @@ void requireLights(const Plant& plant, const studio::Scene& scene) {
                                      scene.name));
 }
 
-nlohmann::ordered_json toJson(const LWInputFinding& f) {
-    return {{"fault", faultName(f.fault)},    {"severity", kSeverities[f.severity]},
-            {"argument", f.argument},         {"affected", f.affected},
-            {"examined", f.examined},         {"measured", f.measured},
-            {"expected", f.expected},         {"confidence", f.confidence},
-            {"colour", colourText(f.colour)}, {"message", f.message}};
-}
-
 nlohmann::ordered_json toJson(const std::string& technique, const LightChange& change) {
     if (!change.refusal.empty()) return {{"technique", technique}, {"refusal", change.refusal}};
     return {{"technique", technique}, {"mean", change.mean}, {"black", change.black}, {"off", change.off}};
@@ -93,14 +73,14 @@ void print(const CheckOptions& options, const std::string& scene, const std::str
                                         {"size", {size.width, size.height}},
                                         {"planted", options.plant}};
         document["findings"] = nlohmann::ordered_json::array();
-        for (const LWInputFinding& f : findings) document["findings"].push_back(toJson(f));
+        for (const LWInputFinding& f : findings) document["findings"].push_back(findingJson(f));
         if (change) document["light"] = toJson(options.light, *change);
         // A figure may be infinite in spoilt inputs; JSON has no word for that and gets null.
         fmt::print("{}\n", document.dump(2));
         return;
     }
     for (const LWInputFinding& f : findings) {
-        fmt::print("{} {}: {}\n", kSeverities[f.severity], faultName(f.fault), f.argument);
+        fmt::print("{} {}: {}\n", severityName(f), faultName(f.fault), f.argument);
         fmt::print("  {}\n", f.message);
         fmt::print("  {} of {} affected, measured {:.4g}, expected {:.4g}, confidence {:.2f}{}\n",
                    f.affected, f.examined, f.measured, f.expected, f.confidence,

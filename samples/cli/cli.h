@@ -96,5 +96,6 @@ void addProbes(CLI::App& app);
 void addStability(CLI::App& app);
 void addCheck(CLI::App& app);
 void addPlan(CLI::App& app);
+void addGi(CLI::App& app);
 
 }  // namespace cli

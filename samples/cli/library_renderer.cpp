@@ -25,6 +25,8 @@ std::vector<PassTime> passTimes(const LWStats& stats) {
     return passes;
 }
 
+}  // namespace
+
 FrameSample describeFrame(const LWStats& stats, double wallMilliseconds) {
     FrameSample frame;
     frame.passes = passTimes(stats);
@@ -38,8 +40,6 @@ FrameSample describeFrame(const LWStats& stats, double wallMilliseconds) {
         frame.choices.emplace_back(stats.choices[i].name, stats.choices[i].reason);
     return frame;
 }
-
-}  // namespace
 
 LibraryRenderer::LibraryRenderer(const lightwell::Device& device, const Parameters& parameters,
                                  const RenderInputs& inputs, Quantity quantity, float roughness)

@@ -6,6 +6,9 @@
 
 namespace cli {
 
+// A frame's statistics, and its time on the host's clock.
+FrameSample describeFrame(const LWStats& stats, double wallMilliseconds);
+
 class LibraryRenderer final : public IndirectRenderer {
 public:
     LibraryRenderer(const lightwell::Device& device, const Parameters& parameters,

@@ -94,6 +94,7 @@ int main(int argc, char** argv) {
         cli::addPlaceVpls(app);
         cli::addCheck(app);
         cli::addPlan(app);
+        cli::addGi(app);
         cli::addCompletion(app);
         cli::addManual(app);
         app.footer(kFooter);  // last: commands begin with the footer that stands here

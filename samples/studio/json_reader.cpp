@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <fstream>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -157,6 +158,26 @@ void JsonObject::finish() const {
         for (const std::string& name : known_) names += (names.empty() ? "" : ", ") + name;
         throw std::runtime_error(fmt::format("{}: {}: unknown key; expected one of: {}", value_.file(),
                                              joined(value_.key(), item.key()), names));
+    }
+}
+
+nlohmann::json readJsonFile(const std::string& path) {
+    std::ifstream in(path);
+    if (!in) throw std::runtime_error(fmt::format("{}: can't be read", path));
+    std::vector<std::set<std::string>> keys;
+    const auto refuseTwice = [&](int, nlohmann::json::parse_event_t event, nlohmann::json& parsed) {
+        if (event == nlohmann::json::parse_event_t::object_start) keys.emplace_back();
+        if (event == nlohmann::json::parse_event_t::object_end) keys.pop_back();
+        if (event == nlohmann::json::parse_event_t::key &&
+            !keys.back().insert(parsed.get<std::string>()).second)
+            throw std::runtime_error(
+                fmt::format("\"{}\": expected once in an object, got twice", parsed.get<std::string>()));
+        return true;
+    };
+    try {
+        return nlohmann::json::parse(in, refuseTwice);
+    } catch (const std::exception& error) {
+        throw std::runtime_error(fmt::format("{}: {}", path, error.what()));
     }
 }
 

@@ -60,4 +60,8 @@ private:
     std::set<std::string> known_;
 };
 
+// The document in a file, with no key twice in one object (a slip of a hand's; of two values the last would count). std::runtime_error
+// naming the path.
+nlohmann::json readJsonFile(const std::string& path);
+
 }  // namespace studio

@@ -159,25 +159,7 @@ glm::mat4 poseOf(const Scene& scene, const std::string& object, float time) {
 }  // namespace
 
 StaticVpls readStaticVpls(const std::string& path) {
-    std::ifstream in(path);
-    if (!in) throw std::runtime_error(fmt::format("{}: can't be read", path));
-    nlohmann::json document;
-    // A key twice is a slip of a hand's; of two values the last would count.
-    std::vector<std::set<std::string>> keys;
-    const auto refuseTwice = [&](int, nlohmann::json::parse_event_t event, nlohmann::json& parsed) {
-        if (event == nlohmann::json::parse_event_t::object_start) keys.emplace_back();
-        if (event == nlohmann::json::parse_event_t::object_end) keys.pop_back();
-        if (event == nlohmann::json::parse_event_t::key &&
-            !keys.back().insert(parsed.get<std::string>()).second)
-            throw std::runtime_error(
-                fmt::format("\"{}\": expected once in an object, got twice", parsed.get<std::string>()));
-        return true;
-    };
-    try {
-        document = nlohmann::json::parse(in, refuseTwice);
-    } catch (const std::exception& error) {
-        throw std::runtime_error(fmt::format("{}: {}", path, error.what()));
-    }
+    const nlohmann::json document = readJsonFile(path);
     return readDocument(JsonValue(document, path, ""));
 }
 

@@ -1,4 +1,4 @@
-"""The part of OpenEXR that the tests of the command line read: scan lines, ZIP or none, float and half.
+"""The part of OpenEXR that the tests of the command line read (scan lines, ZIP or none, float and half) and write (no compression).
 
 Written from the file format's description, sharing nothing with the program under test.
 """
@@ -71,3 +71,29 @@ def read(path):
                 pos += width * _SIZES[kind]
     texts = {name: blob.decode() for name, (kind, blob) in attributes.items() if kind == "string"}
     return width, height, planes, texts
+
+
+def write(path, width, height, planes, half=False, data_window=None):
+    """{channel: list of floats}, row after row, without compression. `data_window`: left, top, right, bottom, where it is not all of the picture."""
+    window = struct.pack("<4i", *(data_window or (0, 0, width - 1, height - 1)))
+    whole = struct.pack("<4i", 0, 0, width - 1, height - 1)
+    names = sorted(planes)
+    channels = b"".join(name.encode() + b"\0" + struct.pack("<IIii", 1 if half else 2, 0, 1, 1) for name in names) + b"\0"
+    attributes = [("channels", "chlist", channels), ("compression", "compression", b"\0"), ("dataWindow", "box2i", window),
+                  ("displayWindow", "box2i", whole), ("lineOrder", "lineOrder", b"\0"), ("pixelAspectRatio", "float", struct.pack("<f", 1.0)),
+                  ("screenWindowCenter", "v2f", struct.pack("<ff", 0.0, 0.0)), ("screenWindowWidth", "float", struct.pack("<f", 1.0))]
+    head = struct.pack("<II", 20000630, 2)
+    for name, kind, blob in attributes:
+        head += name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<I", len(blob)) + blob
+    head += b"\0"
+    left, top, right, bottom = struct.unpack("<4i", window)
+    columns, rows = right - left + 1, bottom - top + 1
+    blocks, at = [], len(head) + 8 * rows
+    offsets = []
+    for row in range(rows):
+        line = b"".join(struct.pack("<%d%s" % (columns, "e" if half else "f"), *planes[name][row * columns:(row + 1) * columns]) for name in names)
+        blocks.append(struct.pack("<ii", top + row, len(line)) + line)
+        offsets.append(at)
+        at += len(blocks[-1])
+    with open(path, "wb") as file:
+        file.write(head + struct.pack("<%dQ" % rows, *offsets) + b"".join(blocks))

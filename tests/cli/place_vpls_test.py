@@ -5,59 +5,16 @@ Usage: place_vpls_test.py PROGRAM [unittest options]. Python's standard library 
 import json
 import math
 import os
-import re
 import sys
 import unittest
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import schemas  # noqa: E402
 from cli_test import SIZE, SUM_ROUNDING, CommandLine, png_size  # noqa: E402
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
-with open(os.path.join(ROOT, "docs", "static-vpls.schema.json"), encoding="utf-8") as schema_file:
-    SCHEMA = json.load(schema_file)
+SCHEMA = schemas.read(os.path.join(ROOT, "docs", "static-vpls.schema.json"))
 QUICK = ["--points", "8", "--paths", "400", "--cap", "40"]
-TYPES = {"object": dict, "array": list, "string": str}
-
-
-def is_number(value):
-    return isinstance(value, (int, float)) and not isinstance(value, bool)
-
-
-def faults(value, schema, where="file"):
-    """What a schema has against a value; of JSON Schema the words that ours uses, and an error for any other."""
-    if "$ref" in schema:
-        schema = {**SCHEMA["$defs"][schema["$ref"].rsplit("/", 1)[1]], **{k: v for k, v in schema.items() if k != "$ref"}}
-    found = []
-    for word, rule in schema.items():
-        if word == "type":
-            fits = (is_number(value) if rule == "number" else is_number(value) and value == int(value) if rule == "integer"
-                    else isinstance(value, TYPES[rule]))
-            if not fits:
-                return ["%s: not of type %s" % (where, rule)]
-        elif word == "const":
-            found += [where] if value != rule else []
-        elif word == "oneOf":
-            found += [where] if sum(not faults(value, option, where) for option in rule) != 1 else []
-        elif word == "properties":
-            for name in value.keys() & rule.keys():
-                found += faults(value[name], rule[name], where + "." + name)
-        elif word == "additionalProperties":
-            found += [where + "." + name for name in value.keys() - schema["properties"].keys()]
-        elif word == "required":
-            found += [where + "." + name for name in rule if name not in value]
-        elif word == "items":
-            for index, item in enumerate(value):
-                found += faults(item, rule, "%s[%d]" % (where, index))
-        elif word in ("minimum", "maximum", "exclusiveMinimum"):
-            fits = value >= rule if word == "minimum" else value <= rule if word == "maximum" else value > rule
-            found += [] if fits else [where]
-        elif word in ("minItems", "maxItems", "minLength"):
-            found += [] if (len(value) <= rule if word == "maxItems" else len(value) >= rule) else [where]
-        elif word == "pattern":
-            found += [] if re.search(rule, value) else [where]
-        elif word not in ("$schema", "$defs", "title", "description"):
-            raise ValueError("schema word %s" % word)
-    return found
 
 
 class PlaceVpls(CommandLine):
@@ -70,7 +27,7 @@ class PlaceVpls(CommandLine):
         """Cornell's box: what is found, what it stands for, and a file that the schema accepts."""
         png = self.path("vpls.png")
         report, placed = self.place("cornell", "a.json", *QUICK, *SIZE, "--png", png)
-        self.assertEqual(faults(placed, SCHEMA), [])
+        self.assertEqual(schemas.faults(placed, SCHEMA), [])
         self.assertEqual(png_size(png), (96, 54))
         self.assertEqual(report["vpls"], len(placed["vpls"]))
         self.assertLessEqual(report["vpls"], 40)
@@ -110,7 +67,7 @@ class PlaceVpls(CommandLine):
         self.assertEqual(kept[0]["normal"], [0, 1, 0])
         self.assertEqual(kept[0]["light_mask"], "0x5")
         self.assertNotIn("weight", kept[0])
-        self.assertEqual(faults(again, SCHEMA), [])
+        self.assertEqual(schemas.faults(again, SCHEMA), [])
         self.assertGreater(sum(v.get("population", 0) for v in again["vpls"]), 1.5 * sum(v.get("population", 0) for v in placed["vpls"]))
 
     def test_moving_objects(self):
@@ -176,7 +133,7 @@ class PlaceVpls(CommandLine):
                 "vpls": [{"name": "n", "object": "o", "position": [1, 2.5, 3], "normal": [0, 0, 5], "reflectance": [0, 0.5, 1],
                           "weight": 1e-9, "light_mask": 4294967295, "receiver_mask": "0xff", "population": 0}],
                 "blockers": [{"name": "b", "center": [0, 0, 0], "radius": 1e-3}]}
-        self.assertEqual(faults(good, SCHEMA), [])
+        self.assertEqual(schemas.faults(good, SCHEMA), [])
         spoilt = [({"version": 2}, {}, {}), ({"format": "x"}, {}, {}), ({"vpls": 1}, {}, {}), ({"more": 1}, {}, {}), ({"metres_per_unit": 0}, {}, {}),
                   ({"area_per_weight": -1}, {}, {}), ({}, {"position": [1, 2]}, {}), ({}, {"reflectance": 1.1}, {}), ({}, {"reflectance": [0, 0, -0.1]}, {}),
                   ({}, {"weight": 0}, {}), ({}, {"light_mask": 0}, {}), ({}, {"light_mask": "0x00"}, {}), ({}, {"weight": "1"}, {}), ({}, {"light_mask": -1}, {}), ({}, {"light_mask": 4294967296}, {}),
@@ -185,7 +142,7 @@ class PlaceVpls(CommandLine):
         path = self.path("v.json")
         for root, vpl, blocker in spoilt:
             bad = {**good, "vpls": [{**good["vpls"][0], **vpl}], "blockers": [{**good["blockers"][0], **blocker}], **root}
-            self.assertNotEqual(faults(bad, SCHEMA), [], (root, vpl, blocker))
+            self.assertNotEqual(schemas.faults(bad, SCHEMA), [], (root, vpl, blocker))
             with open(path, "w", encoding="utf-8") as file:
                 json.dump(bad, file)
             key = list({**root, **vpl, **blocker})[0]
