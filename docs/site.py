@@ -17,7 +17,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 
 # What the sidebar shows, in this order. A page of docs/techniques that is not named stands behind the one whose name it begins with.
 SECTIONS = [
-    ("guide", "Guide", ["getting-started", "integration", "python", "packaging", "conventions", "checking-inputs", "troubleshooting", "choosing", "planner",
+    ("guide", "Guide", ["getting-started", "integration", "viewer", "python", "packaging", "conventions", "checking-inputs", "troubleshooting", "choosing", "planner",
                         "points", "temporal_history"]),
     ("techniques", "Techniques", ["techniques/rsm", "techniques/ssvp", "techniques/screen_space", "techniques/horizon", "techniques/ao",
                                   "techniques/lpv", "techniques/cone_tracing", "techniques/static_vpl", "techniques/fallback",
@@ -25,7 +25,7 @@ SECTIONS = [
                                   "techniques/cone_gather", "techniques/voxel_visibility", "techniques/instant_radiosity",
                                   "techniques/rival"]),
     ("measured", "Measurements", ["accuracy", "performance", "stability", "thrift"]),
-    ("tools", "Command line and files", ["cli", "scenes", "vpls-file"]),
+    ("tools", "Command line and files", ["cli", "hosts", "scenes", "vpls-file"]),
     ("inside", "Inside", ["architecture", "adding-a-technique", "testing"]),
 ]
 

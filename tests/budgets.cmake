@@ -17,13 +17,13 @@ foreach(suite IN LISTS suites)
   set_tests_properties(${suite} PROPERTIES TIMEOUT ${limit})
 endforeach()
 
-# CTest runs two suites at once, of which one at most computes on the device under test, and one at most in a simulator or another
-# driver: either uses all cores, and seconds should mean something. Suites of packages and documents run beside them.
+# CTest runs two suites at once. Most of a suite's time is one thread that compiles kernels, so that two fill two cores; of those that
+# measure times one runs at most, and of those in a simulator or another driver, which use all cores by themselves.
 foreach(suite IN LISTS suites)
   get_test_property(${suite} LABELS labels)
   if("${labels}" MATCHES "oclgrind|rusticl")
     set_tests_properties(${suite} PROPERTIES RESOURCE_LOCK simulator)
-  elseif(NOT suite MATCHES "^(docs|reference_docs|symbols|package|package_fetch|deb|abi|charts|stability_charts|shipped_scenes)_test$")
-    set_tests_properties(${suite} PROPERTIES RESOURCE_LOCK device)
+  elseif(suite MATCHES "^(auto|bench|chart|cli|compute|plan|plan_cli|planner|split|stability|steering)_test$")
+    set_tests_properties(${suite} PROPERTIES RESOURCE_LOCK times)
   endif()
 endforeach()

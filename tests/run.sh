@@ -84,7 +84,7 @@ step build cmake --build "$build" --parallel "$(nproc)" || stop
 # --- test -------------------------------------------------------------------------------------------
 lightwell_say "device: $LIGHTWELL_DEVICE; testing"
 results=$log/ctest.txt
-# Two suites at once, of which one at most computes on the device, and one in the simulator (tests/budgets.cmake).
+# Two suites at once, of which one at most measures times, and one at most runs in the simulator (tests/budgets.cmake).
 # What compiles many programs takes minutes, and is left out unless asked for.
 long=(-LE '^long$')
 [ "$wants_long" = 1 ] && long=()
