@@ -6,7 +6,6 @@ Writes SCENE.exr (what Lightwell is given: Position, Normal, Depth, DiffCol, Dif
 SCENE_one_b.exr, SCENE_all_a.exr and SCENE_all_b.exr (pass DiffInd of one indirect bounce and of all, the truth, in two halves by which its noise is
 known), and the camera and light files, from Blender's own matrices.
 """
-import argparse
 import json
 import math
 import pathlib
@@ -19,17 +18,6 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import room  # noqa: E402
 
 ALL_BOUNCES = 64
-
-
-def parse():
-    parser = argparse.ArgumentParser(prog="blender.py")
-    parser.add_argument("--out", required=True)
-    parser.add_argument("--scene", default="spot", choices=["spot", "empty", "sun", "sphere"])
-    parser.add_argument("--size", default="384x256")
-    parser.add_argument("--rsm", type=int, default=256)
-    parser.add_argument("--spp", type=int, default=1024)
-    parser.add_argument("--half", action="store_true")
-    return parser.parse_args(sys.argv[sys.argv.index("--") + 1:])
 
 
 def material(colour):
@@ -173,7 +161,7 @@ def build_sphere():
 
 
 def main():
-    options = parse()
+    options = room.options(__doc__, sys.argv[sys.argv.index("--") + 1:])
     out, name = pathlib.Path(options.out).resolve(), options.scene
     out.mkdir(parents=True, exist_ok=True)
     size = tuple(int(part) for part in options.size.split("x"))

@@ -7,7 +7,6 @@ Writes SCENE.exr (integrator `aov` around `path` of depth 2: position, sh_normal
 the lamp), SCENE_one_a.exr, SCENE_one_b.exr, SCENE_all_a.exr and SCENE_all_b.exr (irradiance of one indirect bounce and of all, W/m^2, the truth in
 two halves by which its noise is known: paths of one length less those of direct light, times pi over albedo), and the camera and light files. Y is up here, and the camera looks down +z.
 """
-import argparse
 import json
 import pathlib
 import sys
@@ -22,17 +21,6 @@ mi.set_variant("llvm_ad_rgb")
 DIRECT, ONE_BOUNCE, ALL_BOUNCES = 2, 3, 65  # `max_depth`: 1 is what glows, 2 lit surfaces, 3 one indirect bounce
 NEAR = 0.05
 AOVS = "position:position,normal:sh_normal,albedo:albedo,depth:depth"
-
-
-def parse():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", required=True)
-    parser.add_argument("--scene", default="spot", choices=["spot", "empty", "sun", "sphere"])
-    parser.add_argument("--size", default="384x256")
-    parser.add_argument("--rsm", type=int, default=256)
-    parser.add_argument("--spp", type=int, default=1024)
-    parser.add_argument("--half", action="store_true")
-    return parser.parse_args()
 
 
 def y_up(v):
@@ -162,7 +150,7 @@ def point():
 
 
 def main():
-    options = parse()
+    options = room.options(__doc__, sys.argv[1:])
     out, name = pathlib.Path(options.out).resolve(), options.scene
     out.mkdir(parents=True, exist_ok=True)
     size = tuple(int(part) for part in options.size.split("x"))

@@ -5,9 +5,22 @@ its lit side, and a diffuse reflectance. The room is a box that is open to the c
 them (`empty`) nothing hides anything, and a gather without visibility has the truth. `sphere` is the analytic case: inside a
 sphere of reflectance rho the irradiance of a lamp of intensity I at the centre is I / R^2 on every point, and each bounce is rho times the one before.
 """
+import argparse
 import math
 
 WHITE, RED, GREEN = (0.725, 0.725, 0.725), (0.63, 0.065, 0.05), (0.14, 0.45, 0.091)
+
+
+def options(description, arguments):
+    """What both scripts are told."""
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--out", required=True)
+    parser.add_argument("--scene", default="spot", choices=["spot", "empty", "sun", "sphere"])
+    parser.add_argument("--size", default="384x256")
+    parser.add_argument("--rsm", type=int, default=256)
+    parser.add_argument("--spp", type=int, default=1024)
+    parser.add_argument("--half", action="store_true")
+    return parser.parse_args(arguments)
 
 
 def quad(a, b, c, d, colour):

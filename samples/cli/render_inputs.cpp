@@ -1,5 +1,6 @@
 #include "render_inputs.h"
 
+#include "describe_triangles.h"
 #include "lightwell/lightwell.hpp"
 
 namespace cli {
@@ -44,17 +45,6 @@ LWRsm describeRsm(const studio::Rsm& from) {
     to.normal = describePlanes(from.normal);
     to.flux = describePlanes(from.flux);
     to.camera = describeCamera(from.view, from.projection);
-    return to;
-}
-
-LWGeometry describeTriangles(const studio::SceneTriangles& from) {
-    LWGeometry to = lightwell::make<LWGeometry>();
-    to.vertices = from.vertices.data();
-    to.triangleAlbedo = from.albedo.data();
-    to.triangleEmission = from.emission.empty() ? nullptr : from.emission.data();
-    to.triangleCount = from.count();
-    to.vertexCount = 3 * from.count();
-    to.version = from.version;
     return to;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "../cli/describe_triangles.h"
 #include "lightwell/lightwell.hpp"
 #include "sun_fit.h"
 
@@ -22,17 +23,6 @@ LWCamera describeCamera(const Eye& eye) {
             camera.projection[4 * row + column] = eye.projection[column][row];
         }
     return camera;
-}
-
-LWGeometry describeTriangles(const studio::SceneTriangles& triangles) {
-    LWGeometry geometry = lightwell::make<LWGeometry>();
-    geometry.vertices = triangles.vertices.data();
-    geometry.triangleAlbedo = triangles.albedo.data();
-    geometry.triangleEmission = triangles.emission.empty() ? nullptr : triangles.emission.data();
-    geometry.triangleCount = triangles.count();
-    geometry.vertexCount = 3 * triangles.count();
-    geometry.version = triangles.version;
-    return geometry;
 }
 
 // A spot that is too wide for one map has the faces of a cube, which Lightwell takes of point lights alone: such a one is
@@ -88,7 +78,7 @@ void FrameInputs::map(const Eye& now, const Eye& before, const std::vector<Light
     profiles_.clear();
     std::size_t plane = 0;
     for (const LightMaps& light : lights) describeLight(light, plane);
-    geometry_ = describeTriangles(triangles);
+    geometry_ = cli::describeTriangles(triangles);
     copyVector(glm::vec3(glm::inverse(now.view)[3]), focus_);  // grids lie around the eye
     frame_ = lightwell::make<LWFrame>();
     frame_.lights = lights_.data();

@@ -1,4 +1,5 @@
-// Frame part, report and registration; the table of parameters is static_vpl_parameters.cpp's.
+// Frame part, report and registration; the table of parameters is static_vpl_parameters.cpp's. A few lines over 300:
+// what a frame records is one algorithm, which is to be read in one place.
 #include "techniques/static_vpl.h"
 
 #include <optional>
