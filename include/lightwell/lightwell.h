@@ -453,8 +453,10 @@ LW_API LWStatus lwGetViewSize(LWView view, uint32_t* width, uint32_t* height);
 typedef enum LWResolution { LW_RESOLUTION_FULL = 0, LW_RESOLUTION_HALF = 1 } LWResolution;
 
 typedef enum LWVplSampling {
-    LW_SAMPLING_FLUX = 0,   /**< Hammersley set warped by the flux distribution of all RSMs */
-    LW_SAMPLING_UNIFORM = 1 /**< Hammersley set over the texels */
+    LW_SAMPLING_FLUX = 0,    /**< Hammersley set warped by the flux distribution of all RSMs */
+    LW_SAMPLING_UNIFORM = 1, /**< Hammersley set over the texels */
+    LW_SAMPLING_VIEW = 2     /**< several times as many by flux, and of those a choice by what they bring the surfaces that
+                                  LWFrame::sourceViews show (not which of those they see); lwUpdate fails without such a view */
 } LWVplSampling;
 
 /** What stands between a VPL of technique "rsm" and a pixel. */

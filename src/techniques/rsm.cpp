@@ -24,6 +24,7 @@ VplSamplingOptions samplingOptions(const LWRsmDesc& desc) {
     VplSamplingOptions options;
     options.count = desc.vpls;
     options.uniform = desc.sampling == LW_SAMPLING_UNIFORM;
+    options.view = desc.sampling == LW_SAMPLING_VIEW;
     // Shadowed ones in their own order: clusters are dealt out, not this list.
     options.subsets = isShadowed(desc) ? 1 : desc.interleave * desc.interleave;
     options.seed = desc.seed;
@@ -76,10 +77,12 @@ public:
     }
 
     void update(Executor& executor, const LWFrame& frame) override {
+        sampling_.check(frame);
         if (shadows_) shadows_->check(frame);
         rsms_.import(executor, frame);
         const bool lost = continuity_.beginLost(), forget = lost || frame.reset != 0;
         if (history_) sampling_.turn(forget ? turns_ = 0 : ++turns_);
+        sampling_.importViews(executor, frame);
         sampling_.record(executor, rsms_, frame.vpls, frame.vplCount);
         if (shadows_) shadows_->update(executor, frame, rsms_, {sampling_.vpls(), sampling_.vplCount()}, forget, lost);
         choices_ = inputChoices(frame, shadows_ ? &*shadows_ : nullptr);

@@ -76,6 +76,7 @@ public:
     }
 
     void update(Executor& executor, const LWFrame& frame) override {
+        sampling_.check(frame);
         maps_.check(frame);
         if (shadows_) shadows_->check(frame);
         rsms_.import(executor, frame);
@@ -85,6 +86,7 @@ public:
         maps_.import(executor, frame, rsms_);
         if (plan_) plan_->begin(executor, restart);
         if (history_) sampling_.turn(restart ? turns_ = 0 : ++turns_);
+        sampling_.importViews(executor, frame);
         recordVpls(executor, frame);
         if (compensation_)
             compensation_->recordScale(executor, sampling_.vpls(), sampling_.order(), sampling_.vplCount() - frame.vplCount);
