@@ -2,9 +2,7 @@
 #ifndef LW_VPL_VIEW_TYPES_H
 #define LW_VPL_VIEW_TYPES_H
 
-#ifndef LW_VIEW_POINTS
-#define LW_VIEW_POINTS 256
-#endif
-#define LW_VIEW_BLOCK 256  // candidates summed up by one work-item
+#define LW_VIEW_POINTS 256  // a multiple of 16
+#define LW_VIEW_PARTS 16    // sums of which a point's light is made, the same at every width
 
 #endif

@@ -76,7 +76,7 @@ __kernel void vpl_view_sampling_frame(__global const float* points, int count, _
 
 // One work-item = one view point: in the frame of all, with its reach.
 __kernel void vpl_view_sampling_place(__global const float* points, int count, __global const float* frame,
-                                      __global float* placed) {
+                                      __global float* placed, __global lw_vpl* list) {
     const int k = (int)get_global_id(0);
     if (k >= LW_VIEW_POINTS) return;
     const int valid = k < count && is_point(points, k);
@@ -98,6 +98,13 @@ __kernel void vpl_view_sampling_place(__global const float* points, int count, _
     }
     placed[kReach * LW_VIEW_POINTS + k] = valid ? fmax(nearest * frame[3] * frame[3], LW_VIEW_FLOOR / (float)LW_VIEW_POINTS) : 1.0f;
     placed[kGain * LW_VIEW_POINTS + k] = valid ? 1.0f : 0.0f;
+    lw_vpl site = no_vpl();
+    if (valid) {
+        site.positionArea = (float4)(at[0], at[1], at[2], 1.0f);
+        site.normal = (float4)(placed[kNx * LW_VIEW_POINTS + k], placed[kNy * LW_VIEW_POINTS + k], placed[kNz * LW_VIEW_POINTS + k], 0.0f);
+        site.flux = (float4)(1.0f, 1.0f, 1.0f, 0.0f);
+    }
+    list[k] = site;
 }
 
 // cos+ cos+ / max(d^2, reach) between candidates and a point.
@@ -111,53 +118,65 @@ LW_FN real brought(real dx, real dy, real dz, real vx, real vy, real vz, real px
     return select_((real)(0.0f), from * to / select_((real)(1.0f), whole, apart), apart);
 }
 
-// One work-item = LW_WIDTH points (x) and a block of LW_VIEW_BLOCK candidates (y).
-__kernel void vpl_view_sampling_light(__global const float* placed, __global const float* frame, __global const float* candidates,
-                                      int candidateCount, __global float* parts) {
-    const int p = (int)get_global_id(0) * LW_WIDTH, block = (int)get_global_id(1);
-    if (p >= LW_VIEW_POINTS || block * LW_VIEW_BLOCK >= candidateCount) return;
-    const real x = load(placed, p), y = load(placed, p + LW_VIEW_POINTS), z = load(placed, p + 2 * LW_VIEW_POINTS);
-    const real nx = load(placed, p + kNx * LW_VIEW_POINTS), ny = load(placed, p + kNy * LW_VIEW_POINTS),
-               nz = load(placed, p + kNz * LW_VIEW_POINTS), reach = load(placed, p + kReach * LW_VIEW_POINTS);
-    real sum = 0.0f;
-    const int end = min((block + 1) * LW_VIEW_BLOCK, candidateCount);
-    for (int k = block * LW_VIEW_BLOCK; k < end; ++k) {
-        __global const float* v = candidates + 12 * k;
-        const float s = frame[3];
-        sum += brought(x - (v[0] - frame[0]) * s, y - (v[1] - frame[1]) * s, z - (v[2] - frame[2]) * s, (real)(v[4]), (real)(v[5]),
-                       (real)(v[6]), nx, ny, nz, reach);
+// One work-item = LW_WIDTH candidates, as planes in the frame of the points: position xyz, normal xyz; those beyond the list
+// face nowhere.
+__kernel void vpl_view_sampling_candidates(__global const float* candidates, int candidateCount, int stride,
+                                           __global const float* frame, __global float* planes) {
+    const int k = (int)get_global_id(0) * LW_WIDTH;
+    if (k >= stride) return;
+    const lanei lane = lanei_iota() + k, i = 12 * min(lane, (lanei)(candidateCount - 1));
+    for (int a = 0; a < 3; ++a) {
+        const real at = (gather(candidates, i + a) - frame[a]) * frame[3], normal = gather(candidates, i + 4 + a);
+        store(at, planes, k + a * stride);
+        store(select_((real)(0.0f), normal, lane < candidateCount), planes, k + (3 + a) * stride);
     }
-    store(sum, parts, block * LW_VIEW_POINTS + p);
 }
 
-// One work-item = LW_WIDTH points: what each counts.
-__kernel void vpl_view_sampling_gain(__global const float* parts, int blocks, __global float* placed) {
-    const int p = (int)get_global_id(0) * LW_WIDTH;
-    if (p >= LW_VIEW_POINTS) return;
+LW_FN real brought_by(__global const float* planes, int stride, int k, __global const float* placed, int p) {
+    return brought(placed[p] - load(planes, k), placed[p + LW_VIEW_POINTS] - load(planes, k + stride),
+                   placed[p + 2 * LW_VIEW_POINTS] - load(planes, k + 2 * stride), load(planes, k + 3 * stride),
+                   load(planes, k + 4 * stride), load(planes, k + 5 * stride), (real)(placed[p + kNx * LW_VIEW_POINTS]),
+                   (real)(placed[p + kNy * LW_VIEW_POINTS]), (real)(placed[p + kNz * LW_VIEW_POINTS]),
+                   (real)(placed[p + kReach * LW_VIEW_POINTS]));
+}
+
+// One work-item = LW_WIDTH of a point's LW_VIEW_PARTS sums, of every LW_VIEW_PARTS-th candidate.
+__kernel void vpl_view_sampling_light(__global const float* placed, __global const float* planes, int stride,
+                                      __global const int* groups, __global const float* sights, int hasSights,
+                                      __global float* parts) {
+    const int part = (int)get_global_id(0) * LW_WIDTH, p = (int)get_global_id(1);
+    if (part >= LW_VIEW_PARTS || p >= LW_VIEW_POINTS) return;
     real sum = 0.0f;
-    for (int b = 0; b < blocks; ++b) sum += load(parts, b * LW_VIEW_POINTS + p);
-    const mask lit = sum > 0.0f;
-    if (LW_VIEW_RELATIVE)
-        store(select_((real)(0.0f), 1.0f / select_((real)(1.0f), sum, lit), lit), placed, p + kGain * LW_VIEW_POINTS);
+    const int group = hasSights ? groups[p] : 0;
+    if (group >= 0 && placed[p + kGain * LW_VIEW_POINTS] > 0.0f)
+        for (int k = part; k < stride; k += LW_VIEW_PARTS) {
+            const real light = brought_by(planes, stride, k, placed, p);
+            sum += hasSights ? light * load(sights, group * stride + k) : light;
+        }
+    store(sum, parts, p * LW_VIEW_PARTS + part);
+}
+
+// One work-item = one point: what each counts.
+__kernel void vpl_view_sampling_gain(__global const float* parts, __global float* placed) {
+    const int p = (int)get_global_id(0);
+    if (p >= LW_VIEW_POINTS) return;
+    float sum = 0.0f;
+    for (int i = 0; i < LW_VIEW_PARTS; ++i) sum += parts[p * LW_VIEW_PARTS + i];
+    if (LW_VIEW_RELATIVE || !(sum > 0.0f)) placed[p + kGain * LW_VIEW_POINTS] = sum > 0.0f ? 1.0f / sum : 0.0f;
 }
 
 // One work-item = LW_WIDTH candidates.
-__kernel void vpl_view_sampling_weigh(__global const float* placed, __global const float* frame, __global const float* candidates,
-                                      int candidateCount, __global float* weights) {
+__kernel void vpl_view_sampling_weigh(__global const float* placed, __global const float* planes, int stride,
+                                      __global const int* groups, __global const float* sights, int hasSights,
+                                      __global float* weights) {
     const int k = (int)get_global_id(0) * LW_WIDTH;
-    if (k >= candidateCount) return;
-    const lanei i = (lanei)12 * min(lanei_iota() + k, (lanei)(candidateCount - 1));
-    const float s = frame[3];
-    const real x = (gather(candidates, i) - frame[0]) * s, y = (gather(candidates, i + 1) - frame[1]) * s,
-               z = (gather(candidates, i + 2) - frame[2]) * s;
-    const real nx = gather(candidates, i + 4), ny = gather(candidates, i + 5), nz = gather(candidates, i + 6);
+    if (k >= stride) return;
     real sum = 0.0f;
     for (int p = 0; p < LW_VIEW_POINTS; ++p) {
         const float gain = placed[kGain * LW_VIEW_POINTS + p];
         if (!(gain > 0.0f)) continue;
-        sum = fma_(gain, brought(placed[p] - x, placed[p + LW_VIEW_POINTS] - y, placed[p + 2 * LW_VIEW_POINTS] - z, nx, ny, nz,
-                       (real)(placed[p + kNx * LW_VIEW_POINTS]), (real)(placed[p + kNy * LW_VIEW_POINTS]),
-                       (real)(placed[p + kNz * LW_VIEW_POINTS]), (real)(placed[p + kReach * LW_VIEW_POINTS])), sum);
+        const real light = brought_by(planes, stride, k, placed, p);
+        sum = fma_(gain, hasSights ? light * load(sights, groups[p] * stride + k) : light, sum);
     }
     store(sum, weights, k);
 }

@@ -53,16 +53,16 @@ void VplSampling::reserve(const RsmInput& rsms, std::uint32_t authoredCount) {
 }
 
 void VplSampling::record(Executor& executor, const RsmInput& rsms, const LWVpl* authored,
-                         std::uint32_t authoredCount, const VplPlan* plan) {
+                         std::uint32_t authoredCount, const VplPlan* plan, const ViewSights* sights) {
     reserve(rsms, authoredCount);
     static_assert(sizeof(LWVpl) == sizeof(lw_vpl), "LWVpl is uploaded as it is");
     if (authoredCount)
         executor.writeCopy("vpl_sampling.upload", authored_, 0, authoredCount * sizeof(lw_vpl), authored);
-    draw(executor, rsms, vplCount() - authoredCount, plan);
+    draw(executor, rsms, vplCount() - authoredCount, plan, sights);
 }
 
 void VplSampling::draw(Executor& executor, const RsmInput& rsms, std::uint32_t sampleCount,
-                       const VplPlan* plan) {
+                       const VplPlan* plan, const ViewSights* sights) {
     const Range slots = gridOver(std::size_t(order_.subsets) * std::size_t(order_.capacity));
     if (options_.count == 0 || sampleCount == 0) {
         // Without texels the list holds the host's VPLs alone; the texel planes are then not read.
@@ -75,7 +75,7 @@ void VplSampling::draw(Executor& executor, const RsmInput& rsms, std::uint32_t s
     executor.run("vpl_sampling.row_sums", rowSums_, gridOver(rsms.rowCount), {4, 1}, rsms.texels, rsms.rows, rowCount,
                  uniform, texelSums_, rowTotals_);
     executor.run("vpl_sampling.total", total_, {1, 1}, {1, 1}, rowTotals_, rowCount, rowSumsBuffer_);
-    if (views_) return choose(executor, rsms, sampleCount);
+    if (views_) return choose(executor, rsms, sampleCount, sights);
     if (plan) {
         plan->choose(texelSums_, rowTotals_);
         executor.run("vpl_sampling.draw", drawLive_, slots, kGroup, rsms.texels, rsms.rows, rowCount,
@@ -87,7 +87,7 @@ void VplSampling::draw(Executor& executor, const RsmInput& rsms, std::uint32_t s
                  rowSumsBuffer_, uniform, cl_int(sampleCount), sampleRotation(options_.seed, turns_), authored_, order_, vpls_);
 }
 
-void VplSampling::choose(Executor& executor, const RsmInput& rsms, std::uint32_t sampleCount) {
+void VplSampling::choose(Executor& executor, const RsmInput& rsms, std::uint32_t sampleCount, const ViewSights* sights) {
     const std::uint32_t count = kCandidates * sampleCount;
     const lw_subset_order order = subsetOrder(count, 1);
     executor.run("vpl_sampling.draw", draw_, gridOver(std::size_t(order.capacity)), kGroup, rsms.texels, rsms.rows, cl_int(rsms.rowCount),
@@ -95,7 +95,7 @@ void VplSampling::choose(Executor& executor, const RsmInput& rsms, std::uint32_t
                  candidates_);
     // The choice's offset moves with the set's rotation, by numbers of its own.
     const float offset = options_.seed || turns_ ? sampleRotation(options_.seed ^ 0x5bd1e995u, turns_).s[0] : 0.5f;
-    views_->record(executor, candidates_, count, sampleCount, offset, authored_, order_, vpls_);
+    views_->record(executor, candidates_, count, sampleCount, offset, authored_, order_, vpls_, sights);
 }
 
 Planes VplSampling::debugShape(lw_subset_order order) {

@@ -69,6 +69,7 @@ public:
             cullAll_.emplace(device, 1);
             gatherAll_.emplace(device, 1, 1, visibilityOf(desc.visibility));
         }
+        if (occluderOptions(desc).view) viewGroups_.emplace(device, KMeansOptions{getenv("LWX_G") ? std::uint32_t(atoi(getenv("LWX_G"))) : 16u});
         if (desc.history) history_.emplace(device, interleavedOptions(desc).history);
         if (desc.autoError > 0.0f) plan_.emplace(device, planOptions(desc));
         if (desc.visibility == LW_VISIBILITY_VOXEL) shadows_.emplace(device, desc.voxels);
@@ -87,7 +88,7 @@ public:
         if (plan_) plan_->begin(executor, restart);
         if (history_) sampling_.turn(restart ? turns_ = 0 : ++turns_);
         sampling_.importViews(executor, frame);
-        recordVpls(executor, frame);
+        recordVpls(executor, frame, restart);
         if (compensation_)
             compensation_->recordScale(executor, sampling_.vpls(), sampling_.order(), sampling_.vplCount() - frame.vplCount);
 
@@ -166,7 +167,15 @@ public:
     std::uint64_t bytes() const override;
 
 private:
-    void recordVpls(Executor& executor, const LWFrame& frame) {
+    void recordVpls(Executor& executor, const LWFrame& frame, bool restart) {
+        if (viewGroups_ && frame.sourceViewCount) {
+            const std::size_t stage = stages_.size();
+            viewGroups_->record(executor, sampling_.viewPoints(), VplViewSampling::pointCount(), restart);
+            maps_.record(executor, stage, viewGroups_->clusters(), viewGroups_->clusterCount());
+            const ParaboloidMap& maps = maps_.maps(stage);
+            const ViewSights sights{viewGroups_->assignment(), viewGroups_->clusterCount(), maps.frames(), maps.records(), maps.size()};
+            return sampling_.record(executor, rsms_, frame.vpls, frame.vplCount, nullptr, &sights);
+        }
         if (!plan_ || !plan_->plansVpls())
             return sampling_.record(executor, rsms_, frame.vpls, frame.vplCount);
         const VplPlan plan{plan_->live(), [&](const Buffer& texelSums, const Buffer& rowTotals) {
@@ -219,6 +228,7 @@ private:
     std::uint32_t turns_ = 0;     // of the sample set, one a frame while there is a history
     RsmInput rsms_;
     VplSampling sampling_;
+    std::optional<KMeans> viewGroups_;  // of VPLs chosen by what views see only
     std::optional<SsvpPlan> plan_;  // with an error target only
     std::deque<Stage> stages_;
     OccluderMaps maps_;
