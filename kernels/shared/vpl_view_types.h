@@ -2,7 +2,7 @@
 #ifndef LW_VPL_VIEW_TYPES_H
 #define LW_VPL_VIEW_TYPES_H
 
-#define LW_VIEW_POINTS 256  // a multiple of 16
-#define LW_VIEW_PARTS 16    // sums of which a point's light is made, the same at every width
+// Pixels at which the views are asked, all together. More: a smoother choice that changes less from frame to frame, and time.
+#define LW_VIEW_POINTS 256
 
 #endif

@@ -11,7 +11,9 @@ namespace {
 
 constexpr Range kGroup{64, 1};
 constexpr const char* kProgram = "vpl_sampling/vpl_sampling";
-const std::uint32_t kCandidates = getenv("LWX_M") ? std::uint32_t(atoi(getenv("LWX_M"))) : 8u;
+// Candidates for each VPL chosen by view. Fewer: the same one is chosen several times where the view is lit from a small part of
+// the light; more: time, in proportion.
+constexpr std::uint32_t kCandidates = 8;
 
 }  // namespace
 
@@ -47,22 +49,24 @@ void VplSampling::reserve(const RsmInput& rsms, std::uint32_t authoredCount) {
         texelSums_.reserve(device_, std::size_t(rsms.texels.width) * 4, "cumulative flux of texels");
         rowTotals_.reserve(device_, std::size_t(rsms.rowCount) * 4, "flux of RSM rows");
         rowSumsBuffer_.reserve(device_, std::size_t(rsms.rowCount) * 4, "cumulative flux of RSM rows");
-        if (views_) candidates_.reserve(device_, std::size_t(subsetOrder(kCandidates * drawn, 1).capacity) * sizeof(lw_vpl), "candidates for VPLs");
+        if (views_)
+            candidates_.reserve(device_, std::size_t(subsetOrder(kCandidates * drawn, 1).capacity) * sizeof(lw_vpl),
+                                "candidates for VPLs");
     }
     order_ = order;
 }
 
 void VplSampling::record(Executor& executor, const RsmInput& rsms, const LWVpl* authored,
-                         std::uint32_t authoredCount, const VplPlan* plan, const ViewSights* sights) {
+                         std::uint32_t authoredCount, const VplPlan* plan) {
     reserve(rsms, authoredCount);
     static_assert(sizeof(LWVpl) == sizeof(lw_vpl), "LWVpl is uploaded as it is");
     if (authoredCount)
         executor.writeCopy("vpl_sampling.upload", authored_, 0, authoredCount * sizeof(lw_vpl), authored);
-    draw(executor, rsms, vplCount() - authoredCount, plan, sights);
+    draw(executor, rsms, vplCount() - authoredCount, plan);
 }
 
 void VplSampling::draw(Executor& executor, const RsmInput& rsms, std::uint32_t sampleCount,
-                       const VplPlan* plan, const ViewSights* sights) {
+                       const VplPlan* plan) {
     const Range slots = gridOver(std::size_t(order_.subsets) * std::size_t(order_.capacity));
     if (options_.count == 0 || sampleCount == 0) {
         // Without texels the list holds the host's VPLs alone; the texel planes are then not read.
@@ -75,7 +79,7 @@ void VplSampling::draw(Executor& executor, const RsmInput& rsms, std::uint32_t s
     executor.run("vpl_sampling.row_sums", rowSums_, gridOver(rsms.rowCount), {4, 1}, rsms.texels, rsms.rows, rowCount,
                  uniform, texelSums_, rowTotals_);
     executor.run("vpl_sampling.total", total_, {1, 1}, {1, 1}, rowTotals_, rowCount, rowSumsBuffer_);
-    if (views_) return choose(executor, rsms, sampleCount, sights);
+    if (views_) return choose(executor, rsms, sampleCount);
     if (plan) {
         plan->choose(texelSums_, rowTotals_);
         executor.run("vpl_sampling.draw", drawLive_, slots, kGroup, rsms.texels, rsms.rows, rowCount,
@@ -87,15 +91,15 @@ void VplSampling::draw(Executor& executor, const RsmInput& rsms, std::uint32_t s
                  rowSumsBuffer_, uniform, cl_int(sampleCount), sampleRotation(options_.seed, turns_), authored_, order_, vpls_);
 }
 
-void VplSampling::choose(Executor& executor, const RsmInput& rsms, std::uint32_t sampleCount, const ViewSights* sights) {
+void VplSampling::choose(Executor& executor, const RsmInput& rsms, std::uint32_t sampleCount) {
     const std::uint32_t count = kCandidates * sampleCount;
     const lw_subset_order order = subsetOrder(count, 1);
-    executor.run("vpl_sampling.draw", draw_, gridOver(std::size_t(order.capacity)), kGroup, rsms.texels, rsms.rows, cl_int(rsms.rowCount),
-                 texelSums_, rowSumsBuffer_, cl_int(0), cl_int(count), sampleRotation(options_.seed, turns_), authored_, order,
-                 candidates_);
+    executor.run("vpl_sampling.draw", draw_, gridOver(std::size_t(order.capacity)), kGroup, rsms.texels, rsms.rows,
+                 cl_int(rsms.rowCount), texelSums_, rowSumsBuffer_, cl_int(0), cl_int(count),
+                 sampleRotation(options_.seed, turns_), authored_, order, candidates_);
     // The choice's offset moves with the set's rotation, by numbers of its own.
     const float offset = options_.seed || turns_ ? sampleRotation(options_.seed ^ 0x5bd1e995u, turns_).s[0] : 0.5f;
-    views_->record(executor, candidates_, count, sampleCount, offset, authored_, order_, vpls_, sights);
+    views_->record(executor, candidates_, count, sampleCount, offset, authored_, order_, vpls_);
 }
 
 Planes VplSampling::debugShape(lw_subset_order order) {

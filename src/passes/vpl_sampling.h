@@ -42,9 +42,7 @@ public:
     // Records passes "vpl_sampling.*". `authored`: the host's own VPLs, appended to those drawn; read
     // before the call returns. `plan`: not asked where none are drawn.
     void record(Executor& executor, const RsmInput& rsms, const LWVpl* authored,
-                std::uint32_t authoredCount, const VplPlan* plan = nullptr,
-                const ViewSights* sights = nullptr);
-    const Buffer& viewPoints() const { return views_->points(); }
+                std::uint32_t authoredCount, const VplPlan* plan = nullptr);
 
     // The sample set's `number`-th shift from the seed's: those of a row of frames lie as far apart as they can. 0: none.
     void turn(std::uint32_t number) { turns_ = number; }
@@ -63,8 +61,8 @@ public:
 
 private:
     void reserve(const RsmInput& rsms, std::uint32_t authoredCount);
-    void draw(Executor& executor, const RsmInput& rsms, std::uint32_t sampleCount, const VplPlan* plan, const ViewSights* sights);
-    void choose(Executor& executor, const RsmInput& rsms, std::uint32_t sampleCount, const ViewSights* sights);
+    void draw(Executor& executor, const RsmInput& rsms, std::uint32_t sampleCount, const VplPlan* plan);
+    void choose(Executor& executor, const RsmInput& rsms, std::uint32_t sampleCount);
 
     Device& device_;
     VplSamplingOptions options_;

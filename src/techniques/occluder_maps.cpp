@@ -75,7 +75,7 @@ const char* describeVoxels(Source source) {
 
 OccluderMaps::OccluderMaps(Device& device, const OccluderOptions& options, std::size_t stages)
     : device_(device), options_(options), sampling_(device) {
-    for (std::size_t i = 0; i < stages + (options.view ? 1 : 0); ++i) stages_.emplace_back(device, options.mapSize);
+    for (std::size_t i = 0; i < stages; ++i) stages_.emplace_back(device, options.mapSize);
 }
 
 Source OccluderMaps::sourceOf(const LWFrame& frame) const {
@@ -109,7 +109,6 @@ void OccluderMaps::import(Executor& executor, const LWFrame& frame, const RsmInp
     if (isOther_)
         for (Stage& stage : stages_) stage.maps.redrawAll();
     source_ = source;
-    isSampled_ = false;
     switch (source) {
         case Source::triangles:
         case Source::sampledTriangles:
@@ -149,9 +148,8 @@ void OccluderMaps::record(Executor& executor, std::size_t index, const Buffer& c
         stage.maps.record(executor, clusters, clusterCount, triangles_);
         return;
     }
-    if (source_ == Source::sampledTriangles && !isSampled_)
+    if (source_ == Source::sampledTriangles && index == 0)
         sampling_.record(executor, triangles_, SurfelSplat::mostSurfels(options_.mapSize));
-    isSampled_ = true;
     const SurfelSet set = surfels();
     stage.maps.recordPlaces(executor, clusters, clusterCount, *set.diagonal, set.revision);
     stage.splat.record(executor, set, stage.maps.texels());

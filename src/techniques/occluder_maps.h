@@ -23,7 +23,6 @@ struct OccluderOptions {
     LWOccluders occluders = LW_OCCLUDERS_AUTO;
     std::uint32_t mapSize = 128;
     std::size_t drawn = 1;       // the first so many stages have maps; those of the others are left empty
-    bool view = false;           // one more stage has maps, after the others: what groups of view points see
     bool isWanted = true;        // false: nothing asks for occluders
     bool throughVoxels = false;  // the light goes past voxels; maps serve what is drawn from them
     // What RSMs and source views show may be occluders; else a frame without triangles and surfels is refused.
@@ -72,14 +71,13 @@ private:
     };
 
     Source sourceOf(const LWFrame& frame) const;
-    bool draws(std::size_t stage) const { return source_ != Source::none && (stage < options_.drawn || (options_.view && stage + 1 == stages_.size())); }
+    bool draws(std::size_t stage) const { return source_ != Source::none && stage < options_.drawn; }
     SurfelSet surfels() const;
 
     Device& device_;
     OccluderOptions options_;
     Source source_ = Source::none;
     bool isOther_ = false;  // than in the import before
-    bool isSampled_ = false;  // triangles to surfels, since the last import()
     GeometryInput triangles_;
     SurfelInput hostSurfels_;
     ScreenSurfels screen_;

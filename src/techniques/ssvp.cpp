@@ -38,7 +38,7 @@ struct Stage {
 std::vector<LWChoice> inputChoices(const OccluderMaps& maps, const LWSsvpDesc& desc, const LWFrame& frame) {
     constexpr const char* kReason = "not used: technique ssvp takes light from RSMs and authored VPLs only";
     std::vector<LWChoice> choices = maps.choices(frame);
-    if (frame.sourceViewCount && !maps.usesViews())
+    if (frame.sourceViewCount && !maps.usesViews() && desc.sampling != LW_SAMPLING_VIEW)
         choices.push_back({"frame.sourceViews", "not used: they are no occluders, and technique ssvp takes light from RSMs and "
                                                 "authored VPLs only"});
     if (frame.blockerCount) choices.push_back({"frame.blockers", kReason});
@@ -63,13 +63,15 @@ public:
         for (std::size_t i = 0; i < stagesOf(desc); ++i) stages_.emplace_back(device, desc, i);
         if (repairs() && desc.compensation > 0)
             fail(LW_ERROR_INVALID_ARGUMENT, "desc.autoResolution: expected 0 with desc.compensation above 0, got ", desc.autoResolution);
+        if (desc.sampling == LW_SAMPLING_VIEW && desc.compensation > 0)
+            fail(LW_ERROR_INVALID_ARGUMENT, "desc.compensation: expected 0 with desc.sampling LW_SAMPLING_VIEW, of whose VPLs it knows no "
+                 "size, got ", desc.compensation);
         if (interleavedOptions(desc).half) bilateral_.emplace(device, 3, repairs());
         if (repairs()) {
             repair_.emplace(device);
             cullAll_.emplace(device, 1);
             gatherAll_.emplace(device, 1, 1, visibilityOf(desc.visibility));
         }
-        if (occluderOptions(desc).view) viewGroups_.emplace(device, KMeansOptions{getenv("LWX_G") ? std::uint32_t(atoi(getenv("LWX_G"))) : 16u});
         if (desc.history) history_.emplace(device, interleavedOptions(desc).history);
         if (desc.autoError > 0.0f) plan_.emplace(device, planOptions(desc));
         if (desc.visibility == LW_VISIBILITY_VOXEL) shadows_.emplace(device, desc.voxels);
@@ -88,7 +90,7 @@ public:
         if (plan_) plan_->begin(executor, restart);
         if (history_) sampling_.turn(restart ? turns_ = 0 : ++turns_);
         sampling_.importViews(executor, frame);
-        recordVpls(executor, frame, restart);
+        recordVpls(executor, frame);
         if (compensation_)
             compensation_->recordScale(executor, sampling_.vpls(), sampling_.order(), sampling_.vplCount() - frame.vplCount);
 
@@ -167,15 +169,7 @@ public:
     std::uint64_t bytes() const override;
 
 private:
-    void recordVpls(Executor& executor, const LWFrame& frame, bool restart) {
-        if (viewGroups_ && frame.sourceViewCount) {
-            const std::size_t stage = stages_.size();
-            viewGroups_->record(executor, sampling_.viewPoints(), VplViewSampling::pointCount(), restart);
-            maps_.record(executor, stage, viewGroups_->clusters(), viewGroups_->clusterCount());
-            const ParaboloidMap& maps = maps_.maps(stage);
-            const ViewSights sights{viewGroups_->assignment(), viewGroups_->clusterCount(), maps.frames(), maps.records(), maps.size()};
-            return sampling_.record(executor, rsms_, frame.vpls, frame.vplCount, nullptr, &sights);
-        }
+    void recordVpls(Executor& executor, const LWFrame& frame) {
         if (!plan_ || !plan_->plansVpls())
             return sampling_.record(executor, rsms_, frame.vpls, frame.vplCount);
         const VplPlan plan{plan_->live(), [&](const Buffer& texelSums, const Buffer& rowTotals) {
@@ -228,7 +222,6 @@ private:
     std::uint32_t turns_ = 0;     // of the sample set, one a frame while there is a history
     RsmInput rsms_;
     VplSampling sampling_;
-    std::optional<KMeans> viewGroups_;  // of VPLs chosen by what views see only
     std::optional<SsvpPlan> plan_;  // with an error target only
     std::deque<Stage> stages_;
     OccluderMaps maps_;

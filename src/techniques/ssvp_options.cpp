@@ -59,7 +59,6 @@ OccluderOptions occluderOptions(const LWSsvpDesc& desc) {
     options.isWanted = desc.visibility != LW_VISIBILITY_NONE || desc.bounces > 1;
     options.throughVoxels = desc.visibility == LW_VISIBILITY_VOXEL;
     const bool looks = desc.visibility == LW_VISIBILITY_HARD || desc.visibility == LW_VISIBILITY_SOFT;
-    options.view = desc.sampling == LW_SAMPLING_VIEW && looks && !getenv("LWX_BLIND");
     options.drawn = looks ? stagesOf(desc) : desc.bounces - 1;
     return options;
 }
