@@ -135,7 +135,7 @@ std::uint64_t VplSampling::estimateBytes(const VplSamplingOptions& options, cons
     std::uint64_t views = 0;
     if (options.view) {
         const std::uint64_t candidates = shape.texels ? std::uint64_t(kCandidates) * options.count : 0;
-        views = (candidates + 1) * sizeof(lw_vpl) + VplViewSampling::estimateBytes(candidates, shape);
+        views = (candidates + (candidates & 1)) * sizeof(lw_vpl) + VplViewSampling::estimateBytes(candidates, shape);
     }
     return list + std::max(shape.vplCount, 1u) * sizeof(lw_vpl) + sums + views;
 }

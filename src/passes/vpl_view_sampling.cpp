@@ -93,7 +93,7 @@ std::uint64_t VplViewSampling::bytes() const {
 
 std::uint64_t VplViewSampling::estimateBytes(std::uint64_t candidateCount, const FrameShape& shape) {
     const std::uint64_t packed = largestPixelBytes(kPositionRole) + largestPixelBytes(kNormalRole);
-    return kPlanes * LW_VIEW_POINTS * 4 + 16 + (candidateCount + 15) * 4 +
+    return kPlanes * LW_VIEW_POINTS * 4 + 16 + (candidateCount + 15) / 16 * 16 * 4 +
            shape.sourcePixels * (6 * sizeof(float) + (shape.uploads ? packed : 0));
 }
 

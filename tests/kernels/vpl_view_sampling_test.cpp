@@ -267,11 +267,12 @@ TEST_CASE("VPLs chosen for a view: several views share the points, and what is r
     const std::vector<double> weights = weightsOf(placesOf(seen, 4), candidates);
     double total = 0.0;
     for (const double w : weights) total += w;
-    for (const lw_vpl& v : choose(rig, frame, candidates, 30, 0.5f)) {
+    for (const lw_vpl& v : choose(rig, frame, candidates, 31, 0.5f)) {  // 31: and an empty slot
+        if (v.flux.s[0] == 0.0f) continue;
         const auto same = [&](const lw_vpl& c) { return std::memcmp(&c.positionArea, &v.positionArea, 12) == 0; };
         const auto at = std::size_t(std::find_if(candidates.begin(), candidates.end(), same) - candidates.begin());
         REQUIRE(at < candidates.size());
-        CHECK(double(v.flux.s[0]) == Approx(3.0 * total / (30.0 * weights[at])).epsilon(kTwinRounding));
+        CHECK(double(v.flux.s[0]) == Approx(3.0 * total / (31.0 * weights[at])).epsilon(kTwinRounding));
     }
     LWLight light{};
     light.structSize = sizeof light;
