@@ -173,7 +173,7 @@ TEST_CASE("VPLs chosen for a view: as a serial twin chooses them, and authored o
     }
 }
 
-TEST_CASE("VPLs chosen for a view: in the mean of choices every candidate keeps its flux", "[vpl_view_sampling]") {
+TEST_CASE("VPLs chosen for a view: in the mean of choices every candidate keeps its flux", "[vpl_view_sampling][large]") {
     KernelRig rig(16);
     const Seen seen(stair);
     const std::vector<lw_vpl> candidates = scattered(120);
