@@ -78,7 +78,7 @@ __kernel void vpl_view_sampling_frame(__global float* points, int count, __globa
 // One work-item = LW_WIDTH candidates: what each brings the points, sum of cos+ cos+ / max(d^2, reach).
 __kernel void vpl_view_sampling_weigh(__global const float* points, __global const float* frame,
                                       __global const float* candidates, int candidateCount, __global float* weights) {
-    const int k = (int)get_global_id(0) * LW_WIDTH;
+    const int k = lw_list_index() * LW_WIDTH;
     if (k >= candidateCount) return;
     const lanei i = 12 * min(lanei_iota() + k, (lanei)(candidateCount - 1));
     const float scale = frame[3];

@@ -44,8 +44,8 @@ void VplViewSampling::check(Device& device, const LWFrame& frame) {
     // Without texels nothing is drawn.
     const bool draws = std::any_of(frame.lights, frame.lights + frame.lightCount, [](const LWLight& l) { return l.rsmCount > 0; });
     if (draws && frame.sourceViewCount == 0)
-        fail(LW_ERROR_INVALID_ARGUMENT, "frame.sourceViews: expected the views that VPLs are to light, as the technique's parameter "
-             "sampling=view asks for them, got none");
+        fail(LW_ERROR_INVALID_ARGUMENT, "frame.sourceViews: expected the views that VPLs are to light, as the technique's "
+             "parameter sampling=view asks for them, got none");
     for (std::uint32_t i = 0; i < frame.sourceViewCount; ++i) {
         const LWGBuffer& gbuffer = *frame.sourceViews[i].gbuffer;
         GBufferInput::check(device, viewOf(gbuffer, nameOf(i)), gbuffer, 0, nameOf(i).c_str());
@@ -56,8 +56,8 @@ void VplViewSampling::import(Executor& executor, const LWFrame& frame) {
     check(device_, frame);
     seen_.reserve(device_, kPlanes * LW_VIEW_POINTS * 4, "view points");
     frame_.reserve(device_, 4 * 4, "frame of view points");
-    views_.resize(frame.sourceViewCount);
-    if (frame.sourceViewCount == 0) return;
+    views_.resize(frame.sourceViewCount);  // of fewer, the last frame's images are let go of
+    if (views_.empty()) return;
     const std::uint32_t share = LW_VIEW_POINTS / frame.sourceViewCount;
     std::uint32_t first = 0;
     for (std::uint32_t i = 0; i < frame.sourceViewCount; ++i) {
@@ -67,8 +67,8 @@ void VplViewSampling::import(Executor& executor, const LWFrame& frame) {
         std::uint32_t columns = std::uint32_t(std::sqrt(double(share) * normal.width / normal.height) + 0.5);
         columns = std::clamp(columns, 1u, share);
         const std::uint32_t rows = share / columns;
-        executor.run("vpl_view_sampling.points", points_, {columns * rows, 1}, kGroup, position, normal, cl_int(normal.width),
-                     cl_int(normal.height), cl_int(columns), cl_int(rows), cl_int(first), seen_);
+        executor.run("vpl_view_sampling.points", points_, {columns * rows, 1}, kGroup, position, normal,
+                     cl_int(normal.width), cl_int(normal.height), cl_int(columns), cl_int(rows), cl_int(first), seen_);
         first += columns * rows;
     }
     executor.run("vpl_view_sampling.points", frameOf_, {1, 1}, {1, 1}, seen_, cl_int(first), frame_);
@@ -79,10 +79,10 @@ void VplViewSampling::record(Executor& executor, const Buffer& candidates, std::
     weights_.reserve(device_, std::size_t(paddedWidth(candidateCount)) * 4, "weights of candidates");
     const cl_int count = cl_int(candidateCount);
     const std::uint32_t items = (candidateCount + weigh_.width() - 1) / weigh_.width();
-    executor.run("vpl_view_sampling.weigh", weigh_, {items, 1}, {4, 1}, seen_, frame_, candidates, count, weights_);
+    executor.run("vpl_view_sampling.weigh", weigh_, gridOver(items), {4, 1}, seen_, frame_, candidates, count, weights_);
     executor.run("vpl_view_sampling.total", total_, {1, 1}, {1, 1}, candidates, count, weights_);
-    executor.run("vpl_view_sampling.pick", pick_, gridOver(std::size_t(order.subsets) * std::size_t(order.capacity)), kGroup, candidates,
-                 count, weights_, cl_int(sampleCount), offset, authored, order, vpls);
+    const Range slots = gridOver(std::size_t(order.subsets) * std::size_t(order.capacity));
+    executor.run("vpl_view_sampling.pick", pick_, slots, kGroup, candidates, count, weights_, cl_int(sampleCount), offset, authored, order, vpls);
 }
 
 std::uint64_t VplViewSampling::bytes() const {

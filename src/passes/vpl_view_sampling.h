@@ -23,9 +23,9 @@ public:
     // Passes "gbuffer_input.*" and "vpl_view_sampling.points": where the frame's source views look, which share the points
     // evenly. Nothing without views.
     void import(Executor& executor, const LWFrame& frame);
-    // Passes "vpl_view_sampling.weigh", ".total" and ".pick", of the points that import() found. candidates: lw_vpl, `candidateCount` of
-    // them, drawn by flux: all of one flux, or none. The first `sampleCount` of the order's VPLs are chosen among them, the
-    // others are `authored`. offset: of the choice, [0,1).
+    // Passes "vpl_view_sampling.weigh", ".total" and ".pick", of the points that import() found. candidates: lw_vpl,
+    // `candidateCount` of them, drawn by flux: all of one flux, or none. The first `sampleCount` of the order's VPLs are
+    // chosen among them, the others are `authored`. offset: of the choice, [0,1).
     void record(Executor& executor, const Buffer& candidates, std::uint32_t candidateCount, std::uint32_t sampleCount,
                 float offset, const Buffer& authored, lw_subset_order order, const Buffer& vpls);
 
