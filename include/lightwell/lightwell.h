@@ -450,7 +450,12 @@ LW_API LWStatus lwGetViewSize(LWView view, uint32_t* width, uint32_t* height);
 
 /* ----------------------------------------------------------------------------------- techniques */
 
-typedef enum LWResolution { LW_RESOLUTION_FULL = 0, LW_RESOLUTION_HALF = 1 } LWResolution;
+/** Of the pixels that a technique gathers; what lies between them is up-sampled along surfaces. */
+typedef enum LWResolution {
+    LW_RESOLUTION_FULL = 0,
+    LW_RESOLUTION_HALF = 1,   /**< every second pixel and row */
+    LW_RESOLUTION_QUARTER = 2 /**< every fourth pixel and row: of "rsm", "ssvp" and "static_vpl" alone */
+} LWResolution;
 
 typedef enum LWVplSampling {
     LW_SAMPLING_FLUX = 0,   /**< Hammersley set warped by the flux distribution of all RSMs */
@@ -471,7 +476,7 @@ typedef struct LWRsmDesc {
     LWVplSampling sampling;
     uint32_t interleave;     /**< n of n x n: each pixel takes 1/n^2 of the VPLs, then a filter; 1, 2, 4, 8 */
     uint32_t filter;         /**< 1: the edge-aware n x n filter; 0: the raw interleaved image */
-    LWResolution resolution; /**< HALF: gathered on every second pixel and row, then up-sampled */
+    LWResolution resolution; /**< HALF, QUARTER: gathered on every second or fourth pixel and row, then up-sampled */
     uint32_t seed;           /**< shifts the sample set (Cranley-Patterson); 0: unshifted */
     uint32_t history;        /**< 0: each frame alone; else the light is a mean over up to so many frames (64 at most), and
                                   their sample sets differ. Needs LWGBuffer::camera; takes LWGBuffer::motion, if given */

@@ -63,7 +63,7 @@ public:
         for (std::size_t i = 0; i < stagesOf(desc); ++i) stages_.emplace_back(device, desc, i);
         if (repairs() && desc.compensation > 0)
             fail(LW_ERROR_INVALID_ARGUMENT, "desc.autoResolution: expected 0 with desc.compensation above 0, got ", desc.autoResolution);
-        if (interleavedOptions(desc).half) bilateral_.emplace(device, 3, repairs());
+        if (interleavedOptions(desc).halvings) bilateral_.emplace(device, 3, repairs());
         if (repairs()) {
             repair_.emplace(device);
             cullAll_.emplace(device, 1);
@@ -128,7 +128,7 @@ public:
                              VplTiles::layout(position.width, position.height, gather_.order(), desc_.interleave);
                          gather_.recordGather(executor, position, normal, masks, tiles, maps, irradiance, state.counts());
                          if (compensation_)
-                             state.compensate(executor, *compensation_, gbuffer.camera, position, normal, irradiance);
+                             state.compensate(executor, *compensation_, gbuffer.camera, irradiance);
                      },
                      [&](const Planes& position, const Planes& normal, const Planes& irradiance) {
                          const lw_subset_order order = gatherAll_->order();
@@ -223,7 +223,7 @@ private:
     std::vector<GatheredList> lists_;  // of each bounce
     InterleavedGather passes_;
     ClusteredGather gather_;
-    std::optional<JointBilateral> bilateral_;  // half resolution only
+    std::optional<JointBilateral> bilateral_;  // reduced resolution only
     std::optional<PixelRepair> repair_;        // with desc.autoResolution only, as the next two
     std::optional<InterleavedGather> cullAll_;
     std::optional<ClusteredGather> gatherAll_;

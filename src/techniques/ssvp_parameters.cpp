@@ -10,7 +10,7 @@ namespace lightwell {
 namespace {
 
 constexpr const char* kSamplingNames[] = {"flux", "uniform", nullptr};
-constexpr const char* kResolutionNames[] = {"full", "half", nullptr};
+constexpr const char* kResolutionNames[] = {"full", "half", "quarter", nullptr};
 constexpr const char* kVisibilityNames[] = {"none", "hard", "soft", "voxel", nullptr};
 constexpr const char* kOccludersNames[] = {"auto", "triangles", "surfels", "screen", nullptr};
 constexpr const char* kDirectionsNames[] = {"cosine", "disc", "square", nullptr};
@@ -22,7 +22,7 @@ constexpr double kClusterSweep[] = {4, 8, 16, 32};
 constexpr double kVisibilitySweep[] = {LW_VISIBILITY_HARD, LW_VISIBILITY_SOFT, LW_VISIBILITY_VOXEL};
 constexpr double kVoxelsValues[] = {32, 64, 128, 256};
 constexpr double kBouncesSweep[] = {1, 2};
-constexpr double kResolutionSweep[] = {LW_RESOLUTION_FULL, LW_RESOLUTION_HALF};
+constexpr double kResolutionSweep[] = {LW_RESOLUTION_FULL, LW_RESOLUTION_HALF, LW_RESOLUTION_QUARTER};
 
 std::vector<LWParameter> makeTable() {
     const auto uint = [](const char* name, const char* description, std::size_t offset, double least, double most,
@@ -67,8 +67,8 @@ std::vector<LWParameter> makeTable() {
                       offsetof(LWSsvpDesc, clusterGroups), 1, 64, 4),
                  kGroupValues),
         flag("filter", "edge-aware n x n filter after an interleaved gather", offsetof(LWSsvpDesc, filter)),
-        swept(oneOf("resolution", "pixels that are gathered; half: every second column and row, up-sampled after",
-                    offsetof(LWSsvpDesc, resolution), kResolutionNames, 1, LW_RESOLUTION_FULL),
+        swept(oneOf("resolution", "pixels that are gathered; half, quarter: every second or fourth column and row, up-sampled after",
+                    offsetof(LWSsvpDesc, resolution), kResolutionNames, 2, LW_RESOLUTION_FULL),
               kResolutionSweep),
         uint("seed", "shift of the sample sets; 0: unshifted", offsetof(LWSsvpDesc, seed), 0, 4294967295.0, 0),
         oneOf("occluders", "what the maps show: the best that the frame has, its triangles, its surfels (or else its triangles, sampled), or what RSMs and source views see",
