@@ -38,15 +38,15 @@ ssvp clusters=16 resolution=quarter
 ssvp clusters=16 bounces=4 resolution=quarter
 ssvp clusters=16 bounces=4 shadowed_bounces=1 resolution=quarter
 ssvp vpls=512 clusters=16 bounces=4 resolution=quarter
+ssvp vpls=512 clusters=16 bounces=4 shadowed_bounces=3 resolution=quarter
 ssvp vpls=512 clusters=32 bounces=4 resolution=quarter
 ssvp vpls=1024 clusters=32 bounces=4 resolution=quarter
+ssvp vpls=1024 clusters=64 resolution=quarter
 ssvp vpls=1024 clusters=64 bounces=4 resolution=quarter
-ssvp vpls=1024 clusters=64 bounces=4 shadowed_bounces=1 resolution=quarter
+ssvp vpls=1024 clusters=64 bounces=4 shadowed_bounces=3 resolution=quarter
 ssvp vpls=1024 clusters=64 map_size=256 bounces=4 resolution=quarter
-ssvp vpls=64 clusters=2 map_size=64 bounces=1 resolution=half
 ssvp vpls=128 clusters=4 map_size=64 bounces=1 resolution=half
 ssvp vpls=64 clusters=4 map_size=64 second_vpls=16 resolution=half
-ssvp clusters=4 map_size=64 resolution=half
 ssvp resolution=half
 ssvp bounces=4 resolution=half
 ssvp clusters=16 resolution=half
@@ -59,7 +59,7 @@ ssvp vpls=1024 clusters=32 bounces=4 interleave=8 resolution=half
 ssvp vpls=1024 clusters=64 resolution=half
 ssvp vpls=1024 clusters=64 bounces=4 resolution=half
 ssvp vpls=1024 clusters=64 bounces=4 interleave=8 resolution=half
-ssvp vpls=1024 clusters=64 bounces=4 shadowed_bounces=1 resolution=half
+ssvp vpls=1024 clusters=64 bounces=4 shadowed_bounces=3 resolution=half
 ssvp vpls=1024 clusters=64 map_size=256 bounces=4 resolution=half
 ssvp
 ssvp clusters=16 bounces=4

@@ -523,7 +523,7 @@ typedef struct LWSsvpDesc {
     uint32_t mapSize;        /**< texels a side of a cluster's map: 64 .. 512, a multiple of 16 */
     LWVisibility visibility;
     uint32_t bounces;        /**< 1 .. 4 */
-    uint32_t shadowedBounces; /**< 1 or 2: bounces whose light `visibility` shadows; with 2, the second's VPLs are put into as
+    uint32_t shadowedBounces; /**< 1 .. 4: bounces whose light `visibility` shadows; the VPLs of each but the first are put into as
                                   many clusters (64 where `clusters` is 0) with maps of their own. Light of later bounces
                                   goes through walls */
     uint32_t secondVpls;     /**< of the second and of each further bounce, for each cluster of the bounce before */

@@ -198,9 +198,10 @@ private:
     }
     // Of what is shadowed.
     ClusterMaps mapsRead(const std::optional<VoxelSights>& sights) const {
-        const ParaboloidMap &first = maps_.maps(0), &second = maps_.maps(shadowedOf(desc_) > 1 ? 1 : 0);
-        return {first.frames(), first.records(), second.frames(), second.records(), stages_[0].clusters.clusterCount(),
-                first.size(), sights ? &*sights : nullptr};
+        std::vector<ClusterMaps::List> lists;
+        for (std::size_t i = 0; i < std::max<std::size_t>(shadowedOf(desc_), 1); ++i)
+            lists.push_back({&maps_.maps(i).frames(), &maps_.maps(i).records(), stages_[i].clusters.clusterCount()});
+        return {lists, maps_.maps(0).size(), sights ? &*sights : nullptr};
     }
     std::uint32_t shadowingClusters() const {
         std::uint32_t count = 0;
@@ -269,8 +270,8 @@ std::vector<DebugView> SsvpTechnique::debugViews(const View* view) {
                          [this](Executor& executor, const Planes& planes) {
                              sampling_.recordPlanes(executor, gather_.vpls(), planes);
                          }});
-        constexpr const char* kClusters[] = {"clusters", "second_clusters", "third_clusters"};
-        constexpr const char* kMaps[] = {"maps", "second_maps", "third_maps"};
+        constexpr const char* kClusters[] = {"clusters", "second_clusters", "third_clusters", "fourth_clusters"};
+        constexpr const char* kMaps[] = {"maps", "second_maps", "third_maps", "fourth_maps"};
         for (std::size_t i = 0; i < stages_.size(); ++i) {
             KMeans& clusters = stages_[i].clusters;
             ParaboloidMap& maps = maps_.maps(i);
