@@ -37,7 +37,7 @@ InterleavedOptions interleavedOptions(const LWRsmDesc& desc) {
     InterleavedOptions options;
     options.interleave = desc.interleave;
     options.filter = desc.filter != 0;
-    options.half = desc.autoResolution > 0.0f || desc.resolution == LW_RESOLUTION_HALF;
+    options.halvings = desc.autoResolution > 0.0f ? 1 : std::uint32_t(desc.resolution);
     options.history = {desc.history, desc.historyClamp, 0};
     options.repairs = desc.autoResolution;
     return options;
@@ -66,7 +66,7 @@ public:
     RsmTechnique(Device& device, const LWRsmDesc& desc, RsmShadows::Source source = RsmShadows::Source::best)
         : device_(device), desc_(desc), sampling_(device, samplingOptions(desc)), gather_(device, desc.interleave) {
         // A program built for nothing is also never cached.
-        if (interleavedOptions(desc).half) bilateral_.emplace(device, 3, repairs());
+        if (interleavedOptions(desc).halvings) bilateral_.emplace(device, 3, repairs());
         if (repairs()) {
             repair_.emplace(device);
             gatherAll_.emplace(device, 1);
@@ -155,7 +155,7 @@ private:
     RsmInput rsms_;
     VplSampling sampling_;
     InterleavedGather gather_;
-    std::optional<JointBilateral> bilateral_;  // half resolution only
+    std::optional<JointBilateral> bilateral_;  // reduced resolution only
     std::optional<PixelRepair> repair_;        // with desc.autoResolution only
     std::optional<InterleavedGather> gatherAll_;
     std::optional<RsmShadows> shadows_;        // with visibility only

@@ -63,7 +63,7 @@ public:
         for (std::size_t i = 0; i < stagesOf(desc); ++i) stages_.emplace_back(device, desc, i);
         if (repairs() && desc.compensation > 0)
             fail(LW_ERROR_INVALID_ARGUMENT, "desc.autoResolution: expected 0 with desc.compensation above 0, got ", desc.autoResolution);
-        if (interleavedOptions(desc).half) bilateral_.emplace(device, 3, repairs());
+        if (interleavedOptions(desc).halvings) bilateral_.emplace(device, 3, repairs());
         if (repairs()) {
             repair_.emplace(device);
             cullAll_.emplace(device, 1);
@@ -128,7 +128,7 @@ public:
                              VplTiles::layout(position.width, position.height, gather_.order(), desc_.interleave);
                          gather_.recordGather(executor, position, normal, masks, tiles, maps, irradiance, state.counts());
                          if (compensation_)
-                             state.compensate(executor, *compensation_, gbuffer.camera, position, normal, irradiance);
+                             state.compensate(executor, *compensation_, gbuffer.camera, irradiance);
                      },
                      [&](const Planes& position, const Planes& normal, const Planes& irradiance) {
                          const lw_subset_order order = gatherAll_->order();
@@ -198,9 +198,10 @@ private:
     }
     // Of what is shadowed.
     ClusterMaps mapsRead(const std::optional<VoxelSights>& sights) const {
-        const ParaboloidMap &first = maps_.maps(0), &second = maps_.maps(shadowedOf(desc_) > 1 ? 1 : 0);
-        return {first.frames(), first.records(), second.frames(), second.records(), stages_[0].clusters.clusterCount(),
-                first.size(), sights ? &*sights : nullptr};
+        std::vector<ClusterMaps::List> lists;
+        for (std::size_t i = 0; i < std::max<std::size_t>(shadowedOf(desc_), 1); ++i)
+            lists.push_back({&maps_.maps(i).frames(), &maps_.maps(i).records(), stages_[i].clusters.clusterCount()});
+        return {lists, maps_.maps(0).size(), sights ? &*sights : nullptr};
     }
     std::uint32_t shadowingClusters() const {
         std::uint32_t count = 0;
@@ -223,7 +224,7 @@ private:
     std::vector<GatheredList> lists_;  // of each bounce
     InterleavedGather passes_;
     ClusteredGather gather_;
-    std::optional<JointBilateral> bilateral_;  // half resolution only
+    std::optional<JointBilateral> bilateral_;  // reduced resolution only
     std::optional<PixelRepair> repair_;        // with desc.autoResolution only, as the next two
     std::optional<InterleavedGather> cullAll_;
     std::optional<ClusteredGather> gatherAll_;
@@ -269,8 +270,8 @@ std::vector<DebugView> SsvpTechnique::debugViews(const View* view) {
                          [this](Executor& executor, const Planes& planes) {
                              sampling_.recordPlanes(executor, gather_.vpls(), planes);
                          }});
-        constexpr const char* kClusters[] = {"clusters", "second_clusters", "third_clusters"};
-        constexpr const char* kMaps[] = {"maps", "second_maps", "third_maps"};
+        constexpr const char* kClusters[] = {"clusters", "second_clusters", "third_clusters", "fourth_clusters"};
+        constexpr const char* kMaps[] = {"maps", "second_maps", "third_maps", "fourth_maps"};
         for (std::size_t i = 0; i < stages_.size(); ++i) {
             KMeans& clusters = stages_[i].clusters;
             ParaboloidMap& maps = maps_.maps(i);
