@@ -44,6 +44,14 @@ LW_FN void prefer(lw_surface* chosen, const lw_surface other, mask inside) {
     chosen->valid = or_(chosen->valid, take);
 }
 
+LW_FN void load_pairs(lw_pair* p, lw_pair* n, __global const float* position, int4 positionLayout, __global const float* normal,
+                      int4 normalLayout, int x, int y, int rowEnd) {
+    LW_UNROLL for (int a = 0; a < 3; ++a) {
+        p[a] = load_pair(position, positionLayout.x + a * positionLayout.z + y * positionLayout.y, x, rowEnd);
+        n[a] = load_pair(normal, normalLayout.x + a * normalLayout.z + y * normalLayout.y, x, rowEnd);
+    }
+}
+
 // One work-item = LW_WIDTH half-resolution pixels: the first valid surface of each 2x2 block, in the
 // fixed order top left, bottom right, top right, bottom left. half*: 3 planes each.
 __kernel void joint_bilateral_downsample(__global const float* position, int4 positionLayout,
@@ -57,18 +65,18 @@ __kernel void joint_bilateral_downsample(__global const float* position, int4 po
     const lanei column = lanei_iota() * 2 + (lanei)(2 * hx);
     const mask evenInside = column < (lanei)width, oddInside = column + 1 < (lanei)width;
 
-    lw_pair p[2][3], n[2][3];
-    for (int j = 0; j < 2; ++j)
-        for (int a = 0; a < 3; ++a) {
-            const int y = min(2 * hy + j, height - 1);
-            p[j][a] = load_pair(position, positionLayout.x + a * positionLayout.z + y * positionLayout.y, 2 * hx, rowEnd);
-            n[j][a] = load_pair(normal, normalLayout.x + a * normalLayout.z + y * normalLayout.y, 2 * hx, rowEnd);
-        }
-    lw_surface s = surface_of(p[0], n[0], 0);
+    lw_pair p[3], n[3];
+    load_pairs(p, n, position, positionLayout, normal, normalLayout, 2 * hx, 2 * hy, rowEnd);
+    lw_surface s = surface_of(p, n, 0);
     s.valid = and_(s.valid, evenInside);
-    prefer(&s, surface_of(p[1], n[1], 1), oddInside);
-    prefer(&s, surface_of(p[0], n[0], 1), oddInside);
-    prefer(&s, surface_of(p[1], n[1], 0), evenInside);
+    // The second row only where the first one's left pixels do not do: seldom, and it is half of what there is to read.
+    if (any_(and_(not_(s.valid), evenInside))) {
+        const lw_surface right = surface_of(p, n, 1);
+        load_pairs(p, n, position, positionLayout, normal, normalLayout, 2 * hx, min(2 * hy + 1, height - 1), rowEnd);
+        prefer(&s, surface_of(p, n, 1), oddInside);
+        prefer(&s, right, oddInside);
+        prefer(&s, surface_of(p, n, 0), evenInside);
+    }
 
     const real zero = (real)0.0f;
     const int po = halfPositionLayout.x + hy * halfPositionLayout.y + hx;

@@ -12,4 +12,9 @@
 // of wide vectors leave most of a group idle.
 #define LW_REPAIR_COLUMNS 128
 
+// A pixel as one int: sides are 16384 at most.
+#define LW_REPAIR_PIXEL(x, y) ((y) << 16 | (x))
+#define LW_REPAIR_X(pixel) ((pixel) & 0xffff)
+#define LW_REPAIR_Y(pixel) ((pixel) >> 16)
+
 #endif

@@ -11,6 +11,11 @@ constexpr const char* kProgram = "pixel_repair/pixel_repair";
 constexpr std::uint32_t kCountWords = 4;  // as an interleaved view's
 constexpr Range kRowGroup{4, 1}, kPlaceGroup{64, 1};
 
+// Words of 32 marks each.
+std::uint64_t wordsOver(std::uint32_t width, std::uint32_t height) {
+    return std::uint64_t((width + 31) / 32) * height;
+}
+
 }  // namespace
 
 std::uint32_t RepairedPixels::listedRows(std::uint32_t width, std::uint32_t height) {
@@ -22,6 +27,7 @@ RepairedPixels::RepairedPixels(Device& device, std::uint32_t maxWidth, std::uint
       position_(device, LW_REPAIR_COLUMNS, listedRows(maxWidth, maxHeight), 3, "positions of marked pixels"),
       normal_(device, LW_REPAIR_COLUMNS, listedRows(maxWidth, maxHeight), 3, "normals of marked pixels"),
       light_(device, LW_REPAIR_COLUMNS, listedRows(maxWidth, maxHeight), 3, "light of marked pixels"),
+      words_(device, std::size_t(wordsOver(maxWidth, maxHeight)) * sizeof(cl_uint), "bits of marked pixels"),
       rows_(device, maxHeight * sizeof(cl_int), "marked pixels of rows"),
       pixels_(device, room(maxWidth, maxHeight) * sizeof(cl_int), "marked pixels"),
       state_(device, LW_REPAIR_WORDS * sizeof(cl_int), "numbers of marked pixels"),
@@ -37,14 +43,14 @@ void RepairedPixels::report(Device& device, Report& report) const {
 }
 
 std::uint64_t RepairedPixels::bytes() const {
-    return marks_.bytes() + position_.bytes() + normal_.bytes() + light_.bytes() + rows_.bytes() + pixels_.bytes() + state_.bytes() +
+    return marks_.bytes() + position_.bytes() + normal_.bytes() + light_.bytes() + words_.bytes() + rows_.bytes() + pixels_.bytes() + state_.bytes() +
            counts_.bytes();
 }
 
 std::uint64_t RepairedPixels::estimateBytes(std::uint32_t maxWidth, std::uint32_t maxHeight) {
     const std::uint64_t listed = std::uint64_t(LW_REPAIR_COLUMNS) * listedRows(maxWidth, maxHeight);
     return sizeof(float) * (std::uint64_t(paddedWidth(maxWidth)) * maxHeight + 9 * listed) +
-           sizeof(cl_int) * (std::uint64_t(maxHeight) + room(maxWidth, maxHeight) + LW_REPAIR_WORDS + kCountWords);
+           sizeof(cl_int) * (wordsOver(maxWidth, maxHeight) + maxHeight + room(maxWidth, maxHeight) + LW_REPAIR_WORDS + kCountWords);
 }
 
 PixelRepair::PixelRepair(Device& device)
@@ -59,17 +65,18 @@ void PixelRepair::recordCollect(Executor& executor, const Planes& position, cons
     const Buffer& normals = memory.normal_.buffer();
     executor.fill("pixel_repair.collect", normals, 0, 0, normals.bytes());
     executor.fill("pixel_repair.collect", memory.counts_, 0, 0, memory.counts_.bytes());
-    executor.run("pixel_repair.collect", count_, {height, 1}, kRowGroup, marks, cl_int(width), cl_int(height), memory.rows_);
+    executor.run("pixel_repair.collect", count_, {height, 1}, kRowGroup, marks, cl_int(width), cl_int(height), memory.words_,
+                 memory.rows_);
     executor.run("pixel_repair.collect", share_, {1, 1}, {1, 1}, memory.rows_, cl_int(height),
                  cl_int(RepairedPixels::room(width, height)), memory.state_);
-    executor.run("pixel_repair.collect", collect_, {height, 1}, kRowGroup, marks, position, normal, cl_int(width), cl_int(height),
+    executor.run("pixel_repair.collect", collect_, {height, 1}, kRowGroup, memory.words_, position, normal, cl_int(width), cl_int(height),
                  memory.rows_, memory.state_, memory.pixels_, memory.position(width, height), memory.normal(width, height));
 }
 
 void PixelRepair::recordPut(Executor& executor, const RepairedPixels& memory, const Planes& irradiance) {
     const std::uint32_t width = irradiance.width, height = irradiance.height;
     executor.run("pixel_repair.put", put_, gridOver(RepairedPixels::room(width, height)), kPlaceGroup, memory.state_, memory.pixels_,
-                 memory.light(width, height), cl_int(width), irradiance);
+                 memory.light(width, height), irradiance);
 }
 
 }  // namespace lightwell

@@ -40,7 +40,7 @@ private:
     static Planes listed(const PlanarImage& image, std::uint32_t width, std::uint32_t height);
 
     PlanarImage marks_, position_, normal_, light_;
-    Buffer rows_, pixels_, state_, counts_;
+    Buffer words_, rows_, pixels_, state_, counts_;
 };
 
 class PixelRepair {
