@@ -89,16 +89,16 @@ __kernel void rsm_input_unpack(__global const uchar* placeSource, const LwPixels
     const mask rejected = and_(occupied, not_(surface));
 
     const mask lit = and_(surface, not_(covered));
-    store(select_(none, px, surface), at, 0);
-    store(select_(none, py, surface), at, stride);
-    store(select_(none, pz, surface), at, 2 * stride);
-    store(select_(none, nx, surface), at, 3 * stride);
-    store(select_(none, ny, surface), at, 4 * stride);
-    store(select_(none, nz, surface), at, 5 * stride);
+    store_past(select_(none, px, surface), at, 0);
+    store_past(select_(none, py, surface), at, stride);
+    store_past(select_(none, pz, surface), at, 2 * stride);
+    store_past(select_(none, nx, surface), at, 3 * stride);
+    store_past(select_(none, ny, surface), at, 4 * stride);
+    store_past(select_(none, nz, surface), at, 5 * stride);
     store(select_(none, r, lit), at, 6 * stride);
     store(select_(none, g, lit), at, 7 * stride);
     store(select_(none, b, lit), at, 8 * stride);
-    store(select_(none, area, surface), at, 9 * stride);
+    store_past(select_(none, area, surface), at, 9 * stride);
 
     // Whole-number counts: the order of the additions does not show.
     if (any_(rejected)) atomic_add(counters + LW_RSM_REJECTED, (uint)count_(rejected));
