@@ -8,6 +8,7 @@
 #ifndef LW_MARKS
 #define LW_MARKS 0  // 1: up-sampling marks the pixels that it does not know the light of; of irradiance only
 #endif
+#include "shared/pixel_repair_types.h"
 #include "shared/wide.h"
 #include "shared/surface.h"
 #include "shared/edge_weight.h"
@@ -217,17 +218,28 @@ LW_FN void sum_any(lw_sum* sum, const lw_surface* s, const lw_coarse* coarse, in
         for (int i = odd ? 0 : -1; i <= 1; ++i) add_sample(sum, s, coarse, hx, i, hy, j, odd, byLikeness);
 }
 
+#if LW_MARKS
+// A word's low half with a bit's room after each bit.
+LW_FN uint apart(uint bits) {
+    bits = (bits | bits << 8) & 0x00ff00ffu;
+    bits = (bits | bits << 4) & 0x0f0f0f0fu;
+    bits = (bits | bits << 2) & 0x33333333u;
+    return (bits | bits << 1) & 0x55555555u;
+}
+#endif
+
 // The light of the even (or odd) columns of two rows of pixels, and how many of those that exist have no sample on their own
 // surface, or are neither surface nor background. `odd`: a constant.
 //
-// marked, with LW_MARKS: 1 for pixels without such a sample, and for all of a block whose first one has samples that differ by more than
+// marked, with LW_MARKS: a bit for each column, in its place among the even and the odd; for pixels without such a sample, and for all of a block whose first one has samples that differ by more than
 // `share`: it sees all that the others do, if they are of its surface. `steep`: of that one; the even columns come first.
 LW_FN void light_columns(real out[2][LW_CHANNELS][2], int* lostPixels, int* badPixels, lw_pair p[2][3], lw_pair n[2][3],
                          real surface[2][2],
 #if LW_MARKS
-                         real marked[2][2], mask* steep, float share,
+                         uint marked[2], mask* steep, float share,
 #endif
                          const lw_coarse* coarse, int hx, int hy, int width, int rows, const int odd) {
+    const mask exists = lanei_iota() * 2 + (lanei)(2 * hx + odd) < (lanei)width;
     lw_surface s[2];
     lw_sum sum[2];
     mask lost[2];
@@ -241,7 +253,10 @@ LW_FN void light_columns(real out[2][LW_CHANNELS][2], int* lostPixels, int* badP
     LW_UNROLL for (int k = 0; k < 2; ++k) lost[k] = and_(s[k].valid, not_(sum[k].weight > 1e-4f));
 #if LW_MARKS
     if (!odd) *steep = is_steep(sum[0], share);
-    LW_UNROLL for (int k = 0; k < 2; ++k) marked[k][odd] = ones_(and_(s[k].valid, or_(lost[k], *steep)));
+    LW_UNROLL for (int k = 0; k < 2; ++k) {
+        const mask here = and_(and_(s[k].valid, or_(lost[k], *steep)), exists);
+        if (any_(here)) marked[k] |= apart(bits_(here)) << odd;
+    }
 #endif
     LW_UNROLL for (int k = 0; k < 2; ++k) surface[k][odd] = ones_(s[k].valid);
     if (any_(or_(lost[0], lost[1]))) {
@@ -252,7 +267,6 @@ LW_FN void light_columns(real out[2][LW_CHANNELS][2], int* lostPixels, int* badP
             LW_UNROLL for (int a = 0; a < LW_CHANNELS; ++a) sum[k].light[a] = select_(sum[k].light[a], rest[k].light[a], lost[k]);
         }
     }
-    const mask exists = lanei_iota() * 2 + (lanei)(2 * hx + odd) < (lanei)width;
     LW_UNROLL for (int k = 0; k < 2; ++k) {
         const real scale = 1.0f / sum[k].weight;
         LW_UNROLL for (int a = 0; a < LW_CHANNELS; ++a) out[k][a][odd] = select_((real)0.0f, sum[k].light[a] * scale, s[k].valid);
@@ -265,7 +279,7 @@ LW_FN void light_columns(real out[2][LW_CHANNELS][2], int* lostPixels, int* badP
 // half*: 3 planes each of the half-resolution image, the light LW_CHANNELS; with 5, `fourth` and `fifth` take the
 // scalars, and any of the three may be null. counts[0]: pixels that are
 // neither surface nor background; counts[1]: pixels lit without edge test. validity, of irradiance only and unless not hasValidity: 1 on
-// surfaces, 0 elsewhere. marks, with LW_MARKS: see light_columns.
+// surfaces, 0 elsewhere. marks, with LW_MARKS: see light_columns; a word for each work-item and row, as LW_REPAIR_BITS has them.
 __kernel void joint_bilateral_upsample(__global const float* position, int4 positionLayout,
                                        __global const float* normal, int4 normalLayout, int width, int height,
                                        __global const float* halfPosition, int4 halfPositionLayout,
@@ -279,7 +293,7 @@ __kernel void joint_bilateral_upsample(__global const float* position, int4 posi
                                        __global float* validity, int4 validityLayout, int hasValidity,
 #endif
 #if LW_MARKS
-                                       float share, __global float* marks, int4 marksLayout,
+                                       float share, __global uint* marks,
 #endif
                                        __global int* counts) {
     const int hx = (int)get_global_id(0) * LW_WIDTH, hy = (int)get_global_id(1);
@@ -305,7 +319,7 @@ __kernel void joint_bilateral_upsample(__global const float* position, int4 posi
     real out[2][LW_CHANNELS][2], surface[2][2];
     int lost = 0, bad = 0;
 #if LW_MARKS
-    real marked[2][2];
+    uint marked[2] = {0, 0};
     mask steep;
     light_columns(out, &lost, &bad, p, n, surface, marked, &steep, share, &coarse, hx, hy, width, rows, 0);
     light_columns(out, &lost, &bad, p, n, surface, marked, &steep, share, &coarse, hx, hy, width, rows, 1);
@@ -331,7 +345,7 @@ __kernel void joint_bilateral_upsample(__global const float* position, int4 posi
         if (hasValidity) store_pair(validity, validityLayout.x + (y + k) * validityLayout.y + x, hasSecond, surface[k][0], surface[k][1]);
 #endif
 #if LW_MARKS
-        store_pair(marks, marksLayout.x + (y + k) * marksLayout.y + x, hasSecond, marked[k][0], marked[k][1]);
+        marks[(y + k) * LW_REPAIR_WORDS_OF_ROW(width) + (int)get_global_id(0)] = marked[k];
 #endif
     }
 }

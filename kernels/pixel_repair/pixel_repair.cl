@@ -7,28 +7,12 @@
 #include "shared/vpl_list.h"
 #include "shared/wide.h"
 
-// The marks of pixels x, x + 1, ... x + 31 of a row, a bit each; none beyond `width`.
-LW_FN uint marks_at(__global const float* row, int x, int width) {
-    uint word = 0;
-    LW_UNROLL for (int k = 0; k < 32; k += LW_WIDTH) {
-        if (x + k >= width) break;
-        const mask marked = and_(load(row, x + k) > 0.0f, lanei_iota() + (lanei)(x + k) < (lanei)width);
-        if (any_(marked)) word |= bits_(marked) << k;
-    }
-    return word;
-}
-
-// One work-item = one row: its marks as words of 32 pixels, and how many there are.
-__kernel void pixel_repair_count(__global const float* marks, int4 marksLayout, int width, int height, __global uint* words,
-                                 __global int* rows) {
-    const int y = (int)get_global_id(0), wordsOfRow = (width + 31) / 32;
+// One work-item = one row: how many of its pixels are marked.
+__kernel void pixel_repair_count(__global const uint* marks, int width, int height, __global int* rows) {
+    const int y = (int)get_global_id(0), words = LW_REPAIR_WORDS_OF_ROW(width);
     if (y >= height) return;
     int count = 0;
-    for (int i = 0; i < wordsOfRow; ++i) {
-        const uint word = marks_at(marks + marksLayout.x + y * marksLayout.y, 32 * i, width);
-        words[y * wordsOfRow + i] = word;
-        count += (int)popcount(word);
-    }
+    for (int i = 0; i < words; ++i) count += (int)popcount(marks[y * words + i]);
     rows[y] = count;
 }
 
@@ -49,21 +33,21 @@ __kernel void pixel_repair_share(__global int* rows, int height, int room, __glo
 
 // One work-item = one row: its marked pixels' surfaces as the host gave them, 3 planes each, and where they are (LW_REPAIR_PIXEL) by
 // place. Normals of places that none takes are 0 before.
-__kernel void pixel_repair_collect(__global const uint* words, __global const float* position, int4 positionLayout,
+__kernel void pixel_repair_collect(__global const uint* marks, __global const float* position, int4 positionLayout,
                                    __global const float* normal, int4 normalLayout, int width, int height, __global const int* rows,
                                    __global const int* state, __global int* pixels, __global float* listedPosition,
                                    int4 listedPositionLayout, __global float* listedNormal, int4 listedNormalLayout) {
-    const int y = (int)get_global_id(0), wordsOfRow = (width + 31) / 32;
+    const int y = (int)get_global_id(0), words = LW_REPAIR_WORDS_OF_ROW(width);
     const int taken = state[LW_REPAIR_TAKEN], marked = state[LW_REPAIR_MARKED];
     if (y >= height || taken == 0) return;
     // The place of the i-th marked pixel is i * taken / marked, carried on with its remainder; it is taken where the next one's place is
     // another.
     const long first = (long)rows[y] * (long)taken;
     int place = (int)(first / (long)marked), rest = (int)(first - (long)place * (long)marked);
-    for (int i = 0; i < wordsOfRow; ++i) {
-        uint bits = words[y * wordsOfRow + i];
+    for (int i = 0; i < words; ++i) {
+        uint bits = marks[y * words + i];
         while (bits) {
-            const int x = 32 * i + take_lowest(&bits);
+            const int x = LW_REPAIR_BITS * i + take_lowest(&bits);
             rest += taken;
             if (rest < marked) continue;
             rest -= marked;
@@ -89,4 +73,13 @@ __kernel void pixel_repair_put(__global const int* state, __global const int* pi
     for (int a = 0; a < 3; ++a)
         irradiance[irradianceLayout.x + a * irradianceLayout.z + LW_REPAIR_Y(pixel) * irradianceLayout.y + LW_REPAIR_X(pixel)] =
             light[lightLayout.x + a * lightLayout.z + row * lightLayout.y + column];
+}
+
+// One work-item = LW_WIDTH pixels: 1 where they are marked, 0 elsewhere.
+__kernel void pixel_repair_show(__global const uint* marks, int width, int height, __global float* shown, int4 shownLayout) {
+    const int x = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);
+    if (x >= width || y >= height) return;
+    const uint word = marks[y * LW_REPAIR_WORDS_OF_ROW(width) + x / LW_REPAIR_BITS] >> x % LW_REPAIR_BITS;
+    const laneu bits = (laneu)word >> as_laneu_(lanei_iota());
+    store(to_real(bits & 1u), shown, shownLayout.x + y * shownLayout.y + x);
 }
