@@ -142,6 +142,16 @@ LW_FN mask is_steep(const lw_sum sum, float share) {
 }
 #endif
 
+// The samples from column hx on of row hy will be loaded soon.
+LW_FN void expect_samples(const lw_coarse* coarse, int hx, int hy) {
+    LW_UNROLL for (int a = 0; a < 3; ++a) {
+        will_load(coarse->position + coarse->positionLayout.x + a * coarse->positionLayout.z + hy * coarse->positionLayout.y + hx);
+        will_load(coarse->normal + coarse->normalLayout.x + a * coarse->normalLayout.z + hy * coarse->normalLayout.y + hx);
+    }
+    LW_UNROLL for (int a = 0; a < LW_CHANNELS; ++a)
+        will_load(coarse->light + coarse->lightLayout.x + a * coarse->lightLayout.z + hy * coarse->lightLayout.y + hx);
+}
+
 // What a sample counts for `s`: by the edge test; or by likeness of the normals alone.
 LW_FN real sample_weight(const lw_surface s, const lw_sample* q, int byLikeness) {
     if (byLikeness) return fmax(fma_(q->nx, s.nx, fma_(q->ny, s.ny, q->nz * s.nz)), (real)0.0f) + 1e-3f;
@@ -303,6 +313,7 @@ __kernel void joint_bilateral_upsample(__global const float* position, int4 posi
     const lw_coarse coarse = {halfPosition, halfNormal, halfIrradiance, halfPositionLayout, halfNormalLayout, halfIrradianceLayout,
                           (width + 1) / 2, (height + 1) / 2};
 
+    if (hy + 1 < coarse.height) expect_samples(&coarse, hx + 2 * LW_WIDTH, hy + 1);
     lw_pair p[2][3], n[2][3];
     LW_UNROLL for (int k = 0; k < 2; ++k)
         LW_UNROLL for (int a = 0; a < 3; ++a) {
