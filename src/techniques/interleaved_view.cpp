@@ -15,6 +15,17 @@ constexpr const char* kSkips = "VPLs that cannot light a tile of pixels are skip
 constexpr const char* kSkipsNone = "none: a list of more than 16384 slots, of which every pixel takes its whole share";
 static_assert(VplTiles::kMostSlots == 16384, "kSkipsNone names it");
 
+// Of what a debug view draws when it is asked for.
+Planes shapeOf(std::uint32_t width, std::uint32_t height, std::uint32_t planes) {
+    Planes shape;
+    shape.width = width;
+    shape.height = height;
+    shape.rowStride = paddedWidth(width);
+    shape.planeStride = shape.rowStride * height;
+    shape.count = planes;
+    return shape;
+}
+
 std::uint32_t needsOf(const InterleavedOptions& options) {
     return (options.compensated ? std::uint32_t(kNeedsDirectRadiance) : 0u) |
            (options.keeps() ? std::uint32_t(kNeedsMotion) : 0u);
@@ -116,7 +127,7 @@ void InterleavedView::upsample(Executor& executor, const Passes& passes, Planes 
     if (!repaired_) return passes.bilateral->recordUpsample(executor, position, normal, halfPosition, halfNormal, lit, made, counts_, validity);
     const std::uint32_t w = made.width, h = made.height;
     passes.bilateral->recordUpsampleMarked(executor, position, normal, halfPosition, halfNormal, lit, made, options_.repairs,
-                                           repaired_->marks(w, h), validity, counts_);
+                                           repaired_->marks(), validity, counts_);
     passes.repair->recordCollect(executor, position, normal, *repaired_);
     gatherAll(repaired_->position(w, h), repaired_->normal(w, h), repaired_->light(w, h));
     passes.repair->recordPut(executor, *repaired_, made);
@@ -154,12 +165,7 @@ void InterleavedView::compensate(Executor& executor, BoundingCompensation& pass,
 
 void InterleavedView::addCompensationView(BoundingCompensation& pass, std::vector<DebugView>& views) const {
     if (!compensatedPosition_) return;
-    Planes shape;
-    shape.width = compensatedPosition_.width;
-    shape.height = compensatedPosition_.height;
-    shape.rowStride = paddedWidth(shape.width);
-    shape.planeStride = shape.rowStride * shape.height;
-    shape.count = 3;
+    const Planes shape = shapeOf(compensatedPosition_.width, compensatedPosition_.height, 3);
     views.push_back({"compensation", "irradiance that compensates for the bounds of VPLs, before the filter (W/m^2)", shape,
                      [this, &pass](Executor& executor, const Planes& planes) {
                          pass.recordGather(executor, compensatedPosition_, compensatedNormal_, senders_, true, planes, counts_);
@@ -181,7 +187,7 @@ void InterleavedView::report(Device& device, Report& report, lw_subset_order ord
     if (options_.compensated) report.read(device, "compensation_capped", counts_, 3 * sizeof(cl_int));
 }
 
-void InterleavedView::addDebugViews(std::vector<DebugView>& views, TemporalHistory* history) const {
+void InterleavedView::addDebugViews(std::vector<DebugView>& views, TemporalHistory* history, PixelRepair* repair) const {
     if (!lastGathered_) return;
     views.push_back({"position", "world position (m)", gbuffer_.position, {}});
     views.push_back({"normal", "world normal as the host gave it", gbuffer_.normal, {}});
@@ -189,7 +195,8 @@ void InterleavedView::addDebugViews(std::vector<DebugView>& views, TemporalHisto
     if (options_.filters()) views.push_back({"filtered", "irradiance after the filter (W/m^2)", lastFiltered_, {}});
     if (repaired_)
         views.push_back({"repair_marks", "1: a pixel that half resolution does not know the light of",
-                         repaired_->marks(gbuffer_.position.width, gbuffer_.position.height), {}});
+                         shapeOf(gbuffer_.position.width, gbuffer_.position.height, 1),
+                         [this, repair](Executor& executor, const Planes& planes) { repair->recordMarks(executor, *repaired_, planes); }});
     if (!history_) return;
     if (const Planes shape = history->ageShape(*history_); shape.width)
         views.push_back({"history_age", "frames in each pixel's mean; 1: new in this frame, 0: no surface", shape,

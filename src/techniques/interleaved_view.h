@@ -73,7 +73,7 @@ public:
     void startFrame(bool forget);
     // Counts and choices of the views that this frame has rendered; `order` as the last cull had it.
     void report(Device& device, Report& report, lw_subset_order order) const;
-    void addDebugViews(std::vector<DebugView>& views, TemporalHistory* history) const;
+    void addDebugViews(std::vector<DebugView>& views, TemporalHistory* history, PixelRepair* repair) const;
     std::uint64_t bytes() const;
     // Of the images, inputs, outputs and tiles for a view of this size; `order` of the longest list, with options.repairs `whole` of that
     // which gatherAll culls.

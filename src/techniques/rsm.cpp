@@ -194,7 +194,7 @@ std::vector<DebugView> RsmTechnique::debugViews(const View* view) {
                          [this](Executor& executor, const Planes& planes) {
                              sampling_.recordPlanes(executor, vpls(), planes);
                          }});
-    if (const InterleavedView* state = states_.find(view)) state->addDebugViews(views, history());
+    if (const InterleavedView* state = states_.find(view)) state->addDebugViews(views, history(), repair_ ? &*repair_ : nullptr);
     return views;
 }
 

@@ -285,7 +285,7 @@ std::vector<DebugView> SsvpTechnique::debugViews(const View* view) {
     }
     const InterleavedView* state = states_.find(view);
     if (!state) return views;
-    state->addDebugViews(views, history());
+    state->addDebugViews(views, history(), repair_ ? &*repair_ : nullptr);
     if (compensation_) state->addCompensationView(*compensation_, views);
     if (const Planes position = state->position())
         views.push_back({"visibility", "clusters one below the other: the share of its light that each pixel is taken to see",
