@@ -822,7 +822,7 @@ typedef struct LWAutoDesc {
     float errorTarget;       /**< relMSE against all bounces: no dearer than what is predicted to reach it; 0: the least error that the
                                   budget buys */
     uint32_t views;          /**< that a frame renders: 2 for stereo */
-    uint32_t fade;           /**< frames over which a change of technique is spread; 0: at once */
+    uint32_t fade;           /**< frames over which a change of technique is spread, 3 at most where the budget has no room for its time; 0: at once */
     uint32_t patience;       /**< frames for which something better must have been better; what breaks the budget goes sooner */
     float gain;              /**< how much better: the predicted error of the new one is less than the old one's divided by 1 plus this */
 } LWAutoDesc;
