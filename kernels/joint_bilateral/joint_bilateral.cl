@@ -131,8 +131,10 @@ LW_FN void accumulate(lw_sum* sum, real w, const real* light) {
 // Of what counts. Light is no NaN.
 LW_FN void widen(lw_sum* sum, real w, const real* light) {
     const real whole = (light[0] + light[1]) + light[2];
-    sum->least = select_(sum->least, whole, and_(w > 0.0f, whole < sum->least));
-    sum->greatest = select_(sum->greatest, whole, and_(w > 0.0f, whole > sum->greatest));
+    const mask counts = w > 0.0f;
+    const real low = select_((real)INFINITY, whole, counts), high = select_((real)0.0f, whole, counts);
+    sum->least = select_(sum->least, low, low < sum->least);
+    sum->greatest = select_(sum->greatest, high, high > sum->greatest);
 }
 
 // Where samples on the pixel's surface differ by more than `share` of what comes of them all.
