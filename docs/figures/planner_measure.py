@@ -215,7 +215,8 @@ def collect(work, date):
     drift = drifts(points, threads, len(probed))
     for (v, c), some in points.items():
         most = max(p["frames"] for p in some)
-        errors[v][c] = rounded(statistics.mean([noiseless(some[0]["errors"]["all"]), *further.get((v, c), [])]))
+        # Of logarithms: single sets lie up to a decade off where few pixels rule the error.
+        errors[v][c] = rounded(statistics.geometric_mean([noiseless(some[0]["errors"]["all"]), *further.get((v, c), [])]))
         ms[v][c] = rounded(min(time_of(p, threads) for p in some if p["frames"] == most) * beyond * drift(v, most))
     launched = json.loads((work / "launches.json").read_text()) if (work / "launches.json").exists() else {}
     rates = json.loads((work / "rates.json").read_text())
