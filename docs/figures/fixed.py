@@ -11,12 +11,14 @@ import program
 PAGE = program.ROOT / "docs/performance.md"
 BEGIN, END = "<!-- figures: fixed.py -->", "<!-- end of figures -->"
 # Planes of float of a picture's size that a pass reads and writes once each, by setting: position and normal are 3 each, irradiance 3,
-# validity and marks 1; half resolution counts a quarter. Taps that caches hold are not counted again.
-PLANES = {"rsm resolution=half": {"joint_bilateral.downsample": (6, 1.5), "interleaved_gather.bounds": (1.5, 0), "interleaved_gather.gather": (1.5, 0.75),
+# validity 1, marks a bit each; half resolution counts a quarter, and of down-sampling's rows every second is not
+# read; repaired are one pixel in 32 at most, and counted alone although they come in lines of 16. Taps that caches hold are not counted again.
+TEXELS = 512 * 512  # of the RSM, 9 floats in and 10 out each
+PLANES = {"rsm resolution=half": {"rsm_input.unpack": None, "joint_bilateral.downsample": (3, 1.5), "interleaved_gather.bounds": (1.5, 0), "interleaved_gather.gather": (1.5, 0.75),
                                   "interleaved_gather.filter": (2.25, 0.75), "joint_bilateral.upsample": (8.25, 4)},
           "rsm": {"interleaved_gather.bounds": (6, 0), "interleaved_gather.gather": (6, 3), "interleaved_gather.filter": (9, 4)},
-          "rsm auto_resolution=0.5": {"joint_bilateral.downsample": (6, 1.5), "interleaved_gather.filter": (2.25, 0.75),
-                                      "joint_bilateral.upsample": (8.25, 5), "pixel_repair.collect": (2, 0)}}
+          "rsm auto_resolution=0.5": {"joint_bilateral.downsample": (3, 1.5), "interleaved_gather.filter": (2.25, 0.75),
+                                      "joint_bilateral.upsample": (8.25, 4), "pixel_repair.collect": (6 / 32, 7 / 32)}}
 
 
 def main():
@@ -31,8 +33,8 @@ def main():
         frame = json.loads(call("render", options.scenes[0], "--technique", technique, *(["--set", *values] if values else []), "--size", options.size,
                                 "--frames", options.frames or 25, "--json"))
         times = {p["name"]: p["ms"] for p in frame["passes"]}
-        for name, (read, written) in passes.items():
-            moved = (read + written) * megabytes
+        for name, planes in passes.items():
+            moved = sum(planes) * megabytes if planes else TEXELS * 19 * 4e-6
             lines.append(f"| `{setting}` | `{name}` | {times[name]:.2f} | {moved:.0f} | {moved / rates['bandwidth_GBps']:.2f} |")
         lines.append(f"| `{setting}` | the frame | {frame['total_ms']:.1f} | | |")
     lines += ["", f"`{options.scenes[0]}` at {options.size} on {rates['name']}, {rates['compute_units']} cores, {rates['bandwidth_GBps']:.0f} GB/s and "

@@ -110,13 +110,13 @@ def rival_time(points, error):
     its beginning is better already."""
     front = []
     for p in sorted(points, key=lambda p: p["ms"]):
-        if not front or p["own"] < front[-1]["own"]:
+        if not front or p["all"] < front[-1]["all"]:
             front.append(p)
-    if error < front[-1]["own"]:
+    if error < front[-1]["all"]:
         return front[-1]["ms"]
     for a, b in zip(front, front[1:]):
-        if b["own"] <= error <= a["own"]:
-            share = math.log(error / a["own"]) / math.log(b["own"] / a["own"])
+        if b["all"] <= error <= a["all"]:
+            share = math.log(error / a["all"]) / math.log(b["all"] / a["all"])
             return math.exp(math.log(a["ms"]) + share * math.log(b["ms"] / a["ms"]))
     return None
 
@@ -126,9 +126,9 @@ def rival_lines(data, found):
     if not rivals:
         return []
     names, reached = data.names(), []
-    lines = ["**Against path tracing.** The [rival](techniques/rival.md) with two bounces, filtered, traced at full and at half resolution, "
-             "judged against two bounces (its best case); the planner's choices against all. How many times longer the rival takes for the same error, at "
-             "the budget where that is most (>: no point of the rival's line is as accurate); `full`: its line without coarse resolution.", "",
+    lines = ["**Against path tracing.** The [rival](techniques/rival.md) with two and with four bounces, 1 to 8 paths a pixel, filtered, traced at full, half and quarter "
+             "resolution: its line is the least error in no more time. Both it and the planner's choices are judged against all bounces. How many times longer the rival takes for the "
+             "same error, at the budget where that is most (>: no point of the rival's line is as accurate; then its longest time); `full`: its line without coarse resolution.", "",
              "| scene | rival: errors of its line, paths a pixel | chosen | ms | relMSE | rival's ms (full) | times (full) |", "| --- | --- | --- | ---: | ---: | ---: | ---: |"]
     for view in dict.fromkeys((r["scene"], r["camera"]) for r in rivals):
         v = next(i for i, w in enumerate(data.views) if (w["scene"], w["camera"]) == view)
@@ -141,7 +141,7 @@ def rival_lines(data, found):
                 both, alone = rival_time(points, error), rival_time(full, error)
                 if both or alone:
                     rows.append(((both or 0) / ms, (alone or 0) / ms, f[2], ms, error, both, alone))
-        span = f"{max(p['own'] for p in points):.2g} to {min(p['own'] for p in points):.2g} (1 to {max(p['spp'] for p in points)} paths)"
+        span = f"{max(p['all'] for p in points):.2g} to {min(p['all'] for p in points):.2g} (1 to {max(p['spp'] for p in points)} paths)"
         if not rows:
             errors = [data.error[v, f[2]] for f in found if f[0] == v and f[5]]
             lines.append(f"| {view_name(data.views[v])} | {span} | none within that range: {max(errors):.2g} to {min(errors):.2g} | | | | |")
@@ -149,7 +149,7 @@ def rival_lines(data, found):
         _, _, c, ms, error, both, alone = max(rows)
         if both and both >= WANTED_TIMES * ms:
             reached.append(view_name(data.views[v]))
-        more = "> " if error < min(p["own"] for p in points) else ""
+        more = "> " if error < min(p["all"] for p in points) else ""
         dash = lambda x, d=0: f"{more}{x:.{d}f}" if x else "none"  # noqa: E731
         lines.append(f"| {view_name(data.views[v])} | {span} | `{short(names[c])}` | {ms:.1f} | {error:.2g} | {dash(both)} ({dash(alone)}) | "
                      f"{dash(both / ms if both else None, 1)} ({dash(alone / ms if alone else None, 1)}) |")

@@ -1,7 +1,7 @@
 """Measures what docs/figures/planner.py fits, with the program `lightwell`, into planner_data.json.
 
-Below `work`: chart*/ (errors and times of all views; the point with more frames counts, of equals the quicker), sizes_*/ (times at other
-sizes), rival/ (path tracing), probes.json, rsm_sizes.json, launches.json. Every command goes on where it was stopped.
+Below `work`: chart*/ (errors and times of all views; the point with more frames counts, of equals the quicker), seeds*/ (errors of further
+sample sets), sizes_*/ (times at other sizes), rival/ (path tracing), probes.json, rsm_sizes.json, launches.json. Every command goes on where it was stopped.
 """
 import json
 import pathlib
@@ -15,49 +15,56 @@ SIZE, BLOCK = (1280, 720), 10
 SCENES = ["cornell", "basic", "rooms", "cornell_original", "sponza_crytek", "sponza_dabrovic", "sibenik", "living_room", "wooden_staircase",
           "breakfast_room", "level_zdm2", "bunny_corner"]
 SHARED = SCENES[3:]  # the large ones, of which the rival is asked first
+SEEDS = (1, 2)  # beside 0: of VPLs drawn by chance a single set tells as much of its luck as of the configuration
 SIZES, SIZED = [(640, 360), (1920, 1080)], ["cornell", "sibenik"]
 RSM_SIZES, RSM_USUAL = [256, 1024], 512
 
 # What could be on the front of error and time somewhere, from the sweeps in docs/accuracy.md and by trial. All are measured in every
 # view; the table has those that were near the front of one.
 CANDIDATES = """
+rsm vpls=64 resolution=quarter
 rsm vpls=64 resolution=half
+rsm resolution=quarter
 rsm resolution=half
 rsm
+rsm visibility=voxel resolution=quarter
 rsm visibility=voxel resolution=half
-ssvp vpls=64 clusters=2 map_size=64 bounces=1 resolution=half
+ssvp vpls=64 clusters=2 map_size=64 bounces=1 resolution=quarter
+ssvp vpls=128 clusters=4 map_size=64 bounces=1 resolution=quarter
+ssvp clusters=4 map_size=64 resolution=quarter
+ssvp resolution=quarter
+ssvp bounces=4 resolution=quarter
+ssvp clusters=16 resolution=quarter
+ssvp clusters=16 bounces=4 resolution=quarter
+ssvp clusters=16 bounces=4 shadowed_bounces=1 resolution=quarter
+ssvp vpls=512 clusters=16 bounces=4 resolution=quarter
+ssvp vpls=512 clusters=16 bounces=4 shadowed_bounces=3 resolution=quarter
+ssvp vpls=512 clusters=32 bounces=4 resolution=quarter
+ssvp vpls=1024 clusters=32 bounces=4 resolution=quarter
+ssvp vpls=1024 clusters=64 resolution=quarter
+ssvp vpls=1024 clusters=64 bounces=4 resolution=quarter
+ssvp vpls=1024 clusters=64 bounces=4 shadowed_bounces=3 resolution=quarter
+ssvp vpls=1024 clusters=64 map_size=256 bounces=4 resolution=quarter
 ssvp vpls=128 clusters=4 map_size=64 bounces=1 resolution=half
 ssvp vpls=64 clusters=4 map_size=64 second_vpls=16 resolution=half
-ssvp clusters=4 bounces=1 resolution=half
-ssvp clusters=4 map_size=64 resolution=half
-ssvp clusters=4 resolution=half
-ssvp clusters=4 map_size=64 bounces=3 resolution=half
 ssvp resolution=half
-ssvp shadowed_bounces=1 resolution=half
-ssvp bounces=3 resolution=half
 ssvp bounces=4 resolution=half
 ssvp clusters=16 resolution=half
-ssvp clusters=32 bounces=1 resolution=half
-ssvp clusters=32 resolution=half
 ssvp clusters=16 bounces=4 resolution=half
-ssvp clusters=16 bounces=4 shadowed_bounces=1 resolution=half
-ssvp clusters=32 bounces=4 resolution=half
 ssvp vpls=512 clusters=16 bounces=4 resolution=half
-ssvp vpls=512 clusters=32 bounces=4 shadowed_bounces=1 resolution=half
+ssvp clusters=32 resolution=half
+ssvp clusters=32 bounces=4 resolution=half
 ssvp vpls=1024 clusters=32 bounces=4 resolution=half
 ssvp vpls=1024 clusters=32 bounces=4 interleave=8 resolution=half
-ssvp vpls=1024 clusters=32 bounces=4 shadowed_bounces=1 resolution=half
 ssvp vpls=1024 clusters=64 resolution=half
 ssvp vpls=1024 clusters=64 bounces=4 resolution=half
 ssvp vpls=1024 clusters=64 bounces=4 interleave=8 resolution=half
-ssvp vpls=1024 clusters=64 bounces=4 shadowed_bounces=1 resolution=half
+ssvp vpls=1024 clusters=64 bounces=4 shadowed_bounces=3 resolution=half
+ssvp vpls=1024 clusters=64 map_size=256 bounces=4 resolution=half
 ssvp
-ssvp bounces=4
-ssvp clusters=16
 ssvp clusters=16 bounces=4
-ssvp clusters=32
 ssvp vpls=1024 clusters=32 bounces=4
-ssvp vpls=1024 clusters=64
+ssvp vpls=1024 clusters=64 bounces=4
 lpv transport=sweep size=16 directions=96 resolution=half
 lpv transport=sweep size=16 directions=96 bounces=4 resolution=half
 cone_tracing size=32 cones=6 bounces=0 resolution=quarter
@@ -78,7 +85,8 @@ fallback first=screen_space second=rsm first.samples=16 second.visibility=voxel 
 MAPPED, MAPS = ["rooms", "bunny_corner", "sibenik", "sponza_crytek"], 16
 # A point alone needs a parameter: one at its default.
 ALONE = {"rsm": "vpls=256", "ssvp": "vpls=256", "screen_space": "samples=64", "horizon": "steps=2"}
-RIVALS = [f"rival,bounces=2,spp={spp},resolution={resolution}" for spp in (1, 2, 4, 8) for resolution in ("full", "half", "quarter")]
+RIVALS = [f"rival,bounces={bounces},spp={spp},resolution={resolution}" for bounces in (2, 4) for spp in (1, 2, 4, 8)
+          for resolution in ("full", "half", "quarter")]
 
 
 def parted(candidate):
@@ -105,6 +113,9 @@ def measure(program, work):
     all_of = list(map(variant, CANDIDATES))
     truth = ["--noise", "3e-3", "--truth-seconds", 120]
     chart("chart", all_of, SIZE, 11, "--scenes", *SCENES, *truth)
+    drawn = [c for c in CANDIDATES if is_drawn(c)]
+    for seed in SEEDS:
+        chart(f"seeds{seed}", [f"{variant(c)},seed={seed}" for c in drawn], SIZE, 1, "--scenes", *SCENES, *truth)
     for size in SIZES:
         chart(f"sizes_{size[1]}", all_of, size, 11, "--scenes", *SIZED, "--cameras", "first", "--noise", "1e3")
     chart("rival", RIVALS, SIZE, 1, "--scenes", *SHARED, *truth)
@@ -153,11 +164,17 @@ def launches(lightwell, candidate):
 
 # ------------------------------------------------------------------------------------- to one file
 
-def is_point_of(point, candidate):
+def is_drawn(candidate):
+    return parted(candidate)[0] in ("rsm", "ssvp")
+
+
+def is_point_of(point, candidate, seed=0):
     technique, settings = parted(candidate)
     if point["technique"] != technique:
         return False
     wanted = dict(s.split("=") for s in settings.split())
+    if is_drawn(candidate):
+        wanted["seed"] = str(seed)
     names = {True: "on", False: "off"}
     values = {k: names[v] if isinstance(v, bool) else v if isinstance(v, str) else f"{v:g}" for k, v in point["parameters"].items()}
     changed = [] if point["settings"] == "defaults" else [s.split("=")[0] for s in point["settings"].split()]
@@ -191,13 +208,15 @@ def collect(work, date):
             for c, candidate in enumerate(CANDIDATES):
                 if is_point_of(p, candidate):
                     points.setdefault((index[p["scene"], p["camera"]], c), []).append(p)
+    further = further_seeds(work, index)
     quiet = [p["ms"]["median"] / time_of(p, threads) for some in points.values() for p in some]
     beyond = statistics.median(q for q in quiet if q < 1.15)
     errors, ms = ([[None] * len(CANDIDATES) for _ in probed] for _ in range(2))
     drift = drifts(points, threads, len(probed))
     for (v, c), some in points.items():
         most = max(p["frames"] for p in some)
-        errors[v][c] = rounded(noiseless(some[0]["errors"]["all"]))
+        # Of logarithms: single sets lie up to a decade off where few pixels rule the error.
+        errors[v][c] = rounded(statistics.geometric_mean([noiseless(some[0]["errors"]["all"]), *further.get((v, c), [])]))
         ms[v][c] = rounded(min(time_of(p, threads) for p in some if p["frames"] == most) * beyond * drift(v, most))
     launched = json.loads((work / "launches.json").read_text()) if (work / "launches.json").exists() else {}
     rates = json.loads((work / "rates.json").read_text())
@@ -208,7 +227,7 @@ def collect(work, date):
         print(f"left out, for it is not measured in every view: {CANDIDATES[c]}")
     pick = lambda row: [row[c] for c in whole]  # noqa: E731
     result = {"date": date, "device": header["device"]["name"], "driver": header["device"]["driver"], "cpu": header["versions"]["cpu"],
-              "threads": threads, "size": list(SIZE), "judged_block": BLOCK, "rsm_texels": RSM_USUAL ** 2,
+              "threads": threads, "seeds": 1 + len(SEEDS), "size": list(SIZE), "judged_block": BLOCK, "rsm_texels": RSM_USUAL ** 2,
               "clock_over_processor": round(beyond, 4), "rates": rate,
               "candidates": [{"technique": parted(c)[0], "settings": parted(c)[1], "launches": launched.get(c, 0)} for c in pick(CANDIDATES)],
               "views": [{**v, "noise": noise_of(charts, v)} for v in probed],
@@ -216,6 +235,17 @@ def collect(work, date):
               "sizes": [{**entry, "ms": pick(entry["ms"])} for entry in sizes(work, threads, beyond)], "ms_per_megatexel": per_megatexel(work), "maps": json.loads((work / "maps.json").read_text()), "rival": rivals(work, threads, beyond)}
     DATA.write_text(compact(result), encoding="utf-8")
     print(DATA)
+
+
+def further_seeds(work, index):
+    """Errors of the sample sets beside the first, by view and candidate."""
+    result = {}
+    for seed in SEEDS:
+        for p in (p for folder in sorted(work.glob(f"seeds{seed}*/results.json")) for p in read_points(folder.parent)[1]):
+            for c, candidate in enumerate(CANDIDATES):
+                if is_drawn(candidate) and is_point_of(p, candidate, seed):
+                    result.setdefault((index[p["scene"], p["camera"]], c), []).append(noiseless(p["errors"]["all"]))
+    return result
 
 
 def drifts(points, threads, views):
@@ -262,11 +292,9 @@ def per_megatexel(work):
 
 
 def rivals(work, threads, beyond):
-    if not (work / "rival/results.json").exists():
-        return []
-    return [{"scene": p["scene"], "camera": p["camera"], "spp": p["parameters"]["spp"], "resolution": p["parameters"]["resolution"],
-             "ms": rounded(time_of(p, threads) * beyond), "own": rounded(noiseless(p["errors"]["own"])), "all": rounded(noiseless(p["errors"]["all"]))}
-            for p in read_points(work / "rival")[1]]
+    return [{"scene": p["scene"], "camera": p["camera"], "bounces": p["parameters"]["bounces"], "spp": p["parameters"]["spp"],
+             "resolution": p["parameters"]["resolution"], "ms": rounded(time_of(p, threads) * beyond), "all": rounded(noiseless(p["errors"]["all"]))}
+            for folder in sorted(work.glob("rival*/results.json")) for p in read_points(folder.parent)[1]]
 
 
 def compact(result):

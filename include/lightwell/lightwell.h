@@ -450,7 +450,12 @@ LW_API LWStatus lwGetViewSize(LWView view, uint32_t* width, uint32_t* height);
 
 /* ----------------------------------------------------------------------------------- techniques */
 
-typedef enum LWResolution { LW_RESOLUTION_FULL = 0, LW_RESOLUTION_HALF = 1 } LWResolution;
+/** Of the pixels that a technique gathers; what lies between them is up-sampled along surfaces. */
+typedef enum LWResolution {
+    LW_RESOLUTION_FULL = 0,
+    LW_RESOLUTION_HALF = 1,   /**< every second pixel and row */
+    LW_RESOLUTION_QUARTER = 2 /**< every fourth pixel and row: of "rsm", "ssvp" and "static_vpl" alone */
+} LWResolution;
 
 typedef enum LWVplSampling {
     LW_SAMPLING_FLUX = 0,    /**< Hammersley set warped by the flux distribution of all RSMs */
@@ -473,7 +478,7 @@ typedef struct LWRsmDesc {
     LWVplSampling sampling;
     uint32_t interleave;     /**< n of n x n: each pixel takes 1/n^2 of the VPLs, then a filter; 1, 2, 4, 8 */
     uint32_t filter;         /**< 1: the edge-aware n x n filter; 0: the raw interleaved image */
-    LWResolution resolution; /**< HALF: gathered on every second pixel and row, then up-sampled */
+    LWResolution resolution; /**< HALF, QUARTER: gathered on every second or fourth pixel and row, then up-sampled */
     uint32_t seed;           /**< shifts the sample set (Cranley-Patterson); 0: unshifted */
     uint32_t history;        /**< 0: each frame alone; else the light is a mean over up to so many frames (64 at most), and
                                   their sample sets differ. Needs LWGBuffer::camera; takes LWGBuffer::motion, if given */
@@ -520,7 +525,7 @@ typedef struct LWSsvpDesc {
     uint32_t mapSize;        /**< texels a side of a cluster's map: 64 .. 512, a multiple of 16 */
     LWVisibility visibility;
     uint32_t bounces;        /**< 1 .. 4 */
-    uint32_t shadowedBounces; /**< 1 or 2: bounces whose light `visibility` shadows; with 2, the second's VPLs are put into as
+    uint32_t shadowedBounces; /**< 1 .. 4: bounces whose light `visibility` shadows; the VPLs of each but the first are put into as
                                   many clusters (64 where `clusters` is 0) with maps of their own. Light of later bounces
                                   goes through walls */
     uint32_t secondVpls;     /**< of the second and of each further bounce, for each cluster of the bounce before */
@@ -819,7 +824,7 @@ typedef struct LWAutoDesc {
     float errorTarget;       /**< relMSE against all bounces: no dearer than what is predicted to reach it; 0: the least error that the
                                   budget buys */
     uint32_t views;          /**< that a frame renders: 2 for stereo */
-    uint32_t fade;           /**< frames over which a change of technique is spread; 0: at once */
+    uint32_t fade;           /**< frames over which a change of technique is spread, 3 at most where the budget has no room for its time; 0: at once */
     uint32_t patience;       /**< frames for which something better must have been better; what breaks the budget goes sooner */
     float gain;              /**< how much better: the predicted error of the new one is less than the old one's divided by 1 plus this */
 } LWAutoDesc;

@@ -54,26 +54,24 @@ LW_FN rgb gather_subset(const lw_surface s, __global const float* vpls, lw_subse
 }
 
 // One work-item = LW_WIDTH * LW_INTERLEAVE adjacent pixels of one row, of a width x height image.
-// vpls: float[12] each as clustered_gather_order and _deal wrote them. frames ... seconds, sights ...: as lw_maps, of `size`
-// texels a side. masks, irradiance, counts: as in interleaved_gather_gather.
+// vpls: float[12] each as clustered_gather_order and _deal wrote them. frames1 ... sight: as lw_maps. masks, irradiance, counts: as in interleaved_gather_gather.
 __kernel void clustered_gather_gather(__global const float* position, int4 positionLayout,
                                       __global const float* normal, int4 normalLayout, int width, int height,
                                       __global const float* vpls, lw_subset_order order,
                                       __global const uint* masks, lw_vpl_tiles tiles,
-                                      __global const lw_paraboloid* frames, __global const float* records,
-                                      __global const lw_paraboloid* secondFrames, __global const float* secondRecords,
-                                      int seconds, int size, __global const uchar* sights,
-                                      __global const LwVoxelEye* eyes, __global const LwVoxelSight* sight, uint shadowed,
+                                      LW_MAPS_ARGUMENTS, uint shadowed,
                                       __global float* irradiance, int4 irradianceLayout, __global int* counts) {
     const int x = (int)get_global_id(0) * LW_WIDTH * LW_INTERLEAVE, y = (int)get_global_id(1);
     if (x >= width || y >= height) return;
     const int tile = (y / LW_TILE_ROWS) * tiles.columns + x / tiles.tileWidth;
     const int positionRow = positionLayout.x + y * positionLayout.y, normalRow = normalLayout.x + y * normalLayout.y;
-    const lw_maps maps = {frames, records, secondFrames, secondRecords, seconds, size, sights, eyes, sight};
+    const lw_maps maps = LW_MAPS_OF_ARGUMENTS;
     real p[3][LW_INTERLEAVE], n[3][LW_INTERLEAVE], e[3][LW_INTERLEAVE];
     LW_UNROLL for (int a = 0; a < 3; ++a) {
         load_dealt(p[a], position, positionRow + a * positionLayout.z, x, width);
         load_dealt(n[a], normal, normalRow + a * normalLayout.z, x, width);
+        expect_dealt(position, positionRow + a * positionLayout.z, x);
+        expect_dealt(normal, normalRow + a * normalLayout.z, x);
     }
 
     lanei rejectedHere = (lanei)0, saturatedHere = (lanei)0;
@@ -98,15 +96,11 @@ __kernel void clustered_gather_gather(__global const float* position, int4 posit
 // seen by the cluster, the clusters one below the other; 0 without a surface.
 __kernel void clustered_gather_visibility(__global const float* position, int4 positionLayout,
                                           __global const float* normal, int4 normalLayout, int width, int height,
-                                          int clusters, __global const lw_paraboloid* frames,
-                                          __global const float* records, __global const lw_paraboloid* secondFrames,
-                                          __global const float* secondRecords, int seconds, int size,
-                                          __global const uchar* sights, __global const LwVoxelEye* eyes,
-                                          __global const LwVoxelSight* sight, __global float* planes, int rowStride) {
+                                          int clusters, LW_MAPS_ARGUMENTS, __global float* planes, int rowStride) {
     const int x = (int)get_global_id(0) * LW_WIDTH, row = (int)get_global_id(1);
     if (x >= width || row >= clusters * height) return;
     const int cluster = row / height;
-    const lw_maps maps = {frames, records, secondFrames, secondRecords, seconds, size, sights, eyes, sight};
+    const lw_maps maps = LW_MAPS_OF_ARGUMENTS;
     const lw_surface s = load_surface(position, positionLayout, normal, normalLayout, x, row - cluster * height);
     store(select_((real)0.0f, cluster_visibility(maps, cluster, s), s.valid), planes, row * rowStride + x);
 }

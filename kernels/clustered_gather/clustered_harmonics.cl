@@ -6,20 +6,16 @@
 #include "shared/vpl_bands.h"
 
 // One work-item = LW_WIDTH points of a row, of a width x height image of them. vpls: float[12] each, order.capacity (even) of them,
-// sorted by cluster. frames ... seconds, sights ...: as lw_maps, of `size` texels a side. harmonics, counts: as in
-// interleaved_gather_harmonics.
+// sorted by cluster. frames1 ... sight: as lw_maps. harmonics, counts: as in interleaved_gather_harmonics.
 __kernel void clustered_gather_harmonics(__global const float* position, int4 positionLayout, __global const float* normal,
                                          int4 normalLayout, int hasNormals, int width, int height,
                                          __global const float* vpls, lw_subset_order order,
-                                         __global const lw_paraboloid* frames, __global const float* records,
-                                         __global const lw_paraboloid* secondFrames, __global const float* secondRecords,
-                                         int seconds, int size, __global const uchar* sights,
-                                         __global const LwVoxelEye* eyes, __global const LwVoxelSight* sight,
+                                         LW_MAPS_ARGUMENTS,
                                          __global float* harmonics, int4 harmonicsLayout, int band,
                                          __global int* counts) {
     const int x = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);
     if (x >= width || y >= height) return;
-    const lw_maps maps = {frames, records, secondFrames, secondRecords, seconds, size, sights, eyes, sight};
+    const lw_maps maps = LW_MAPS_OF_ARGUMENTS;
     const lw_surface s = load_point(position, positionLayout, normal, normalLayout, hasNormals, x, y);
     lw_bands sum = no_bands();
     if (any_(s.valid)) {

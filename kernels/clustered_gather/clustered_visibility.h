@@ -9,18 +9,25 @@
 #include "shared/surface.h"
 #include "voxel_sight.h"
 
-// What the gather knows of the maps: those of the first bounce's clusters, and from cluster number `seconds` on those
-// of the second's; of voxels, what all clusters see, both bounces' in one row.
+// What the gather knows of the maps: of up to four bounces' clusters, numbered in one row: those of the second, third and fourth begin at
+// lists.x, .y and .z; lists.w is a map's side. Of voxels, what all clusters see, in the same row.
 typedef struct {
-    __global const lw_paraboloid* frames;
-    __global const float* records;
-    __global const lw_paraboloid* secondFrames;
-    __global const float* secondRecords;
-    int seconds, size;
+    __global const lw_paraboloid *frames[4];
+    __global const float *records[4];
+    int4 lists;
     __global const uchar* sights;
     __global const LwVoxelEye* eyes;
     __global const LwVoxelSight* sight;
 } lw_maps;
+
+// The arguments of a kernel that looks clusters up, and what it makes of them.
+#define LW_MAPS_ARGUMENTS                                                                                                     \
+    __global const lw_paraboloid *frames1, __global const float *records1, __global const lw_paraboloid *frames2,            \
+        __global const float *records2, __global const lw_paraboloid *frames3, __global const float *records3,               \
+        __global const lw_paraboloid *frames4, __global const float *records4, int4 lists, __global const uchar *sights,      \
+        __global const LwVoxelEye *eyes, __global const LwVoxelSight *sight
+#define LW_MAPS_OF_ARGUMENTS \
+    {{frames1, frames2, frames3, frames4}, {records1, records2, records3, records4}, lists, sights, eyes, sight}
 
 // 1 where the cluster's map sees the surface, or the share of it that does; of voxels, of its light that arrives. Cluster -1 is seen everywhere.
 LW_FN real cluster_visibility(lw_maps maps, int cluster, const lw_surface s) {
@@ -30,15 +37,14 @@ LW_FN real cluster_visibility(lw_maps maps, int cluster, const lw_surface s) {
 #elif LW_VISIBILITY == 3
     return voxel_sight(maps.sights, maps.eyes, maps.sight, cluster, s);
 #else
-    const bool isSecond = cluster >= maps.seconds;
-    const int map = isSecond ? cluster - maps.seconds : cluster, first = map * maps.size * maps.size;
-    const lw_paraboloid frame = isSecond ? maps.secondFrames[map] : maps.frames[map];
-    __global const float* const records = isSecond ? maps.secondRecords : maps.records;
-    const lw_map_receiver receiver = paraboloid_receiver(frame, maps.size, s.px, s.py, s.pz, s.nx, s.ny, s.nz);
+    const int list = (cluster >= maps.lists.x) + (cluster >= maps.lists.y) + (cluster >= maps.lists.z);
+    const int begin = list == 0 ? 0 : list == 1 ? maps.lists.x : list == 2 ? maps.lists.y : maps.lists.z;
+    const int map = cluster - begin, size = maps.lists.w, first = map * size * size;
+    const lw_map_receiver receiver = paraboloid_receiver(maps.frames[list][map], size, s.px, s.py, s.pz, s.nx, s.ny, s.nz);
 #if LW_VISIBILITY == 1
-    return ones_(paraboloid_sees(records, first, maps.size, receiver));
+    return ones_(paraboloid_sees(maps.records[list], first, size, receiver));
 #else
-    return paraboloid_visibility(records, first, maps.size, receiver);
+    return paraboloid_visibility(maps.records[list], first, size, receiver);
 #endif
 #endif
 }

@@ -84,6 +84,15 @@ __kernel void interleaved_gather_filter(__global const float* position, int4 pos
         some = or_(some, s.valid);
     }
     const int from = clamp(y - LW_BACK, 0, lastRow), second = clamp(y + LW_FILTER_ROWS - 1 - LW_BACK, 0, lastRow);
+    // The window's last rows, which no work-item before has read, for the next one beside this.
+    LW_UNROLL for (int k = 0; k < LW_FILTER_ROWS; ++k) {
+        const int row = max(second + rows - 1 - k, 0);
+        LW_UNROLL for (int a = 0; a < 3; ++a) {
+            will_load(position + positionLayout.x + a * positionLayout.z + row * positionLayout.y + x + LW_WIDTH);
+            will_load(normal + normalLayout.x + a * normalLayout.z + row * normalLayout.y + x + LW_WIDTH);
+            will_load(irradiance + irradianceLayout.x + a * irradianceLayout.z + row * irradianceLayout.y + x + LW_WIDTH);
+        }
+    }
     if (any_(some)) {
         for (int j = from; j < second + rows; ++j) {
             const int shift = inside ? start : 0;

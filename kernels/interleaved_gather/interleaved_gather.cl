@@ -53,6 +53,8 @@ __kernel void interleaved_gather_gather(__global const float* position, int4 pos
     LW_UNROLL for (int a = 0; a < 3; ++a) {
         load_dealt(p[a], position, positionRow + a * positionLayout.z, x, width);
         load_dealt(n[a], normal, normalRow + a * normalLayout.z, x, width);
+        expect_dealt(position, positionRow + a * positionLayout.z, x);
+        expect_dealt(normal, normalRow + a * normalLayout.z, x);
     }
 
     lanei rejectedHere = (lanei)0, saturatedHere = (lanei)0;

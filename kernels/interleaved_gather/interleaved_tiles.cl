@@ -35,12 +35,16 @@ __kernel void interleaved_gather_bounds(__global const float* position, int4 pos
         high[a] = (real)(-INFINITY);
     }
     for (int y = y0; y < y1; ++y) {
+        // Two rows on, in the next tile after this one's last: pieces of rows are too short for a processor to foresee.
+        const int wraps = y + 2 >= y1, yAhead = wraps ? y0 + y + 2 - y1 : y + 2, xAhead = wraps ? tiles.tileWidth : 0;
         for (int x = x0; x < x1; x += LW_WIDTH) {
             const int p = positionLayout.x + y * positionLayout.y + x, n = normalLayout.x + y * normalLayout.y + x;
             real v[6];
             LW_UNROLL for (int a = 0; a < 3; ++a) {
                 v[a] = load(position, p + a * positionLayout.z);
                 v[a + 3] = load(normal, n + a * normalLayout.z);
+                will_load(position + positionLayout.x + a * positionLayout.z + yAhead * positionLayout.y + x + xAhead);
+                will_load(normal + normalLayout.x + a * normalLayout.z + yAhead * normalLayout.y + x + xAhead);
             }
             // Padding may hold anything.
             const mask inside = lanei_iota() + (lanei)x < (lanei)width;

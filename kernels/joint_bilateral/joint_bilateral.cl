@@ -8,6 +8,7 @@
 #ifndef LW_MARKS
 #define LW_MARKS 0  // 1: up-sampling marks the pixels that it does not know the light of; of irradiance only
 #endif
+#include "shared/pixel_repair_types.h"
 #include "shared/wide.h"
 #include "shared/surface.h"
 #include "shared/edge_weight.h"
@@ -44,6 +45,14 @@ LW_FN void prefer(lw_surface* chosen, const lw_surface other, mask inside) {
     chosen->valid = or_(chosen->valid, take);
 }
 
+LW_FN void load_pairs(lw_pair* p, lw_pair* n, __global const float* position, int4 positionLayout, __global const float* normal,
+                      int4 normalLayout, int x, int y, int rowEnd) {
+    LW_UNROLL for (int a = 0; a < 3; ++a) {
+        p[a] = load_pair(position, positionLayout.x + a * positionLayout.z + y * positionLayout.y, x, rowEnd);
+        n[a] = load_pair(normal, normalLayout.x + a * normalLayout.z + y * normalLayout.y, x, rowEnd);
+    }
+}
+
 // One work-item = LW_WIDTH half-resolution pixels: the first valid surface of each 2x2 block, in the
 // fixed order top left, bottom right, top right, bottom left. half*: 3 planes each.
 __kernel void joint_bilateral_downsample(__global const float* position, int4 positionLayout,
@@ -57,18 +66,18 @@ __kernel void joint_bilateral_downsample(__global const float* position, int4 po
     const lanei column = lanei_iota() * 2 + (lanei)(2 * hx);
     const mask evenInside = column < (lanei)width, oddInside = column + 1 < (lanei)width;
 
-    lw_pair p[2][3], n[2][3];
-    for (int j = 0; j < 2; ++j)
-        for (int a = 0; a < 3; ++a) {
-            const int y = min(2 * hy + j, height - 1);
-            p[j][a] = load_pair(position, positionLayout.x + a * positionLayout.z + y * positionLayout.y, 2 * hx, rowEnd);
-            n[j][a] = load_pair(normal, normalLayout.x + a * normalLayout.z + y * normalLayout.y, 2 * hx, rowEnd);
-        }
-    lw_surface s = surface_of(p[0], n[0], 0);
+    lw_pair p[3], n[3];
+    load_pairs(p, n, position, positionLayout, normal, normalLayout, 2 * hx, 2 * hy, rowEnd);
+    lw_surface s = surface_of(p, n, 0);
     s.valid = and_(s.valid, evenInside);
-    prefer(&s, surface_of(p[1], n[1], 1), oddInside);
-    prefer(&s, surface_of(p[0], n[0], 1), oddInside);
-    prefer(&s, surface_of(p[1], n[1], 0), evenInside);
+    // The second row only where the first one's left pixels do not do: seldom, and it is half of what there is to read.
+    if (any_(and_(not_(s.valid), evenInside))) {
+        const lw_surface right = surface_of(p, n, 1);
+        load_pairs(p, n, position, positionLayout, normal, normalLayout, 2 * hx, min(2 * hy + 1, height - 1), rowEnd);
+        prefer(&s, surface_of(p, n, 1), oddInside);
+        prefer(&s, right, oddInside);
+        prefer(&s, surface_of(p, n, 0), evenInside);
+    }
 
     const real zero = (real)0.0f;
     const int po = halfPositionLayout.x + hy * halfPositionLayout.y + hx;
@@ -122,8 +131,10 @@ LW_FN void accumulate(lw_sum* sum, real w, const real* light) {
 // Of what counts. Light is no NaN.
 LW_FN void widen(lw_sum* sum, real w, const real* light) {
     const real whole = (light[0] + light[1]) + light[2];
-    sum->least = select_(sum->least, whole, and_(w > 0.0f, whole < sum->least));
-    sum->greatest = select_(sum->greatest, whole, and_(w > 0.0f, whole > sum->greatest));
+    const mask counts = w > 0.0f;
+    const real low = select_((real)INFINITY, whole, counts), high = select_((real)0.0f, whole, counts);
+    sum->least = select_(sum->least, low, low < sum->least);
+    sum->greatest = select_(sum->greatest, high, high > sum->greatest);
 }
 
 // Where samples on the pixel's surface differ by more than `share` of what comes of them all.
@@ -132,6 +143,16 @@ LW_FN mask is_steep(const lw_sum sum, float share) {
     return (sum.greatest - sum.least) * sum.weight > share * whole;
 }
 #endif
+
+// The samples from column hx on of row hy will be loaded soon.
+LW_FN void expect_samples(const lw_coarse* coarse, int hx, int hy) {
+    LW_UNROLL for (int a = 0; a < 3; ++a) {
+        will_load(coarse->position + coarse->positionLayout.x + a * coarse->positionLayout.z + hy * coarse->positionLayout.y + hx);
+        will_load(coarse->normal + coarse->normalLayout.x + a * coarse->normalLayout.z + hy * coarse->normalLayout.y + hx);
+    }
+    LW_UNROLL for (int a = 0; a < LW_CHANNELS; ++a)
+        will_load(coarse->light + coarse->lightLayout.x + a * coarse->lightLayout.z + hy * coarse->lightLayout.y + hx);
+}
 
 // What a sample counts for `s`: by the edge test; or by likeness of the normals alone.
 LW_FN real sample_weight(const lw_surface s, const lw_sample* q, int byLikeness) {
@@ -209,17 +230,28 @@ LW_FN void sum_any(lw_sum* sum, const lw_surface* s, const lw_coarse* coarse, in
         for (int i = odd ? 0 : -1; i <= 1; ++i) add_sample(sum, s, coarse, hx, i, hy, j, odd, byLikeness);
 }
 
+#if LW_MARKS
+// A word's low half with a bit's room after each bit.
+LW_FN uint apart(uint bits) {
+    bits = (bits | bits << 8) & 0x00ff00ffu;
+    bits = (bits | bits << 4) & 0x0f0f0f0fu;
+    bits = (bits | bits << 2) & 0x33333333u;
+    return (bits | bits << 1) & 0x55555555u;
+}
+#endif
+
 // The light of the even (or odd) columns of two rows of pixels, and how many of those that exist have no sample on their own
 // surface, or are neither surface nor background. `odd`: a constant.
 //
-// marked, with LW_MARKS: 1 for pixels without such a sample, and for all of a block whose first one has samples that differ by more than
+// marked, with LW_MARKS: a bit for each column, in its place among the even and the odd; for pixels without such a sample, and for all of a block whose first one has samples that differ by more than
 // `share`: it sees all that the others do, if they are of its surface. `steep`: of that one; the even columns come first.
 LW_FN void light_columns(real out[2][LW_CHANNELS][2], int* lostPixels, int* badPixels, lw_pair p[2][3], lw_pair n[2][3],
                          real surface[2][2],
 #if LW_MARKS
-                         real marked[2][2], mask* steep, float share,
+                         uint marked[2], mask* steep, float share,
 #endif
                          const lw_coarse* coarse, int hx, int hy, int width, int rows, const int odd) {
+    const mask exists = lanei_iota() * 2 + (lanei)(2 * hx + odd) < (lanei)width;
     lw_surface s[2];
     lw_sum sum[2];
     mask lost[2];
@@ -233,7 +265,10 @@ LW_FN void light_columns(real out[2][LW_CHANNELS][2], int* lostPixels, int* badP
     LW_UNROLL for (int k = 0; k < 2; ++k) lost[k] = and_(s[k].valid, not_(sum[k].weight > 1e-4f));
 #if LW_MARKS
     if (!odd) *steep = is_steep(sum[0], share);
-    LW_UNROLL for (int k = 0; k < 2; ++k) marked[k][odd] = ones_(and_(s[k].valid, or_(lost[k], *steep)));
+    LW_UNROLL for (int k = 0; k < 2; ++k) {
+        const mask here = and_(and_(s[k].valid, or_(lost[k], *steep)), exists);
+        if (any_(here)) marked[k] |= apart(bits_(here)) << odd;
+    }
 #endif
     LW_UNROLL for (int k = 0; k < 2; ++k) surface[k][odd] = ones_(s[k].valid);
     if (any_(or_(lost[0], lost[1]))) {
@@ -244,7 +279,6 @@ LW_FN void light_columns(real out[2][LW_CHANNELS][2], int* lostPixels, int* badP
             LW_UNROLL for (int a = 0; a < LW_CHANNELS; ++a) sum[k].light[a] = select_(sum[k].light[a], rest[k].light[a], lost[k]);
         }
     }
-    const mask exists = lanei_iota() * 2 + (lanei)(2 * hx + odd) < (lanei)width;
     LW_UNROLL for (int k = 0; k < 2; ++k) {
         const real scale = 1.0f / sum[k].weight;
         LW_UNROLL for (int a = 0; a < LW_CHANNELS; ++a) out[k][a][odd] = select_((real)0.0f, sum[k].light[a] * scale, s[k].valid);
@@ -257,7 +291,7 @@ LW_FN void light_columns(real out[2][LW_CHANNELS][2], int* lostPixels, int* badP
 // half*: 3 planes each of the half-resolution image, the light LW_CHANNELS; with 5, `fourth` and `fifth` take the
 // scalars, and any of the three may be null. counts[0]: pixels that are
 // neither surface nor background; counts[1]: pixels lit without edge test. validity, of irradiance only and unless not hasValidity: 1 on
-// surfaces, 0 elsewhere. marks, with LW_MARKS: see light_columns.
+// surfaces, 0 elsewhere. marks, with LW_MARKS: see light_columns; a word for each work-item and row, as LW_REPAIR_BITS has them.
 __kernel void joint_bilateral_upsample(__global const float* position, int4 positionLayout,
                                        __global const float* normal, int4 normalLayout, int width, int height,
                                        __global const float* halfPosition, int4 halfPositionLayout,
@@ -271,7 +305,7 @@ __kernel void joint_bilateral_upsample(__global const float* position, int4 posi
                                        __global float* validity, int4 validityLayout, int hasValidity,
 #endif
 #if LW_MARKS
-                                       float share, __global float* marks, int4 marksLayout,
+                                       float share, __global uint* marks,
 #endif
                                        __global int* counts) {
     const int hx = (int)get_global_id(0) * LW_WIDTH, hy = (int)get_global_id(1);
@@ -281,6 +315,7 @@ __kernel void joint_bilateral_upsample(__global const float* position, int4 posi
     const lw_coarse coarse = {halfPosition, halfNormal, halfIrradiance, halfPositionLayout, halfNormalLayout, halfIrradianceLayout,
                           (width + 1) / 2, (height + 1) / 2};
 
+    if (hy + 1 < coarse.height) expect_samples(&coarse, hx + 2 * LW_WIDTH, hy + 1);
     lw_pair p[2][3], n[2][3];
     LW_UNROLL for (int k = 0; k < 2; ++k)
         LW_UNROLL for (int a = 0; a < 3; ++a) {
@@ -297,7 +332,7 @@ __kernel void joint_bilateral_upsample(__global const float* position, int4 posi
     real out[2][LW_CHANNELS][2], surface[2][2];
     int lost = 0, bad = 0;
 #if LW_MARKS
-    real marked[2][2];
+    uint marked[2] = {0, 0};
     mask steep;
     light_columns(out, &lost, &bad, p, n, surface, marked, &steep, share, &coarse, hx, hy, width, rows, 0);
     light_columns(out, &lost, &bad, p, n, surface, marked, &steep, share, &coarse, hx, hy, width, rows, 1);
@@ -323,7 +358,7 @@ __kernel void joint_bilateral_upsample(__global const float* position, int4 posi
         if (hasValidity) store_pair(validity, validityLayout.x + (y + k) * validityLayout.y + x, hasSecond, surface[k][0], surface[k][1]);
 #endif
 #if LW_MARKS
-        store_pair(marks, marksLayout.x + (y + k) * marksLayout.y + x, hasSecond, marked[k][0], marked[k][1]);
+        marks[(y + k) * LW_REPAIR_WORDS_OF_ROW(width) + (int)get_global_id(0)] = marked[k];
 #endif
     }
 }

@@ -1,6 +1,8 @@
-// The last steps of importing reflective shadow maps; unpacking itself is gbuffer_input's.
+// A host's reflective shadow maps as texels that VPLs are drawn from, each read and written once.
+#include "shared/pixel_read.h"
 #include "shared/rsm_texel.h"
 #include "shared/surface.h"
+#include "shared/unproject.h"
 #include "shared/wide.h"
 
 // One work-item = one row of one map: its entry (first texel, width, map, 0) in the table of rows,
@@ -21,13 +23,15 @@ __kernel void rsm_input_rows(__global int* rows, __global uint* counters, const 
 
 LW_FN mask lw_usable_flux(real flux) { return and_(flux >= 0.0f, flux <= LW_LARGEST_FLUX); }
 
-// One work-item = LW_WIDTH texels of a row, in place. Makes every value finite, the normals unit length
-// and the padding dark, and computes the texel's surface area:
+// One work-item = LW_WIDTH texels of a row, from the host's pixels to LW_RSM_PLANES planes, `stride` floats apart. `place`: positions,
+// or depth where fromDepth says so. Makes every value finite, the normals unit length and the padding dark, and computes the
+// texel's surface area:
 //   directional: A_p = A_texel / c_l;   perspective: A_p = Omega_texel * d^2 / c_l,
 //   Omega_texel = (texel's area at unit distance) * cos^3(angle to the axis),
-// c_l the cosine between normal and light, bounded below by LW_MIN_LIGHT_COSINE. `texels` holds
-// LW_RSM_PLANES planes, `stride` floats apart.
-__kernel void rsm_input_finish(__global float* texels, int stride, __global uint* counters,
+// c_l the cosine between normal and light, bounded below by LW_MIN_LIGHT_COSINE.
+__kernel void rsm_input_unpack(__global const uchar* placeSource, const LwPixels placePixels, int fromDepth, const LwUnprojection u,
+                               __global const uchar* normalSource, const LwPixels normalPixels, __global const uchar* fluxSource,
+                               const LwPixels fluxPixels, __global float* texels, int stride, __global uint* counters,
                                const LwRsmSpan span) {
     const int x = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);
     const int padded = (span.width + 15) & ~15;
@@ -37,9 +41,18 @@ __kernel void rsm_input_finish(__global float* texels, int stride, __global uint
     const real i = lane_iota() + ((float)x + 0.5f), j = (real)((float)y + 0.5f);
     const mask inside = i < (float)span.width;
 
-    real px = load(at, 0), py = load(at, stride), pz = load(at, 2 * stride);
-    real nx = load(at, 3 * stride), ny = load(at, 4 * stride), nz = load(at, 5 * stride);
-    real r = load(at, 6 * stride), g = load(at, 7 * stride), b = load(at, 8 * stride);
+    LwTriple p = lw_read_pixels(placeSource, placePixels, LW_ROLE_VALUE, x, y);
+    LwTriple n = lw_read_pixels(normalSource, normalPixels, LW_ROLE_NORMAL, x, y);
+    const LwTriple flux = lw_read_pixels(fluxSource, fluxPixels, LW_ROLE_VALUE, x, y);
+    if (fromDepth) {
+        mask there;
+        p = lw_unproject(u, p.x, x, y, &there);
+        n.x = select_(none, n.x, there);
+        n.y = select_(none, n.y, there);
+        n.z = select_(none, n.z, there);
+    }
+    const real px = p.x, py = p.y, pz = p.z, r = flux.x, g = flux.y, b = flux.z;
+    real nx = n.x, ny = n.y, nz = n.z;
 
     // What is there: nothing (zero normal), something that can't be used, or a lit surface.
     const real n2 = fma_(nx, nx, fma_(ny, ny, nz * nz));
@@ -76,16 +89,16 @@ __kernel void rsm_input_finish(__global float* texels, int stride, __global uint
     const mask rejected = and_(occupied, not_(surface));
 
     const mask lit = and_(surface, not_(covered));
-    store(select_(none, px, surface), at, 0);
-    store(select_(none, py, surface), at, stride);
-    store(select_(none, pz, surface), at, 2 * stride);
-    store(select_(none, nx, surface), at, 3 * stride);
-    store(select_(none, ny, surface), at, 4 * stride);
-    store(select_(none, nz, surface), at, 5 * stride);
+    store_past(select_(none, px, surface), at, 0);
+    store_past(select_(none, py, surface), at, stride);
+    store_past(select_(none, pz, surface), at, 2 * stride);
+    store_past(select_(none, nx, surface), at, 3 * stride);
+    store_past(select_(none, ny, surface), at, 4 * stride);
+    store_past(select_(none, nz, surface), at, 5 * stride);
     store(select_(none, r, lit), at, 6 * stride);
     store(select_(none, g, lit), at, 7 * stride);
     store(select_(none, b, lit), at, 8 * stride);
-    store(select_(none, area, surface), at, 9 * stride);
+    store_past(select_(none, area, surface), at, 9 * stride);
 
     // Whole-number counts: the order of the additions does not show.
     if (any_(rejected)) atomic_add(counters + LW_RSM_REJECTED, (uint)count_(rejected));

@@ -106,32 +106,50 @@ LW_FN float radiosity_from(lw_cluster cluster, lw_met met, float cosine, float f
     return sum_of(met.albedo * cluster.flux) * cosine * facing * M_1_PI_F / fmax(r2, nearest);
 }
 
-// The same of another cluster, as far as its map sees the surface. A surface as far away as the texel's, give or take a
-// texel's slant, is the one that the texel saw.
-LW_FN float radiosity_of(lw_cluster cluster, lw_paraboloid map, __global const float* records, int size, lw_met met) {
-    const float slack = 1.05f;
-    float4 way = met.position - map.origin;
-    way.w = 0.0f;
-    const float r2 = dot(way, way), cosine = dot(way, map.axisZ) * rsqrt(fmax(r2, FLT_MIN));
-    const float facing = -dot(met.normal, way) * rsqrt(fmax(r2, FLT_MIN));
-    if (!(cluster.position.w > 0.0f && cosine > 0.0f && facing > 0.0f && r2 > 0.0f)) return 0.0f;
-    const float distance = sqrt(r2), step = 2.0f * LW_PARABOLOID_RIM / (float)size, scale = 1.0f / (distance * (1.0f + cosine));
-    const int x = clamp((int)((dot(way, map.axisX) * scale + LW_PARABOLOID_RIM) / step), 0, size - 1);
-    const int y = clamp((int)((dot(way, map.axisY) * scale + LW_PARABOLOID_RIM) / step), 0, size - 1);
-    if (distance > records[2 * (y * size + x)] * slack) return 0.0f;
-    return radiosity_from(cluster, met, cosine, facing, r2);
+// LW_WIDTH samples, and what each met: position, normal, albedo, the radiosity that its own cluster causes there, that cluster.
+typedef struct { float values[10][LW_WIDTH]; int cluster[LW_WIDTH]; float share[LW_WIDTH]; } lw_samples;
+
+LW_FN real dot3(const real* a, float4 b) { return fma_(a[0], b.x, fma_(a[1], b.y, a[2] * b.z)); }
+
+// The radiosity that all clusters cause where the samples met something, each as far as its map sees the surface. A surface as far away as
+// the texel's, give or take a texel's slant, is the one that the texel saw.
+LW_FN real radiosity_of_all(const lw_samples* samples, __global const lw_cluster* clusters, __global const lw_paraboloid* frames,
+                            __global const float* records, int size, int clusterCount) {
+    const float slack = 1.05f, step = 2.0f * LW_PARABOLOID_RIM / (float)size;
+    real met[9];
+    LW_UNROLL for (int a = 0; a < 9; ++a) met[a] = load(samples->values[a], 0);
+    const lanei own = loadi(samples->cluster, 0);
+    real all = load(samples->values[9], 0);
+    for (int other = 0; other < clusterCount; ++other) {
+        if (!(clusters[other].position.w > 0.0f)) continue;
+        const lw_paraboloid map = frames[other];
+        const real way[3] = {met[0] - map.origin.x, met[1] - map.origin.y, met[2] - map.origin.z};
+        const real r2 = fma_(way[0], way[0], fma_(way[1], way[1], way[2] * way[2]));
+        const real distance = sqrt(fmax(r2, (real)FLT_MIN));
+        const real cosine = dot3(way, map.axisZ) / distance;
+        const real facing = -fma_(met[3], way[0], fma_(met[4], way[1], met[5] * way[2])) / distance;
+        const mask lit = and_(and_(cosine > 0.0f, facing > 0.0f), and_(r2 > FLT_MIN, own != (lanei)other));
+        if (!any_(lit)) continue;
+        const real scale = 1.0f / (distance * (1.0f + select_((real)0.0f, cosine, lit)));
+        const lanei last = (lanei)(size - 1);
+        const lanei x = clamp(to_lanei((dot3(way, map.axisX) * scale + LW_PARABOLOID_RIM) / step), (lanei)0, last);
+        const lanei y = clamp(to_lanei((dot3(way, map.axisY) * scale + LW_PARABOLOID_RIM) / step), (lanei)0, last);
+        const real seen = gather(records + 2 * other * size * size, 2 * (y * size + x));
+        const float4 flux = clusters[other].flux;
+        const real sent = fma_(met[6], flux.x, fma_(met[7], flux.y, met[8] * flux.z));
+        const real radiosity = sent * cosine * facing * M_1_PI_F / fmax(r2, (real)(flux.w * (0.25f * M_1_PI_F)));
+        all += select_((real)0.0f, radiosity, and_(lit, distance <= seen * slack));
+    }
+    return all;
 }
 
-// One work-item = one VPL: sample i % perCluster of cluster i / perCluster. albedo: packed, one word per texel.
-__kernel void second_bounce_draw(__global const lw_cluster* clusters, __global const lw_paraboloid* frames,
-                                 __global const float* records, __global const uint* albedo, int size, int clusterCount,
-                                 int perCluster, int directions, float2 shift, __global lw_vpl* vpls) {
-    const int i = lw_list_index();
-    if (i >= clusterCount * perCluster) return;
+// Sample i % perCluster of cluster i / perCluster, as lane l of `samples`; 0 where it is wasted.
+LW_FN int draw_sample(lw_samples* samples, int l, int i, __global const lw_cluster* clusters, __global const lw_paraboloid* frames,
+                      __global const float* records, __global const uint* albedo, int size, int perCluster, int directions,
+                      float2 shift) {
     const int c = i / perCluster, k = i - c * perCluster;
-    vpls[i] = no_vpl();
     const lw_cluster cluster = clusters[c];
-    if (!(cluster.position.w > 0.0f)) return;
+    if (!(cluster.position.w > 0.0f)) return 0;
 
     // Each cluster takes the set turned by another amount: alike, clusters side by side would light alike places.
     const float turn = (float)c * 0.61803399f, turned = turn - floor(turn);
@@ -140,25 +158,50 @@ __kernel void second_bounce_draw(__global const lw_cluster* clusters, __global c
     const float2 point = (float2)(wrap_unit((float)k / (float)perCluster + middle + shift.x),
                                   wrap_unit(wrap_unit(radical_inverse((uint)k) + middle + shift.y) + turned));
     const lw_drawn drawn = draw_direction(directions, point);
-    if (!(drawn.direction.z > 0.0f)) return;
-    const lw_paraboloid frame = frames[c];
-    const lw_met met = surface_met(frame, records, albedo, c * size * size, size, drawn.direction);
-    if (!met.any) return;
-
-    const float share = drawn.direction.z * M_1_PI_F / (drawn.density * (float)perCluster);
+    if (!(drawn.direction.z > 0.0f)) return 0;
+    const lw_met met = surface_met(frames[c], records, albedo, c * size * size, size, drawn.direction);
+    if (!met.any) return 0;
     const float facing = fmax(-dot(met.normal.xyz, met.direction.xyz), LW_STEEPEST_COSINE);
-    lw_vpl vpl;
-    vpl.positionArea = met.position;
-    const float own = radiosity_from(cluster, met, drawn.direction.z, facing, met.distance * met.distance);
-    float all = own;
+    const float values[10] = {met.position.x, met.position.y, met.position.z, met.normal.x, met.normal.y, met.normal.z,
+                              met.albedo.x,   met.albedo.y,   met.albedo.z,
+                              radiosity_from(cluster, met, drawn.direction.z, facing, met.distance * met.distance)};
+    for (int a = 0; a < 10; ++a) samples->values[a][l] = values[a];
+    samples->cluster[l] = c;
+    samples->share[l] = drawn.direction.z * M_1_PI_F / (drawn.density * (float)perCluster);
+    return 1;
+}
+
+// One work-item = LW_WIDTH VPLs. albedo: packed, one word per texel.
+__kernel void second_bounce_draw(__global const lw_cluster* clusters, __global const lw_paraboloid* frames,
+                                 __global const float* records, __global const uint* albedo, int size, int clusterCount,
+                                 int perCluster, int directions, float2 shift, __global lw_vpl* vpls) {
+    const int begin = lw_list_index() * LW_WIDTH, count = min(LW_WIDTH, clusterCount * perCluster - begin);
+    if (count <= 0) return;
+    lw_samples samples;
+    uint drawn = 0;
+    for (int l = 0; l < LW_WIDTH; ++l) {
+        // A wasted lane lies nowhere: no cluster lights what has no albedo.
+        for (int a = 0; a < 10; ++a) samples.values[a][l] = 0.0f;
+        samples.cluster[l] = -1;
+        if (l < count && draw_sample(&samples, l, begin + l, clusters, frames, records, albedo, size, perCluster, directions, shift))
+            drawn |= 1u << l;
+    }
+    float all[LW_WIDTH];
     // Where every VPL is a cluster, all count as one: asking each for each would take the square of their number.
-    if (clusterCount > LW_MOST_SORTED) all = own * (float)clusterCount;
-    else
-        for (int other = 0; other < clusterCount; ++other)
-            if (other != c) all += radiosity_of(clusters[other], frames[other], records + 2 * other * size * size, size, met);
-    vpl.positionArea.w = sum_of(met.albedo * cluster.flux) * share / all;
-    vpl.normal = met.normal;
-    vpl.flux = met.albedo * cluster.flux * share;
-    vpl.flux.w = 0.0f;
-    if (isfinite(vpl.positionArea.w)) vpls[i] = bounded(vpl);
+    if (clusterCount > LW_MOST_SORTED) store(load(samples.values[9], 0) * (float)clusterCount, all, 0);
+    else if (drawn) store(radiosity_of_all(&samples, clusters, frames, records, size, clusterCount), all, 0);
+    for (int l = 0; l < count; ++l) {
+        lw_vpl vpl = no_vpl();
+        if (drawn >> l & 1u) {
+            const float4 flux = clusters[samples.cluster[l]].flux;
+            const float4 colour = (float4)(samples.values[6][l], samples.values[7][l], samples.values[8][l], 0.0f);
+            vpl.positionArea = (float4)(samples.values[0][l], samples.values[1][l], samples.values[2][l],
+                                        sum_of(colour * flux) * samples.share[l] / all[l]);
+            vpl.normal = (float4)(samples.values[3][l], samples.values[4][l], samples.values[5][l], 0.0f);
+            vpl.flux = colour * flux * samples.share[l];
+            vpl.flux.w = 0.0f;
+            vpl = isfinite(vpl.positionArea.w) ? bounded(vpl) : no_vpl();
+        }
+        vpls[begin + l] = vpl;
+    }
 }

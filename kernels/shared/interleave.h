@@ -58,6 +58,11 @@ LW_FN void load_dealt(real* v, __global const float* plane, int row, int x, int 
     deal_(v);
 }
 
+// The next work-item will load its pixels of `row` soon: gathers are long, and wait for memory at each one's beginning.
+LW_FN void expect_dealt(__global const float* plane, int row, int x) {
+    LW_UNROLL for (int j = LW_INTERLEAVE; j < 2 * LW_INTERLEAVE; ++j) will_load(plane + row + x + j * LW_WIDTH);
+}
+
 // The way back; rows can be written as far as they can be read.
 LW_FN void store_dealt(real* v, __global float* plane, int row, int x, int width) {
     const int rowEnd = (width + 15) & ~15;

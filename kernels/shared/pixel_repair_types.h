@@ -12,4 +12,13 @@
 // of wide vectors leave most of a group idle.
 #define LW_REPAIR_COLUMNS 128
 
+// Marks: words of the bits of so many pixels of a row, as a work-item of an up-sampling has them, lowest bit first; none beyond the row.
+#define LW_REPAIR_BITS (2 * LW_WIDTH)
+#define LW_REPAIR_WORDS_OF_ROW(width) (((width) + LW_REPAIR_BITS - 1) / LW_REPAIR_BITS)
+
+// A pixel as one int: sides are 16384 at most.
+#define LW_REPAIR_PIXEL(x, y) ((y) << 16 | (x))
+#define LW_REPAIR_X(pixel) ((pixel) & 0xffff)
+#define LW_REPAIR_Y(pixel) ((pixel) >> 16)
+
 #endif

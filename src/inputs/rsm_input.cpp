@@ -19,6 +19,7 @@
 namespace lightwell {
 namespace {
 
+constexpr char kProgram[] = "rsm_input/rsm_input";
 constexpr std::uint32_t kMaxSide = 16384;
 // Indices of floats in the texels' planes are 32-bit in kernels.
 constexpr std::uint64_t kMaxTexels = 0x7fffffff / LW_RSM_PLANES / 16 * 16;
@@ -171,16 +172,8 @@ struct RsmInput::Impl {
     std::vector<DeviceImage> opened;
     std::set<std::pair<const char*, const char*>> choices;  // of all maps, each once; literals
 
-    // The host's maps into the first nine planes.
+    // The host's maps into the texels.
     void unpackRsm(Executor& executor, const CheckedRsm& rsm, const Planes& all) {
-        const auto target = [&](std::uint32_t plane) {
-            Planes part = subPlanes(all, plane, 3);
-            part.offset += rsm.span.firstTexel;
-            part.width = std::uint32_t(rsm.span.width);
-            part.height = std::uint32_t(rsm.span.height);
-            part.rowStride = paddedWidth(part.width);
-            return part;
-        };
         const auto open = [&](const CheckedImage& image, const ImageRole& role, std::size_t slot,
                               const char* what) -> DeviceImage& {
             opened.push_back(openForReading(executor, image, role, "rsm_input.upload", staging[slot]));
@@ -189,17 +182,14 @@ struct RsmInput::Impl {
             return opened.back();
         };
         opened.reserve(opened.size() + 3);  // references stay valid
-        DeviceImage& normal = open(rsm.normal, kNormalRole, 1, "rsm_normal");
-        if (rsm.depth) {
-            DeviceImage& depth = open(*rsm.depth, kDepthRole, 0, "rsm_depth");
-            unproject(executor, "rsm_input.unproject", depth, normal, rsm.unprojection,
-                      target(kPositionX), target(kNormalX));
-        } else {
-            unpack(executor, "rsm_input.unpack", open(*rsm.position, kPositionRole, 0, "rsm_position"),
-                   target(kPositionX));
-            unpack(executor, "rsm_input.unpack", normal, target(kNormalX));
-        }
-        unpack(executor, "rsm_input.unpack", open(rsm.flux, kRadianceRole, 2, "rsm_flux"), target(kFluxR));
+        const DeviceImage& place =
+            rsm.depth ? open(*rsm.depth, kDepthRole, 0, "rsm_depth") : open(*rsm.position, kPositionRole, 0, "rsm_position");
+        const DeviceImage& normal = open(rsm.normal, kNormalRole, 1, "rsm_normal");
+        const DeviceImage& flux = open(rsm.flux, kRadianceRole, 2, "rsm_flux");
+        Kernel& kernel = device->programs().kernel(kProgram, "rsm_input_unpack");
+        executor.run("rsm_input.unpack", kernel, rowGrid(*device, std::uint32_t(rsm.span.width), std::uint32_t(rsm.span.height)),
+                     rowGroup(*device), place.memory, place.pixels, cl_int(rsm.depth ? 1 : 0), rsm.unprojection, normal.memory,
+                     normal.pixels, flux.memory, flux.pixels, all.memory, cl_int(all.planeStride), counters, rsm.span);
     }
 };
 
@@ -252,15 +242,11 @@ void RsmInput::import(Executor& executor, const LWFrame& frame) {
     texels.height = 1;
     texels.count = kPlaneCount;
 
-    Kernel& rowsKernel = device.programs().kernel("rsm_input/rsm_input", "rsm_input_rows");
-    Kernel& finish = device.programs().kernel("rsm_input/rsm_input", "rsm_input_finish");
+    Kernel& rowsKernel = device.programs().kernel(kProgram, "rsm_input_rows");
     for (const CheckedRsm& rsm : rsms) {
-        const auto width = std::uint32_t(rsm.span.width), height = std::uint32_t(rsm.span.height);
-        executor.run("rsm_input.rows", rowsKernel, {height, 1}, rowGroup(device), rows, impl_->counters,
+        executor.run("rsm_input.rows", rowsKernel, {std::uint32_t(rsm.span.height), 1}, rowGroup(device), rows, impl_->counters,
                      rsm.span);
         impl_->unpackRsm(executor, rsm, texels);
-        executor.run("rsm_input.area", finish, rowGrid(device, width, height), rowGroup(device),
-                     texels.memory, cl_int(texels.planeStride), impl_->counters, rsm.span);
     }
 }
 

@@ -24,11 +24,35 @@ std::uint64_t listBytes(const lw_subset_order& order) {
 }
 
 // A kernel's argument must be some memory, also where it is not read.
-VoxelSights voxelsOf(const ClusterMaps& maps) { return maps.voxels ? *maps.voxels : VoxelSights{maps.records, maps.records, maps.records}; }
+VoxelSights voxelsOf(const ClusterMaps& maps) {
+    const Buffer& some = *maps.lists[0].records;
+    return maps.voxels ? *maps.voxels : VoxelSights{some, some, some};
+}
+
+// Calls `run` with the arguments LW_MAPS_ARGUMENTS.
+template <typename Run>
+void withMaps(const ClusterMaps& maps, const Run& run) {
+    const VoxelSights voxels = voxelsOf(maps);
+    const auto& l = maps.lists;
+    run(*l[0].frames, *l[0].records, *l[1].frames, *l[1].records, *l[2].frames, *l[2].records, *l[3].frames, *l[3].records, maps.layout,
+        voxels.sights, voxels.eyes, voxels.sight);
+}
 
 std::uint64_t sortedBytes(std::uint32_t count) { return (std::uint64_t(count) + 1) * sizeof(cl_int); }
 
 }  // namespace
+
+ClusterMaps::ClusterMaps(const std::vector<List>& drawn, std::uint32_t size, const VoxelSights* seen) : voxels(seen) {
+    if (drawn.empty() || drawn.size() > kMostClusteredLists) fail(LW_ERROR_INTERNAL, "clustered_gather: maps of ", drawn.size(), " lists");
+    lists.fill(drawn[0]);
+    std::copy(drawn.begin(), drawn.end(), lists.begin());
+    cl_int end = cl_int(drawn[0].clusters);
+    for (std::size_t i = 1; i < kMostClusteredLists; ++i) {
+        layout.s[i - 1] = i < drawn.size() ? end : std::numeric_limits<cl_int>::max();
+        if (i < drawn.size()) end += cl_int(drawn[i].clusters);
+    }
+    layout.s[kMostClusteredLists - 1] = cl_int(size);
+}
 
 ClusteredGather::ClusteredGather(Device& device, std::uint32_t interleave, std::uint32_t groups, ClusterVisibility visibility)
     : device_(device),
@@ -94,17 +118,21 @@ void ClusteredGather::recordOrder(Executor& executor, const std::vector<Gathered
     }
 }
 
-std::uint64_t ClusteredGather::bytes() const { return vpls_.bytes() + sorted_[0].bytes() + sorted_[1].bytes(); }
+std::uint64_t ClusteredGather::bytes() const {
+    std::uint64_t total = vpls_.bytes();
+    for (const Buffer& sorted : sorted_) total += sorted.bytes();
+    return total;
+}
 
 void ClusteredGather::recordGather(Executor& executor, const Planes& position, const Planes& normal,
                                    const Buffer& masks, const lw_vpl_tiles& tiles, const ClusterMaps& maps,
                                    const Planes& irradiance, const Buffer& counts) {
     const std::uint32_t pixels = gather_.width() * interleave_;
-    const VoxelSights voxels = voxelsOf(maps);
-    executor.run("clustered_gather.gather", gather_, {(position.width + pixels - 1) / pixels, position.height},
-                 groupOf(gather_), position, normal, cl_int(position.width), cl_int(position.height), vpls_, order_, masks,
-                 tiles, maps.frames, maps.records, maps.secondFrames, maps.secondRecords, cl_int(maps.seconds),
-                 cl_int(maps.size), voxels.sights, voxels.eyes, voxels.sight, shadowed_, irradiance, counts);
+    withMaps(maps, [&](const auto&... of) {
+        executor.run("clustered_gather.gather", gather_, {(position.width + pixels - 1) / pixels, position.height}, groupOf(gather_),
+                     position, normal, cl_int(position.width), cl_int(position.height), vpls_, order_, masks, tiles, of..., shadowed_,
+                     irradiance, counts);
+    });
 }
 
 Planes ClusteredGather::visibilityShape(const Planes& position, std::uint32_t clusterCount) {
@@ -123,12 +151,12 @@ void ClusteredGather::recordVisibility(Executor& executor, const Planes& positio
     if (planes.planeStride > std::numeric_limits<std::int32_t>::max())
         fail(LW_ERROR_UNSUPPORTED, "debug view visibility: ", clusterCount, " clusters at ", position.width, "x", position.height,
              " pixels exceed the 32-bit indices of the kernels");
-    const VoxelSights voxels = voxelsOf(maps);
-    executor.run("clustered_gather.visibility", visibility_,
-                 {(position.width + visibility_.width() - 1) / visibility_.width(), planes.height}, groupOf(visibility_),
-                 position, normal, cl_int(position.width), cl_int(position.height), cl_int(clusterCount), maps.frames,
-                 maps.records, maps.secondFrames, maps.secondRecords, cl_int(maps.seconds), cl_int(maps.size), voxels.sights, voxels.eyes, voxels.sight,
-                 planes.memory, cl_int(planes.rowStride));
+    withMaps(maps, [&](const auto&... of) {
+        executor.run("clustered_gather.visibility", visibility_,
+                     {(position.width + visibility_.width() - 1) / visibility_.width(), planes.height}, groupOf(visibility_), position,
+                     normal, cl_int(position.width), cl_int(position.height), cl_int(clusterCount), of..., planes.memory,
+                     cl_int(planes.rowStride));
+    });
 }
 
 Planes ClusteredGather::clustersShape() const {
@@ -151,13 +179,13 @@ ClusteredHarmonics::ClusteredHarmonics(Device& device, ClusterVisibility visibil
 
 void ClusteredHarmonics::record(Executor& executor, const Planes& position, const Planes& normal, const ClusteredGather& gather,
                                 const ClusterMaps& maps, const Harmonics& harmonics, const Buffer& counts) {
-    const VoxelSights voxels = voxelsOf(maps);
-    // A kernel's argument must be some memory, also where it is not read.
-    executor.run("clustered_gather.harmonics", harmonics_,
-                 {(position.width + harmonics_.width() - 1) / harmonics_.width(), position.height}, groupOf(harmonics_), position,
-                 normal ? normal : position, cl_int(normal ? 1 : 0), cl_int(position.width), cl_int(position.height), gather.vpls(),
-                 gather.order(), maps.frames, maps.records, maps.secondFrames, maps.secondRecords, cl_int(maps.seconds),
-                 cl_int(maps.size), voxels.sights, voxels.eyes, voxels.sight, harmonics.first, harmonics.band, counts);
+    withMaps(maps, [&](const auto&... of) {
+        // A kernel's argument must be some memory, also where it is not read.
+        executor.run("clustered_gather.harmonics", harmonics_,
+                     {(position.width + harmonics_.width() - 1) / harmonics_.width(), position.height}, groupOf(harmonics_), position,
+                     normal ? normal : position, cl_int(normal ? 1 : 0), cl_int(position.width), cl_int(position.height), gather.vpls(),
+                     gather.order(), of..., harmonics.first, harmonics.band, counts);
+    });
 }
 
 }  // namespace lightwell

@@ -30,15 +30,22 @@ struct GatheredList {
     std::uint32_t clusterCount = 0;
 };
 
-// The clusters' maps, as ParaboloidMap leaves them: of the first list that has clusters, which are numbers 0 to seconds - 1,
-// and of the second. Voxels: what all of them see, one list after the other; with visibility through voxels, read instead.
+// Bounces whose VPLs have clusters.
+constexpr std::size_t kMostClusteredLists = 4;
+
+// The clusters' maps, as ParaboloidMap leaves them: of each list that has clusters, whose numbers go on from one list to the next.
+// Voxels: what all of them see, one list after the other; with visibility through voxels, read instead.
 struct ClusterMaps {
-    const Buffer& frames;
-    const Buffer& records;
-    const Buffer& secondFrames;
-    const Buffer& secondRecords;
-    std::uint32_t seconds, size;
-    const VoxelSights* voxels = nullptr;
+    struct List {
+        const Buffer* frames;
+        const Buffer* records;
+        std::uint32_t clusters;
+    };
+    ClusterMaps(const std::vector<List>& drawn, std::uint32_t size, const VoxelSights* seen = nullptr);
+
+    std::array<List, kMostClusteredLists> lists;  // a kernel's argument must be some memory: the first stands for those that are not there
+    cl_int4 layout;  // the first cluster of the second, third and fourth list, and a map's side
+    const VoxelSights* voxels;
 };
 
 class ClusteredGather {
@@ -54,7 +61,6 @@ public:
 
     // Passes "clustered_gather.sort" and ".order": deal each subset its share of every list, of those with clusters sorted by
     // cluster. At most kMostClusteredLists of them.
-    static constexpr std::size_t kMostClusteredLists = 2;
     void recordOrder(Executor& executor, const std::vector<GatheredList>& lists);
     // Pass "clustered_gather.gather"; masks (of `vpls`, by InterleavedGather::recordCull), irradiance and counts as in
     // InterleavedGather::recordGather.

@@ -52,11 +52,11 @@ void JointBilateral::recordUpsample(Executor& executor, const Planes& position, 
 
 void JointBilateral::recordUpsampleMarked(Executor& executor, const Planes& position, const Planes& normal, const Planes& halfPosition,
                                           const Planes& halfNormal, const Planes& halfIrradiance, const Planes& irradiance, float share,
-                                          const Planes& marks, const Planes& validity, const Buffer& counts) {
+                                          const Buffer& marks, const Planes& validity, const Buffer& counts) {
     // A kernel's argument must be some memory, also where it is not written.
     executor.run("joint_bilateral.upsample", upsample_, itemsOver(position.width, halved(position.height), upsample_),
                  groupOf(upsample_), position, normal, cl_int(position.width), cl_int(position.height), halfPosition, halfNormal,
-                 halfIrradiance, irradiance, validity ? validity : marks, cl_int(validity ? 1 : 0), share, marks, counts);
+                 halfIrradiance, irradiance, validity ? validity : irradiance, cl_int(validity ? 1 : 0), share, marks, counts);
 }
 
 void JointBilateral::recordUpsampleAll(Executor& executor, const Planes& position, const Planes& normal,

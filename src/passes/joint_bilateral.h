@@ -23,11 +23,11 @@ public:
     void recordUpsample(Executor& executor, const Planes& position, const Planes& normal,
                         const Planes& halfPosition, const Planes& halfNormal, const Planes& halfIrradiance,
                         const Planes& irradiance, const Buffer& counts, const Planes& validity = {});
-    // The same, and what it does not know the light of: `marks`, a plane, is 1 at pixels without a sample on their own surface and where
-    // the samples around differ by more than `share` of the light, and 0 elsewhere.
+    // The same, and what it does not know the light of: `marks` (of RepairedPixels) has the pixels without a sample on their own surface and
+    // those around which samples differ by more than `share` of the light.
     void recordUpsampleMarked(Executor& executor, const Planes& position, const Planes& normal, const Planes& halfPosition,
                               const Planes& halfNormal, const Planes& halfIrradiance, const Planes& irradiance, float share,
-                              const Planes& marks, const Planes& validity, const Buffer& counts);
+                              const Buffer& marks, const Planes& validity, const Buffer& counts);
     // As recordUpsample, of 5 planes: irradiance and two scalars, each of which may be empty.
     void recordUpsampleAll(Executor& executor, const Planes& position, const Planes& normal, const Planes& halfPosition,
                            const Planes& halfNormal, const Planes& halfLight, const Planes& irradiance,

@@ -19,8 +19,8 @@ public:
 
     RepairedPixels(Device& device, std::uint32_t maxWidth, std::uint32_t maxHeight);
 
-    // 1 plane, for an up-sampling to mark: above 0 what shall be repaired. All for a picture of this size.
-    Planes marks(std::uint32_t width, std::uint32_t height) const { return marks_.planes(width, height); }
+    // For an up-sampling to mark what shall be repaired, a bit a pixel (LW_REPAIR_BITS). All for a picture of one size.
+    const Buffer& marks() const { return marks_; }
     static std::uint32_t room(std::uint32_t width, std::uint32_t height) {
         return std::uint32_t((std::uint64_t(width) * height + kOneOf - 1) / kOneOf);
     }
@@ -39,8 +39,8 @@ private:
     friend class PixelRepair;
     static Planes listed(const PlanarImage& image, std::uint32_t width, std::uint32_t height);
 
-    PlanarImage marks_, position_, normal_, light_;
-    Buffer rows_, pixels_, state_, counts_;
+    PlanarImage position_, normal_, light_;
+    Buffer marks_, rows_, pixels_, state_, counts_;
 };
 
 class PixelRepair {
@@ -51,9 +51,11 @@ public:
     void recordCollect(Executor& executor, const Planes& position, const Planes& normal, const RepairedPixels& memory);
     // Pass "pixel_repair.put": the small image's light becomes theirs in `irradiance`.
     void recordPut(Executor& executor, const RepairedPixels& memory, const Planes& irradiance);
+    // Pass "pixel_repair.marks": 1 at marked pixels of a picture of this size, 0 elsewhere.
+    void recordMarks(Executor& executor, const RepairedPixels& memory, const Planes& marks);
 
 private:
-    Kernel &count_, &share_, &collect_, &put_;
+    Kernel &count_, &share_, &collect_, &put_, &show_;
 };
 
 }  // namespace lightwell

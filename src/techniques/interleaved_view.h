@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "compute/report.h"
 #include "inputs/gbuffer_input.h"
@@ -22,14 +23,17 @@ namespace lightwell {
 struct InterleavedOptions {
     std::uint32_t interleave = 4;
     bool filter = true;  // has an effect with interleave > 1
-    bool half = false;   // gathers every second pixel and row
+    std::uint32_t halvings = 0;  // of columns and rows before the gather: 0, 1, 2
     TemporalHistoryOptions history;  // of what comes of these; none with 0 frames
     bool compensated = false;  // by BoundingCompensation; needs the G-buffer's direct radiance and camera
-    float repairs = 0.0f;  // above 0, with `half`: the share by which light may differ around pixels that are not gathered by themselves
+    float repairs = 0.0f;  // above 0, with one halving: the share by which light may differ around pixels that are not gathered by themselves
 
     bool keeps() const { return history.frames > 0; }
     bool filters() const { return filter && interleave > 1; }
-    std::uint32_t gathered(std::uint32_t along) const { return half ? JointBilateral::halved(along) : along; }
+    std::uint32_t halved(std::uint32_t along, std::uint32_t times) const {
+        return times ? halved(JointBilateral::halved(along), times - 1) : along;
+    }
+    std::uint32_t gathered(std::uint32_t along) const { return halved(along, halvings); }
 };
 
 class InterleavedView {
@@ -56,8 +60,7 @@ public:
                           lw_subset_order order);
 
     // Recorded by `gather`, after the VPLs: near light that their bounds lack is added to `irradiance`.
-    void compensate(Executor& executor, BoundingCompensation& pass, const LWCamera& camera, const Planes& position,
-                    const Planes& normal, const Planes& irradiance);
+    void compensate(Executor& executor, BoundingCompensation& pass, const LWCamera& camera, const Planes& irradiance);
     // What the last frame's compensation added; without memory, and filled by `pass`.
     void addCompensationView(BoundingCompensation& pass, std::vector<DebugView>& views) const;
 
@@ -70,7 +73,7 @@ public:
     void startFrame(bool forget);
     // Counts and choices of the views that this frame has rendered; `order` as the last cull had it.
     void report(Device& device, Report& report, lw_subset_order order) const;
-    void addDebugViews(std::vector<DebugView>& views, TemporalHistory* history) const;
+    void addDebugViews(std::vector<DebugView>& views, TemporalHistory* history, PixelRepair* repair) const;
     std::uint64_t bytes() const;
     // Of the images, inputs, outputs and tiles for a view of this size; `order` of the longest list, with options.repairs `whole` of that
     // which gatherAll culls.
@@ -80,26 +83,35 @@ public:
 private:
     void light(Executor& executor, const Passes& passes, const LWCamera& camera, const Planes& irradiance, const Planes& validity,
                const Gather& gather, const Gather& gatherAll);
-    void upsample(Executor& executor, const Passes& passes, const Planes& position, const Planes& normal, const Planes& lit,
-                  const Planes& made, const Planes& validity, const Gather& gatherAll);
+    // The host's surfaces, and those of each halving.
+    struct Surfaces {
+        Planes position, normal;
+    };
+    void downsample(Executor& executor, JointBilateral* bilateral);
+    void upsample(Executor& executor, const Passes& passes, Planes lit, const Planes& made, const Planes& validity, const Gather& gatherAll);
     // What comes last makes validity, too, of what it has read: the filter, or an up-sampling that marks.
-    bool filtersLast() const { return options_.filters() && !options_.half; }
-    bool lastMakesValidity() const { return filtersLast() || options_.half; }
+    bool filtersLast() const { return options_.filters() && !options_.halvings; }
+    bool lastMakesValidity() const { return filtersLast() || options_.halvings; }
 
     Device& device_;
     InterleavedOptions options_;
     GBufferInput gbuffer_;
     OutputTarget irradiance_, validity_;
-    PlanarImage gathered_, filtered_, halfPosition_, halfNormal_, current_;
+    // What a halving leaves; light: what finer ones than the coarsest are up-sampled to; radiance: with compensation.
+    struct Level {
+        PlanarImage position, normal, light, radiance;
+    };
+    std::vector<Level> levels_;
+    PlanarImage gathered_, filtered_, current_;
     std::optional<ViewHistory> history_;
     std::uint32_t gatheredWidth_, gatheredHeight_;  // at most
     VplTiles tiles_, repairTiles_;
     std::optional<RepairedPixels> repaired_;
     std::uint32_t repairRows_ = 0;  // of its small image, at most
     CompensationSenders senders_;
-    PlanarImage halfRadiance_;
     Planes compensatedPosition_, compensatedNormal_;  // of the last frame
     Buffer counts_;  // rejected pixels, up-sampling fallbacks, saturated pixels, pixels whose compensation reaches too far
+    std::vector<Surfaces> surfaces_;      // of the frame that is being recorded
     Planes lastGathered_, lastFiltered_;  // empty where the last frame had no irradiance
     bool isRendered_ = false;             // since the last update
 };

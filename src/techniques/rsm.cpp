@@ -38,7 +38,7 @@ InterleavedOptions interleavedOptions(const LWRsmDesc& desc) {
     InterleavedOptions options;
     options.interleave = desc.interleave;
     options.filter = desc.filter != 0;
-    options.half = desc.autoResolution > 0.0f || desc.resolution == LW_RESOLUTION_HALF;
+    options.halvings = desc.autoResolution > 0.0f ? 1 : std::uint32_t(desc.resolution);
     options.history = {desc.history, desc.historyClamp, 0};
     options.repairs = desc.autoResolution;
     return options;
@@ -67,7 +67,7 @@ public:
     RsmTechnique(Device& device, const LWRsmDesc& desc, RsmShadows::Source source = RsmShadows::Source::best)
         : device_(device), desc_(desc), sampling_(device, samplingOptions(desc)), gather_(device, desc.interleave) {
         // A program built for nothing is also never cached.
-        if (interleavedOptions(desc).half) bilateral_.emplace(device, 3, repairs());
+        if (interleavedOptions(desc).halvings) bilateral_.emplace(device, 3, repairs());
         if (repairs()) {
             repair_.emplace(device);
             gatherAll_.emplace(device, 1);
@@ -158,7 +158,7 @@ private:
     RsmInput rsms_;
     VplSampling sampling_;
     InterleavedGather gather_;
-    std::optional<JointBilateral> bilateral_;  // half resolution only
+    std::optional<JointBilateral> bilateral_;  // reduced resolution only
     std::optional<PixelRepair> repair_;        // with desc.autoResolution only
     std::optional<InterleavedGather> gatherAll_;
     std::optional<RsmShadows> shadows_;        // with visibility only
@@ -197,7 +197,7 @@ std::vector<DebugView> RsmTechnique::debugViews(const View* view) {
                          [this](Executor& executor, const Planes& planes) {
                              sampling_.recordPlanes(executor, vpls(), planes);
                          }});
-    if (const InterleavedView* state = states_.find(view)) state->addDebugViews(views, history());
+    if (const InterleavedView* state = states_.find(view)) state->addDebugViews(views, history(), repair_ ? &*repair_ : nullptr);
     return views;
 }
 

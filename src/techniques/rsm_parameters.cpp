@@ -10,14 +10,14 @@ namespace lightwell {
 namespace {
 
 constexpr const char* kSamplingNames[] = {"flux", "uniform", "view", nullptr};
-constexpr const char* kResolutionNames[] = {"full", "half", nullptr};
+constexpr const char* kResolutionNames[] = {"full", "half", "quarter", nullptr};
 constexpr const char* kVisibilityNames[] = {"none", "voxel", nullptr};
 constexpr double kVoxelsValues[] = {32, 64, 128, 256};
 constexpr double kInterleaveValues[] = {1, 2, 4, 8};
 constexpr double kInterleaveSweep[] = {1, 4};
 constexpr double kVplSweep[] = {64, 256, 1024, 4096};
 constexpr double kSamplingSweep[] = {LW_SAMPLING_FLUX, LW_SAMPLING_UNIFORM};
-constexpr double kResolutionSweep[] = {LW_RESOLUTION_FULL, LW_RESOLUTION_HALF};
+constexpr double kResolutionSweep[] = {LW_RESOLUTION_FULL, LW_RESOLUTION_HALF, LW_RESOLUTION_QUARTER};
 constexpr double kVisibilitySweep[] = {LW_RSM_VISIBILITY_NONE, LW_RSM_VISIBILITY_VOXEL};
 
 }  // namespace
@@ -37,8 +37,8 @@ const std::vector<LWParameter>& rsmParameters() {
               kInterleaveSweep),
         parameter("filter", "edge-aware n x n filter after an interleaved gather", LW_PARAMETER_BOOL,
                   offsetof(LWRsmDesc, filter), 0, 1, 1),
-        swept(choosing(parameter("resolution", "pixels that are gathered; half: every second column and row, up-sampled after",
-                                 LW_PARAMETER_ENUM, offsetof(LWRsmDesc, resolution), 0, 1, LW_RESOLUTION_FULL),
+        swept(choosing(parameter("resolution", "pixels that are gathered; half, quarter: every second or fourth column and row, up-sampled after",
+                                 LW_PARAMETER_ENUM, offsetof(LWRsmDesc, resolution), 0, 2, LW_RESOLUTION_FULL),
                        kResolutionNames),
               kResolutionSweep),
         parameter("seed", "shift of the sample set; 0: unshifted", LW_PARAMETER_UINT, offsetof(LWRsmDesc, seed), 0,

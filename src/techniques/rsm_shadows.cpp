@@ -100,7 +100,7 @@ void RsmShadows::update(Executor& executor, const LWFrame& frame, const RsmInput
 
 ClusterMaps RsmShadows::mapsRead(const VoxelSights& sights) const {
     // A kernel's argument must be some memory, also where it is not read.
-    return {sights.eyes, sights.eyes, sights.eyes, sights.eyes, clusters_.clusterCount(), 0, &sights};
+    return {{{&sights.eyes, &sights.eyes, clusters_.clusterCount()}}, 0, &sights};
 }
 
 void RsmShadows::recordGather(Executor& executor, const Planes& position, const Planes& normal, const Buffer& masks,

@@ -66,7 +66,7 @@ public:
         if (desc.sampling == LW_SAMPLING_VIEW && desc.compensation > 0)
             fail(LW_ERROR_INVALID_ARGUMENT, "desc.compensation: expected 0 with desc.sampling LW_SAMPLING_VIEW, of whose VPLs it knows no "
                  "size, got ", desc.compensation);
-        if (interleavedOptions(desc).half) bilateral_.emplace(device, 3, repairs());
+        if (interleavedOptions(desc).halvings) bilateral_.emplace(device, 3, repairs());
         if (repairs()) {
             repair_.emplace(device);
             cullAll_.emplace(device, 1);
@@ -133,7 +133,7 @@ public:
                              VplTiles::layout(position.width, position.height, gather_.order(), desc_.interleave);
                          gather_.recordGather(executor, position, normal, masks, tiles, maps, irradiance, state.counts());
                          if (compensation_)
-                             state.compensate(executor, *compensation_, gbuffer.camera, position, normal, irradiance);
+                             state.compensate(executor, *compensation_, gbuffer.camera, irradiance);
                      },
                      [&](const Planes& position, const Planes& normal, const Planes& irradiance) {
                          const lw_subset_order order = gatherAll_->order();
@@ -203,9 +203,10 @@ private:
     }
     // Of what is shadowed.
     ClusterMaps mapsRead(const std::optional<VoxelSights>& sights) const {
-        const ParaboloidMap &first = maps_.maps(0), &second = maps_.maps(shadowedOf(desc_) > 1 ? 1 : 0);
-        return {first.frames(), first.records(), second.frames(), second.records(), stages_[0].clusters.clusterCount(),
-                first.size(), sights ? &*sights : nullptr};
+        std::vector<ClusterMaps::List> lists;
+        for (std::size_t i = 0; i < std::max<std::size_t>(shadowedOf(desc_), 1); ++i)
+            lists.push_back({&maps_.maps(i).frames(), &maps_.maps(i).records(), stages_[i].clusters.clusterCount()});
+        return {lists, maps_.maps(0).size(), sights ? &*sights : nullptr};
     }
     std::uint32_t shadowingClusters() const {
         std::uint32_t count = 0;
@@ -228,7 +229,7 @@ private:
     std::vector<GatheredList> lists_;  // of each bounce
     InterleavedGather passes_;
     ClusteredGather gather_;
-    std::optional<JointBilateral> bilateral_;  // half resolution only
+    std::optional<JointBilateral> bilateral_;  // reduced resolution only
     std::optional<PixelRepair> repair_;        // with desc.autoResolution only, as the next two
     std::optional<InterleavedGather> cullAll_;
     std::optional<ClusteredGather> gatherAll_;
@@ -274,8 +275,8 @@ std::vector<DebugView> SsvpTechnique::debugViews(const View* view) {
                          [this](Executor& executor, const Planes& planes) {
                              sampling_.recordPlanes(executor, gather_.vpls(), planes);
                          }});
-        constexpr const char* kClusters[] = {"clusters", "second_clusters", "third_clusters"};
-        constexpr const char* kMaps[] = {"maps", "second_maps", "third_maps"};
+        constexpr const char* kClusters[] = {"clusters", "second_clusters", "third_clusters", "fourth_clusters"};
+        constexpr const char* kMaps[] = {"maps", "second_maps", "third_maps", "fourth_maps"};
         for (std::size_t i = 0; i < stages_.size(); ++i) {
             KMeans& clusters = stages_[i].clusters;
             ParaboloidMap& maps = maps_.maps(i);
@@ -289,7 +290,7 @@ std::vector<DebugView> SsvpTechnique::debugViews(const View* view) {
     }
     const InterleavedView* state = states_.find(view);
     if (!state) return views;
-    state->addDebugViews(views, history());
+    state->addDebugViews(views, history(), repair_ ? &*repair_ : nullptr);
     if (compensation_) state->addCompensationView(*compensation_, views);
     if (const Planes position = state->position())
         views.push_back({"visibility", "clusters one below the other: the share of its light that each pixel is taken to see",

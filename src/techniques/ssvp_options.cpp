@@ -39,7 +39,7 @@ InterleavedOptions interleavedOptions(const LWSsvpDesc& desc) {
     InterleavedOptions options;
     options.interleave = desc.interleave;
     options.filter = desc.filter != 0;
-    options.half = desc.autoResolution > 0.0f || desc.resolution == LW_RESOLUTION_HALF;
+    options.halvings = desc.autoResolution > 0.0f ? 1 : std::uint32_t(desc.resolution);
     options.history = {desc.history, desc.historyClamp, 0};
     options.compensated = desc.compensation > 0;
     options.repairs = desc.autoResolution;

@@ -10,7 +10,7 @@ namespace lightwell {
 namespace {
 
 constexpr const char* kSamplingNames[] = {"flux", "uniform", "view", nullptr};
-constexpr const char* kResolutionNames[] = {"full", "half", nullptr};
+constexpr const char* kResolutionNames[] = {"full", "half", "quarter", nullptr};
 constexpr const char* kVisibilityNames[] = {"none", "hard", "soft", "voxel", nullptr};
 constexpr const char* kOccludersNames[] = {"auto", "triangles", "surfels", "screen", nullptr};
 constexpr const char* kDirectionsNames[] = {"cosine", "disc", "square", nullptr};
@@ -22,7 +22,7 @@ constexpr double kClusterSweep[] = {4, 8, 16, 32};
 constexpr double kVisibilitySweep[] = {LW_VISIBILITY_HARD, LW_VISIBILITY_SOFT, LW_VISIBILITY_VOXEL};
 constexpr double kVoxelsValues[] = {32, 64, 128, 256};
 constexpr double kBouncesSweep[] = {1, 2};
-constexpr double kResolutionSweep[] = {LW_RESOLUTION_FULL, LW_RESOLUTION_HALF};
+constexpr double kResolutionSweep[] = {LW_RESOLUTION_FULL, LW_RESOLUTION_HALF, LW_RESOLUTION_QUARTER};
 
 std::vector<LWParameter> makeTable() {
     const auto uint = [](const char* name, const char* description, std::size_t offset, double least, double most,
@@ -53,8 +53,8 @@ std::vector<LWParameter> makeTable() {
               kVisibilitySweep),
         swept(uint("bounces", "indirect bounces; those after the first with VPLs drawn from the maps of the bounce before", offsetof(LWSsvpDesc, bounces), 1, 4, 2),
               kBouncesSweep),
-        uint("shadowed_bounces", "1: light of the first bounce only is shadowed; 2: of the second too, by maps of its own clusters: less light through walls, time",
-             offsetof(LWSsvpDesc, shadowedBounces), 1, 2, 2),
+        uint("shadowed_bounces", "bounces whose light is shadowed, by maps of their own clusters: less light through walls, time; of later ones none",
+             offsetof(LWSsvpDesc, shadowedBounces), 1, 4, 2),
         uint("second_vpls", "VPLs of each bounce after the first for each cluster of the one before", offsetof(LWSsvpDesc, secondVpls), 1, 1024, 32),
         oneOf("directions", "in which second-bounce VPLs are drawn: by cosine, evenly on the map's disc, or on its square",
               offsetof(LWSsvpDesc, directions), kDirectionsNames, 2, LW_DIRECTIONS_COSINE),
@@ -67,8 +67,8 @@ std::vector<LWParameter> makeTable() {
                       offsetof(LWSsvpDesc, clusterGroups), 1, 64, 4),
                  kGroupValues),
         flag("filter", "edge-aware n x n filter after an interleaved gather", offsetof(LWSsvpDesc, filter)),
-        swept(oneOf("resolution", "pixels that are gathered; half: every second column and row, up-sampled after",
-                    offsetof(LWSsvpDesc, resolution), kResolutionNames, 1, LW_RESOLUTION_FULL),
+        swept(oneOf("resolution", "pixels that are gathered; half, quarter: every second or fourth column and row, up-sampled after",
+                    offsetof(LWSsvpDesc, resolution), kResolutionNames, 2, LW_RESOLUTION_FULL),
               kResolutionSweep),
         uint("seed", "shift of the sample sets; 0: unshifted", offsetof(LWSsvpDesc, seed), 0, 4294967295.0, 0),
         oneOf("occluders", "what the maps show: the best that the frame has, its triangles, its surfels (or else its triangles, sampled), or what RSMs and source views see",

@@ -33,7 +33,7 @@ InterleavedOptions interleavedOptions(const LWStaticVplDesc& desc) {
     InterleavedOptions options;
     options.interleave = desc.interleave;
     options.filter = desc.filter != 0;
-    options.half = desc.resolution == LW_RESOLUTION_HALF;
+    options.halvings = std::uint32_t(desc.resolution);
     options.history.frames = 0;  // nothing in a frame differs by chance from the last one's
     return options;
 }
@@ -78,7 +78,7 @@ public:
           phantom_(device),
           list_(device, listOptions(desc)),
           gather_(device, desc.interleave) {
-        if (interleavedOptions(desc).half) bilateral_.emplace(device);
+        if (interleavedOptions(desc).halvings) bilateral_.emplace(device);
         if (isShadowed(desc)) shadows_.emplace(device, desc);
     }
 
@@ -174,7 +174,7 @@ private:
     LightList list_;
     bool isListed_ = false;  // the frame's lights are made
     InterleavedGather gather_;
-    std::optional<JointBilateral> bilateral_;  // half resolution only
+    std::optional<JointBilateral> bilateral_;  // reduced resolution only
     std::optional<StaticVplShadows> shadows_;  // with visibility only
     PerView<StaticVplView> states_;
     std::optional<VplPoints> points_;  // from the first lwRenderPoints on

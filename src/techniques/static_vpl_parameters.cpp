@@ -9,7 +9,7 @@ namespace lightwell {
 namespace {
 
 constexpr const char* kVariantNames[] = {"static", "phantom", nullptr};
-constexpr const char* kResolutionNames[] = {"full", "half", nullptr};
+constexpr const char* kResolutionNames[] = {"full", "half", "quarter", nullptr};
 constexpr const char* kVisibilityNames[] = {"none", "hard", "soft", "voxel", nullptr};
 constexpr const char* kOccludersNames[] = {"auto", "triangles", "surfels", nullptr};
 constexpr double kMapSizeValues[] = {64, 96, 128, 192, 256, 384, 512};
@@ -19,7 +19,7 @@ constexpr double kInterleaveValues[] = {1, 2, 4, 8};
 constexpr double kVariantSweep[] = {LW_STATIC_VPL_STATIC, LW_STATIC_VPL_PHANTOM};
 constexpr double kBounceSweep[] = {1, 2};
 constexpr double kInterleaveSweep[] = {1, 2};
-constexpr double kResolutionSweep[] = {LW_RESOLUTION_FULL, LW_RESOLUTION_HALF};
+constexpr double kResolutionSweep[] = {LW_RESOLUTION_FULL, LW_RESOLUTION_HALF, LW_RESOLUTION_QUARTER};
 
 LWParameter real(const char* name, const char* description, std::size_t offset, double least,
                  double most, double value) {
@@ -86,8 +86,8 @@ const std::vector<LWParameter>& staticVplParameters() {
         swept(
             choosing(parameter(
                          "resolution",
-                         "pixels that are gathered; half: every second column and row, up-sampled after",
-                         LW_PARAMETER_ENUM, offsetof(Desc, resolution), 0, 1, LW_RESOLUTION_FULL),
+                         "pixels that are gathered; half, quarter: every second or fourth column and row, up-sampled after",
+                         LW_PARAMETER_ENUM, offsetof(Desc, resolution), 0, 2, LW_RESOLUTION_FULL),
                      kResolutionNames),
             kResolutionSweep),
         swept(choosing(

@@ -126,8 +126,7 @@ void StaticVplShadows::update(Executor& executor, const LWFrame& frame, LightLis
 
 ClusterMaps StaticVplShadows::mapsRead(const VoxelSights* sights) const {
     const ParaboloidMap& maps = maps_.maps(0);
-    return {maps.frames(), maps.records(), maps.frames(), maps.records(), clusters().clusterCount(),
-            maps.size(),   sights};
+    return {{{&maps.frames(), &maps.records(), clusters().clusterCount()}}, maps.size(), sights};
 }
 
 void StaticVplShadows::recordGather(Executor& executor, int list, const Planes& position,

@@ -35,7 +35,7 @@ public:
 
     void startFrame(bool forget);
     void report(Report& report, lw_subset_order order) const;
-    void addDebugViews(std::vector<DebugView>& views) const { whole_.addDebugViews(views, nullptr); }
+    void addDebugViews(std::vector<DebugView>& views) const { whole_.addDebugViews(views, nullptr, nullptr); }
     std::uint64_t bytes() const;
     // The most for a view of this size; `order` of the list.
     static std::uint64_t estimateBytes(const InterleavedOptions& options, const LWViewDesc& view,

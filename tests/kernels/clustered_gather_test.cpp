@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <deque>
 #include <map>
 #include <set>
 
@@ -83,7 +84,7 @@ Image gatherOn(KernelRig& rig, ClusteredGather& pass, std::uint32_t n, const Ima
 // Of one list with clusters.
 ClusterMaps mapsOf(ParaboloidRig& rig) {
     const ParaboloidMap& maps = rig.pass;
-    return {maps.frames(), maps.records(), maps.frames(), maps.records(), maps.mapCount(), maps.size()};
+    return {{{&maps.frames(), &maps.records(), maps.mapCount()}}, maps.size()};
 }
 
 // A floor under a wall that stands on it, lit by two clusters on either side.
@@ -209,7 +210,7 @@ TEST_CASE("without visibility it is the gather of the same list", "[clustered_ga
     recordOrder(rig, pass, scene, 8);
     const Guarded none = rig.upload(std::vector<float>(64, 0.0f));
     const auto bits = GENERATE(Bits::found, Bits::all);
-    const Image light = gatherOn(rig, pass, n, position, normal, {none, none, none, none, 8, 64}, bits);
+    const Image light = gatherOn(rig, pass, n, position, normal, {{{&none, &none, 8}}, 64}, bits);
     const Image twin = reference::gather(position, normal, listOf(pass), pass.order(), n);
     CHECK(disagreement(light.planes, twin.planes, kTwinTolerance) == "");
 }
@@ -263,7 +264,7 @@ TEST_CASE("widths agree, and ten runs are one", "[clustered_gather][large]") {
     }
 }
 
-TEST_CASE("two bounces with clusters are one list with the clusters of both", "[clustered_gather][large]") {
+TEST_CASE("bounces with clusters are one list with the clusters of all", "[clustered_gather][large]") {
     const auto width = GENERATE(1u, 16u);
     ParaboloidRig rig(width, 64);
     const auto size = testSize({96, 64});
@@ -275,16 +276,25 @@ TEST_CASE("two bounces with clusters are one list with the clusters of both", "[
     const Image expected = gatherOn(rig, pass, 1, room.position, room.normal, mapsOf(rig), Bits::found);
 
     // The same VPLs, each cluster's as a bounce of its own, with a map of its own.
+    // Each cluster's VPLs as one list, or as two.
+    const std::size_t parts = GENERATE(1u, 2u);
     std::vector<lw_vpl> bounce[2];
     for (std::size_t k = 0; k < 40; ++k) bounce[room.scene.assignment[k]].push_back(room.scene.firsts[k]);
-    const Guarded lists[2] = {rig.upload(bounce[0]), rig.upload(bounce[1])};
+    const std::uint32_t each = std::uint32_t(20 / parts);
     const Guarded own = rig.upload(std::vector<cl_int>(20, 0));
-    ParaboloidMap maps[2] = {ParaboloidMap(rig.device(), 64), ParaboloidMap(rig.device(), 64)};
-    for (int i = 0; i < 2; ++i)
-        maps[i].record(rig.executor(), rig.upload(std::vector<lw_cluster>{room.clusters[std::size_t(i)]}), 1, rig.input);
-    pass.recordOrder(rig.executor(), {{{lists[0], 20}, &own, 1}, {{lists[1], 20}, &own, 1}});
-    const Image light =
-        gatherOn(rig, pass, 1, room.position, room.normal,
-                 {maps[0].frames(), maps[0].records(), maps[1].frames(), maps[1].records(), 1, 64}, Bits::found);
+    std::deque<Guarded> vpls;
+    std::deque<ParaboloidMap> maps;
+    std::vector<GatheredList> lists;
+    std::vector<ClusterMaps::List> read;
+    for (std::size_t i = 0; i < 2 * parts; ++i) {
+        const std::size_t cluster = i / parts;
+        const auto first = bounce[cluster].begin() + std::ptrdiff_t(i % parts * each);
+        vpls.push_back(rig.upload(std::vector<lw_vpl>(first, first + each)));
+        maps.emplace_back(rig.device(), 64).record(rig.executor(), rig.upload(std::vector<lw_cluster>{room.clusters[cluster]}), 1, rig.input);
+        lists.push_back({{vpls.back(), each}, &own, 1});
+        read.push_back({&maps.back().frames(), &maps.back().records(), 1});
+    }
+    pass.recordOrder(rig.executor(), lists);
+    const Image light = gatherOn(rig, pass, 1, room.position, room.normal, {read, 64}, Bits::found);
     CHECK(bitDifference(light.planes, expected.planes) == "");
 }

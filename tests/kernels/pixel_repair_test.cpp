@@ -26,6 +26,23 @@ void place(KernelRig& rig, const std::vector<float>& packed, const Planes& to) {
     rig.device().finish();
 }
 
+// The same of marks, as an up-sampling of so many lanes leaves them.
+void mark(KernelRig& rig, const std::vector<float>& marks, std::uint32_t width, const RepairedPixels& memory) {
+    const std::uint32_t bits = 2 * rig.device().width(), wordsOfRow = (width + bits - 1) / bits;
+    std::vector<cl_uint> words(marks.size() / width * wordsOfRow);
+    for (std::uint32_t i = 0; i < marks.size(); ++i)
+        if (marks[i] > 0.0f) words[i / width * wordsOfRow + i % width / bits] |= 1u << i % width % bits;
+    rig.executor().write("test", memory.marks(), 0, words.size() * sizeof(cl_uint), words.data());
+    rig.device().finish();
+}
+
+std::vector<float> shownMarks(KernelRig& rig, PixelRepair& pass, const RepairedPixels& memory, std::uint32_t width, std::uint32_t height) {
+    const Guarded shown = rig.makePlanes(width, height, 1);
+    pass.recordMarks(rig.executor(), memory, rig.planes(shown, width, height, 1));
+    rig.device().finish();
+    return rig.downloadPlanes(rig.planes(shown, width, height, 1));
+}
+
 // The marked pixels that there is room for, in the order of their places.
 std::vector<std::uint32_t> taken(const std::vector<float>& marks, std::uint32_t room) {
     std::vector<std::uint32_t> all;
@@ -58,9 +75,10 @@ TEST_CASE("marked pixels come into the small image, evenly where there are too m
     const std::vector<float> marks = randomMarks(w, h, share);
     const Image position = reference::randomImage(w, h, 1), normal = reference::randomImage(w, h, 2), light = reference::randomImage(w, h, 3);
     RepairedPixels memory(rig.device(), w + 20, h + 9);  // larger than the picture
-    place(rig, marks, memory.marks(w, h));
+    mark(rig, marks, w, memory);
     const Guarded p = rig.uploadPlanes(position.planes, w, h, 3, 1.0f), n = rig.uploadPlanes(normal.planes, w, h, 3, 1.0f);
     PixelRepair pass(rig.device());
+    CHECK(bitDifference(shownMarks(rig, pass, memory, w, h), marks) == "");
     pass.recordCollect(rig.executor(), rig.planes(p, w, h, 3), rig.planes(n, w, h, 3), memory);
     rig.device().finish();
 
@@ -114,22 +132,24 @@ TEST_CASE("up-sampling marks steep light and lost pixels, and makes the same lig
 
     const Guarded p = rig.uploadPlanes(position.planes, w, h, 3, 1.0f), n = rig.uploadPlanes(normal.planes, w, h, 3, 1.0f);
     const Guarded hp = rig.makePlanes(hw, hh, 3), hn = rig.makePlanes(hw, hh, 3), l = rig.uploadPlanes(light.planes, hw, hh, 3, 1.0f);
-    const Guarded plain = rig.makePlanes(w, h, 3), marked = rig.makePlanes(w, h, 3), marks = rig.makePlanes(w, h, 1), validity = rig.makePlanes(w, h, 1);
+    const Guarded plain = rig.makePlanes(w, h, 3), marked = rig.makePlanes(w, h, 3), validity = rig.makePlanes(w, h, 1);
     const Guarded counts = rig.upload(std::vector<cl_int>{0, 0}), markedCounts = rig.upload(std::vector<cl_int>{0, 0});
     const auto full = [&](const Guarded& buffer, std::uint32_t planes) { return rig.planes(buffer, w, h, planes); };
     const auto half = [&](const Guarded& buffer) { return rig.planes(buffer, hw, hh, 3); };
+    RepairedPixels memory(rig.device(), w, h);
+    PixelRepair repair(rig.device());
     JointBilateral without(rig.device()), with(rig.device(), 3, true);
     without.recordDownsample(rig.executor(), full(p, 3), full(n, 3), half(hp), half(hn));
     without.recordUpsample(rig.executor(), full(p, 3), full(n, 3), half(hp), half(hn), half(l), full(plain, 3), counts);
     const float share = GENERATE(0.25f, 1.5f);
-    with.recordUpsampleMarked(rig.executor(), full(p, 3), full(n, 3), half(hp), half(hn), half(l), full(marked, 3), share, full(marks, 1),
+    with.recordUpsampleMarked(rig.executor(), full(p, 3), full(n, 3), half(hp), half(hn), half(l), full(marked, 3), share, memory.marks(),
                               full(validity, 1), markedCounts);
     rig.device().finish();
     CHECK(bitDifference(rig.downloadPlanes(full(marked, 3)), rig.downloadPlanes(full(plain, 3))) == "");
     CHECK(rig.download<cl_int>(markedCounts) == rig.download<cl_int>(counts));
 
     CHECK(bitDifference(rig.downloadPlanes(full(validity, 1)), std::vector<float>(std::size_t(w) * h, 1.0f)) == "");
-    const std::vector<float> found = rig.downloadPlanes(full(marks, 1));
+    const std::vector<float> found = shownMarks(rig, repair, memory, w, h);
     for (std::uint32_t y = 0; y < h; ++y)
         for (std::uint32_t x = 0; x < w; ++x) {
             // A block's first pixel sees the samples of the columns before and after its own: blocks step - 1 and step are steep.

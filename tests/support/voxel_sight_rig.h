@@ -94,7 +94,7 @@ public:
         const Guarded p = uploadPlanes(position.planes, w, h, 3, nan), n = uploadPlanes(normal.planes, w, h, 3, 1.0f);
         ClusteredGather gather(device(), 1, 1, ClusterVisibility::voxel);
         const VoxelSights sights = pass.sights();
-        const ClusterMaps maps{sights.eyes, sights.eyes, sights.eyes, sights.eyes, clusters, 64, &sights};
+        const ClusterMaps maps({{&sights.eyes, &sights.eyes, clusters}}, 64, &sights);
         const Planes surfaces = planes(p, w, h, 3);
         const Guarded out = makePlanes(w, h * clusters, 1);
         gather.recordVisibility(executor(), surfaces, planes(n, w, h, 3), maps, clusters, planes(out, w, h * clusters, 1));

@@ -66,17 +66,18 @@ std::uint64_t estimate(LWDevice device, const LWSsvpDesc& desc) {
 
 }  // namespace
 
-TEST_CASE("half resolution, filter, history, compensation and outputs in every combination", "[ssvp][interleaved_view]") {
+TEST_CASE("fewer pixels, filter, history, compensation and outputs in every combination", "[ssvp][interleaved_view]") {
     TestDevice device(GENERATE(1u, 16u));
     const LitFloor floor(32, evenly);
     const Scene scene;
-    for (int bits = 0; bits < 16; ++bits) {
+    const LWResolution reduced = GENERATE(LW_RESOLUTION_HALF, LW_RESOLUTION_QUARTER);
+    for (int bits = reduced == LW_RESOLUTION_HALF ? 0 : 1; bits < 16; bits += reduced == LW_RESOLUTION_HALF ? 1 : 2) {
         LWSsvpDesc desc;
         lwDefaultSsvp(&desc);
         desc.vpls = 64;
         desc.bounces = 1;
         desc.visibility = LW_VISIBILITY_NONE;
-        desc.resolution = (bits & 1) ? LW_RESOLUTION_HALF : LW_RESOLUTION_FULL;
+        desc.resolution = (bits & 1) ? reduced : LW_RESOLUTION_FULL;
         desc.filter = (bits & 2) ? 1 : 0;
         desc.interleave = (bits & 4) ? 4 : 1;
         desc.compensation = (bits & 8) ? 4 : 0;

@@ -162,18 +162,64 @@ TEST_CASE("interleaving, filter and half resolution keep the light", "[rsm]") {
         const double raw = meanOf(render(device, desc, {floor.light}, scene, kWidth, kHeight));
         CHECK(std::abs(raw / mean - 1.0) < kMeanUnfiltered);
     }
-    LWRsmDesc half = descOf(256, 1);
-    half.resolution = LW_RESOLUTION_HALF;
-    const auto halved = render(device, half, {floor.light}, scene, kWidth, kHeight);
-    CHECK(std::abs(meanOf(halved) / mean - 1.0) < kMeanHalf);
-    CHECK(difference(halved, full) < kHalfError);
+    LWRsmDesc reduced = descOf(256, 1);
+    for (const LWResolution resolution : {LW_RESOLUTION_HALF, LW_RESOLUTION_QUARTER}) {
+        const int times = int(resolution);
+        CAPTURE(times);
+        reduced.resolution = resolution;
+        const auto fewer = render(device, reduced, {floor.light}, scene, kWidth, kHeight);
+        CHECK(std::abs(meanOf(fewer) / mean - 1.0) < times * kMeanHalf);
+        CHECK(difference(fewer, full) < times * kHalfError);
+    }
+}
+
+namespace {
+
+// The surface that `times` halvings leave of the block at (x, y): of each two by two the first that there is.
+bool findSurface(const WallAndCeiling& scene, int times, std::uint32_t x, std::uint32_t y, Vec& position, Vec& normal) {
+    if (times == 0) {
+        position = scene.position.get(x, y);
+        normal = scene.normal.get(x, y);
+        return dot(normal, normal) > 0.0;
+    }
+    for (const auto& at : {std::pair{0, 0}, std::pair{1, 1}, std::pair{1, 0}, std::pair{0, 1}})
+        if (findSurface(scene, times - 1, 2 * x + std::uint32_t(at.first), 2 * y + std::uint32_t(at.second), position, normal)) return true;
+    return false;
+}
+
+}  // namespace
+
+TEST_CASE("a quarter of the resolution gathers what a view of the pixels that are left would", "[rsm]") {
+    TestDevice device(GENERATE(1u, 16u));
+    LitFloor floor(64, spotProfile);
+    const WallAndCeiling scene(kWidth, kHeight);
+    const int times = GENERATE(1, 2);
+    const std::uint32_t width = kWidth >> times, height = kHeight >> times;
+    WallAndCeiling left(width, height);
+    for (std::uint32_t y = 0; y < height; ++y)
+        for (std::uint32_t x = 0; x < width; ++x) {
+            Vec position{}, normal{};
+            if (!findSurface(scene, times, x, y, position, normal)) position = normal = {};
+            left.position.set(x, y, position);
+            left.normal.set(x, y, normal);
+        }
+    LWRsmDesc desc = descOf(256, 4);
+    const auto expected = render(device, desc, {floor.light}, left, width, height);
+    desc.resolution = times == 1 ? LW_RESOLUTION_HALF : LW_RESOLUTION_QUARTER;
+    TestTechnique technique(device, desc);
+    TestView view(device, kWidth, kHeight);
+    technique.update({floor.light});
+    technique.render(view, scene.gbuffer);
+    std::vector<float> filtered(expected.size());
+    REQUIRE(lwReadDebugView(technique, view, "filtered", filtered.data(), filtered.size()) == LW_SUCCESS);
+    CHECK(filtered == expected);
 }
 
 TEST_CASE("same input, same bits: runs and widths", "[rsm]") {
     LitFloor floor(64, spotProfile);
     WallAndCeiling scene(kWidth, kHeight);
     LWRsmDesc desc = descOf(256, 4);
-    desc.resolution = GENERATE(LW_RESOLUTION_FULL, LW_RESOLUTION_HALF);
+    desc.resolution = GENERATE(LW_RESOLUTION_FULL, LW_RESOLUTION_HALF, LW_RESOLUTION_QUARTER);
     TestDevice wide(16), scalar(1);
     const auto first = render(wide, desc, {floor.light}, scene, kWidth, kHeight);
     for (int run = 0; run < 10; ++run) CHECK(render(wide, desc, {floor.light}, scene, kWidth, kHeight) == first);
@@ -239,7 +285,7 @@ TEST_CASE("after lwPrewarm 500 frames with resizes build nothing", "[rsm]") {
     TestDevice device(16);
     LitFloor floor(32, spotProfile);
     LWRsmDesc desc = descOf(64, 4);
-    desc.resolution = GENERATE(LW_RESOLUTION_FULL, LW_RESOLUTION_HALF);
+    desc.resolution = GENERATE(LW_RESOLUTION_FULL, LW_RESOLUTION_QUARTER);
     TestTechnique technique(device, desc);
     TestView view(device, 64, 64);
     REQUIRE(lwPrewarm(technique, view) == LW_SUCCESS);
@@ -262,7 +308,7 @@ TEST_CASE("the length of normals does not matter", "[rsm]") {
     LitFloor floor(64, spotProfile);
     WallAndCeiling scene(kWidth, kHeight);
     LWRsmDesc desc = descOf(256, 4);
-    desc.resolution = GENERATE(LW_RESOLUTION_FULL, LW_RESOLUTION_HALF);
+    desc.resolution = GENERATE(LW_RESOLUTION_FULL, LW_RESOLUTION_HALF, LW_RESOLUTION_QUARTER);
     const auto unit = render(device, desc, {floor.light}, scene, kWidth, kHeight);
     for (const float length : {0.7f, 0.95f, 1.5f}) {
         WallAndCeiling other(kWidth, kHeight);
@@ -302,7 +348,7 @@ TEST_CASE("stats name the passes, count what was refused, and memory is as estim
     WallAndCeiling scene(kWidth, kHeight);
     scene.position.at(7, 7, 0) = std::nanf("");
     LWRsmDesc desc = descOf(256, 4);
-    desc.resolution = GENERATE(LW_RESOLUTION_FULL, LW_RESOLUTION_HALF);
+    desc.resolution = GENERATE(LW_RESOLUTION_FULL, LW_RESOLUTION_HALF, LW_RESOLUTION_QUARTER);
     TestTechnique technique(device, desc);
     TestView view(device, kWidth, kHeight);
     technique.update({floor.light});

@@ -105,7 +105,7 @@ TEST_CASE("compensation: same bits, any unit, shown, counted, prewarmed and esti
     const LitFloor floor(64, evenly), large(64, evenly, 4.0);
     const Corner corner, largeCorner(4.0);
     LWSsvpDesc desc = descOf(8);
-    desc.resolution = GENERATE(LW_RESOLUTION_FULL, LW_RESOLUTION_HALF);
+    desc.resolution = GENERATE(LW_RESOLUTION_FULL, LW_RESOLUTION_HALF, LW_RESOLUTION_QUARTER);
     TestTechnique technique(device, desc);
     TestView view(device, kWidth, kHeight);
     const LWStatus warmed = lwPrewarm(technique, view);
@@ -119,7 +119,7 @@ TEST_CASE("compensation: same bits, any unit, shown, counted, prewarmed and esti
     for (int run = 0; run < 10; ++run) REQUIRE(technique.render(view, corner.gbuffer) == first);
     CHECK(render(device, desc, large, largeCorner) == first);
 
-    const std::size_t shrink = desc.resolution == LW_RESOLUTION_HALF ? 4 : 1;
+    const std::size_t shrink = std::size_t(1) << (2 * desc.resolution);
     std::vector<float> shown(std::size_t(kWidth) * kHeight * 3 / shrink);
     REQUIRE(lwReadDebugView(technique, view, "compensation", shown.data(), shown.size()) == LW_SUCCESS);
     double sum = 0.0;

@@ -92,7 +92,7 @@ TEST_CASE("a dark frame leaves nothing of a lit one, in any stage", "[ssvp][stag
     Canvas canvas;
     Walls room = Walls::room();
     // Every VPL a cluster: without any there are no clusters of the first bounce, and no VPLs of the next.
-    const LWSsvpDesc desc = descOf(GENERATE(0u, 8u), 4, 2);
+    const LWSsvpDesc desc = descOf(GENERATE(0u, 8u), 4, GENERATE(2u, 4u));
     TestTechnique technique(device, desc), fresh(device, desc);
     TestView view(device, kWidth, kHeight);
     technique.update(Frame({floor.light}, room.describe()).frame);
@@ -117,10 +117,42 @@ TEST_CASE("a dark frame leaves nothing of a lit one, in any stage", "[ssvp][stag
         CHECK(areZero({planes.begin() + std::ptrdiff_t(6 * clusters), planes.begin() + std::ptrdiff_t(10 * clusters)}));
     }
     for (const char* name : {"maps", "second_maps", "third_maps"}) CHECK(areZero(views.at(name)));
+    REQUIRE(views.count("fourth_maps") == (desc.shadowedBounces == 4));
+    if (desc.shadowedBounces == 4) CHECK(areZero(views.at("fourth_maps")));
     // The cut came in the dark: clusters begin anew in every stage.
     technique.update(Frame({other.light}, room.describe()).frame);
     fresh.update(Frame({other.light}, room.describe()).frame);
     CHECK(canvas.render(device, technique, view) == canvas.render(device, fresh, view));
+}
+
+TEST_CASE("light of shadowed bounces does not leave a closed room", "[ssvp][stages]") {
+    TestDevice device(GENERATE(1u, 16u));
+    LitFloor floor(64, plain);
+    Walls room = Walls::room();
+    // Behind the wall at z = 1, which all that faces +z inside lies before.
+    PlanarPixels position(kWidth, kHeight, 3), normal(kWidth, kHeight, 3);
+    for (std::uint32_t y = 0; y < kHeight; ++y)
+        for (std::uint32_t x = 0; x < kWidth; ++x) {
+            position.set(x, y, {(x + 0.5) / kWidth - 0.5, (y + 0.5) / kHeight, 1.5});
+            normal.set(x, y, {0, 0, -1});
+        }
+    LWGBuffer outside{};
+    outside.structSize = sizeof outside;
+    outside.position = position.image();
+    outside.normal = normal.image();
+    double leak[5] = {};
+    for (std::uint32_t shadowed = 1; shadowed <= 4; ++shadowed) {
+        TestTechnique technique(device, descOf(8, 4, shadowed));
+        TestView view(device, kWidth, kHeight);
+        technique.update(Frame({floor.light}, room.describe()).frame);
+        for (const float e : technique.render(view, outside)) leak[shadowed] += double(e);
+    }
+    CAPTURE(leak[1], leak[2], leak[3], leak[4]);
+    // The first bounce goes up from the floor and would pass the wall too; each bounce that is shadowed keeps its share in.
+    CHECK(leak[2] < 0.9 * leak[1]);
+    CHECK(leak[3] < 0.9 * leak[2]);
+    CHECK(leak[3] > 0.0);
+    CHECK(leak[4] < 1e-3 * leak[1]);
 }
 
 TEST_CASE("without maps their debug view is empty, and prewarming goes through", "[ssvp][stages]") {
@@ -260,7 +292,7 @@ TEST_CASE("without a warm start no frame shows what came before it", "[ssvp][sta
     const LWSourceView source{view, &canvas.scene.gbuffer};
     const unsigned seed = GENERATE(range(1u, 4u));
     std::mt19937 random(seed);
-    LWSsvpDesc desc = descOf(std::array{0u, 1u, 8u, 64u}[random() % 4], std::uint32_t(1 + random() % 4), std::uint32_t(1 + random() % 2));
+    LWSsvpDesc desc = descOf(std::array{0u, 1u, 8u, 64u}[random() % 4], std::uint32_t(1 + random() % 4), std::uint32_t(1 + random() % 4));
     desc.warmStart = 0;
     desc.secondVpls = 8;
     setEnum(desc.visibility, std::uint32_t(random() % 3));

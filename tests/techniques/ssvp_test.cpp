@@ -176,7 +176,7 @@ TEST_CASE("nothing is compiled after prewarming", "[ssvp]") {
     WallAndCeiling scene(kWidth, kHeight);
     Walls room = Walls::room();
     LWSsvpDesc desc = descOf(8, 2);
-    desc.resolution = GENERATE(LW_RESOLUTION_FULL, LW_RESOLUTION_HALF);
+    desc.resolution = GENERATE(LW_RESOLUTION_FULL, LW_RESOLUTION_QUARTER);
     TestTechnique technique(device, desc);
     TestView view(device, kWidth, kHeight);
     REQUIRE(lwPrewarm(technique, view) == LW_SUCCESS);

@@ -162,10 +162,10 @@ TEST_CASE("a thousand blockers, thousands of places, masks of any bits", "[stati
     for (int c = 0; c < 3; ++c) CHECK(listed[c] == Approx(all[c]).epsilon(1e-4));
 }
 
-TEST_CASE("receivers in halves: any mask at half resolution", "[static_vpl]") {
+TEST_CASE("receivers in halves: any mask at a reduced resolution", "[static_vpl]") {
     LWStaticVplDesc desc = keepAll();
     StaticRig whole(16, desc);
-    desc.resolution = GENERATE(LW_RESOLUTION_FULL, LW_RESOLUTION_HALF);
+    desc.resolution = GENERATE(LW_RESOLUTION_FULL, LW_RESOLUTION_HALF, LW_RESOLUTION_QUARTER);
     StaticRig rig(16, desc);
     WallAndCeiling view(45, 32);
     TestView target(rig.device, 45, 32), other(whole.device, 45, 32);
