@@ -22,7 +22,7 @@ SECTIONS = [
     ("techniques", "Techniques", ["techniques/rsm", "techniques/ssvp", "techniques/screen_space", "techniques/horizon", "techniques/ao",
                                   "techniques/lpv", "techniques/cone_tracing", "techniques/static_vpl", "techniques/fallback",
                                   "techniques/auto", "techniques/voxel_grid", "techniques/voxel_light", "techniques/voxel_mips",
-                                  "techniques/cone_gather", "techniques/voxel_visibility", "techniques/instant_radiosity",
+                                  "techniques/cone_gather", "techniques/voxel_visibility", "techniques/vpl_view_sampling", "techniques/instant_radiosity",
                                   "techniques/rival"]),
     ("measured", "Measurements", ["accuracy", "performance", "stability", "thrift"]),
     ("tools", "Command line and files", ["cli", "hosts", "scenes", "vpls-file"]),

@@ -458,8 +458,10 @@ typedef enum LWResolution {
 } LWResolution;
 
 typedef enum LWVplSampling {
-    LW_SAMPLING_FLUX = 0,   /**< Hammersley set warped by the flux distribution of all RSMs */
-    LW_SAMPLING_UNIFORM = 1 /**< Hammersley set over the texels */
+    LW_SAMPLING_FLUX = 0,    /**< Hammersley set warped by the flux distribution of all RSMs */
+    LW_SAMPLING_UNIFORM = 1, /**< Hammersley set over the texels */
+    LW_SAMPLING_VIEW = 2     /**< several times as many by flux, and of those a choice by what they bring the surfaces that
+                                  LWFrame::sourceViews show (not which of those they see); lwUpdate fails without such a view */
 } LWVplSampling;
 
 /** What stands between a VPL of technique "rsm" and a pixel. */

@@ -5,6 +5,7 @@
 //
 // Sampling texel p with probability P_p divides its flux *and* its area by N * P_p.
 // Planes of `texels`: position xyz, normal xyz, flux rgb, area; `planeStride` floats apart.
+#include "shared/find_sum.h"
 #include "shared/hammersley.h"
 #include "shared/vpl_list.h"
 #include "shared/wide.h"
@@ -43,20 +44,6 @@ __kernel void vpl_sampling_total(__global const float* rowTotals, int rowCount, 
         sum += rowTotals[r];
         rowSums[r] = sum;
     }
-}
-
-// Index of the first of `count` inclusive sums that is greater than `target`; when rounding leaves
-// none, the last one that grew. Entries of zero weight are never returned while any other exists.
-LW_FN int find_sum(__global const float* sums, int count, float target) {
-    target = fmin(target, sums[count - 1]);
-    int low = 0, high = count - 1;
-    while (low < high) {
-        const int middle = (low + high) >> 1;
-        if (sums[middle] > target) high = middle;
-        else low = middle + 1;
-    }
-    while (low > 0 && !(sums[low] > sums[low - 1])) --low;
-    return low;
 }
 
 LW_FN lw_vpl texel_vpl(__global const float* texels, int planeStride, int texel, float factor) {

@@ -11,6 +11,9 @@ namespace {
 
 constexpr Range kGroup{64, 1};
 constexpr const char* kProgram = "vpl_sampling/vpl_sampling";
+// Candidates for each VPL chosen by view. Fewer: the same one is chosen several times where the view is lit from a small part of
+// the light; more: time, in proportion.
+constexpr std::uint32_t kCandidates = 8;
 
 }  // namespace
 
@@ -22,7 +25,17 @@ VplSampling::VplSampling(Device& device, const VplSamplingOptions& options)
       draw_(device.programs().kernel(kProgram, "vpl_sampling_draw")),
       drawLive_(device.programs().kernel(kProgram, "vpl_sampling_draw_live")),
       all_(device.programs().kernel(kProgram, "vpl_sampling_all")),
-      planes_(device.programs().kernel(kProgram, "vpl_sampling_planes")) {}
+      planes_(device.programs().kernel(kProgram, "vpl_sampling_planes")) {
+    if (options.view) views_.emplace(device);
+}
+
+void VplSampling::check(const LWFrame& frame) const {
+    if (views_) VplViewSampling::check(device_, frame);
+}
+
+void VplSampling::importViews(Executor& executor, const LWFrame& frame) {
+    if (views_) views_->import(executor, frame);
+}
 
 void VplSampling::reserve(const RsmInput& rsms, std::uint32_t authoredCount) {
     const std::uint32_t drawn = rsms.texelCount == 0 ? 0
@@ -36,6 +49,9 @@ void VplSampling::reserve(const RsmInput& rsms, std::uint32_t authoredCount) {
         texelSums_.reserve(device_, std::size_t(rsms.texels.width) * 4, "cumulative flux of texels");
         rowTotals_.reserve(device_, std::size_t(rsms.rowCount) * 4, "flux of RSM rows");
         rowSumsBuffer_.reserve(device_, std::size_t(rsms.rowCount) * 4, "cumulative flux of RSM rows");
+        if (views_)
+            candidates_.reserve(device_, std::size_t(subsetOrder(kCandidates * drawn, 1).capacity) * sizeof(lw_vpl),
+                                "candidates for VPLs");
     }
     order_ = order;
 }
@@ -63,6 +79,7 @@ void VplSampling::draw(Executor& executor, const RsmInput& rsms, std::uint32_t s
     executor.run("vpl_sampling.row_sums", rowSums_, gridOver(rsms.rowCount), {4, 1}, rsms.texels, rsms.rows, rowCount,
                  uniform, texelSums_, rowTotals_);
     executor.run("vpl_sampling.total", total_, {1, 1}, {1, 1}, rowTotals_, rowCount, rowSumsBuffer_);
+    if (views_) return choose(executor, rsms, sampleCount);
     if (plan) {
         plan->choose(texelSums_, rowTotals_);
         executor.run("vpl_sampling.draw", drawLive_, slots, kGroup, rsms.texels, rsms.rows, rowCount,
@@ -72,6 +89,17 @@ void VplSampling::draw(Executor& executor, const RsmInput& rsms, std::uint32_t s
     }
     executor.run("vpl_sampling.draw", draw_, slots, kGroup, rsms.texels, rsms.rows, rowCount, texelSums_,
                  rowSumsBuffer_, uniform, cl_int(sampleCount), sampleRotation(options_.seed, turns_), authored_, order_, vpls_);
+}
+
+void VplSampling::choose(Executor& executor, const RsmInput& rsms, std::uint32_t sampleCount) {
+    const std::uint32_t count = kCandidates * sampleCount;
+    const lw_subset_order order = subsetOrder(count, 1);
+    executor.run("vpl_sampling.draw", draw_, gridOver(std::size_t(order.capacity)), kGroup, rsms.texels, rsms.rows,
+                 cl_int(rsms.rowCount), texelSums_, rowSumsBuffer_, cl_int(0), cl_int(count),
+                 sampleRotation(options_.seed, turns_), authored_, order, candidates_);
+    // The choice's offset moves with the set's rotation, by numbers of its own.
+    const float offset = options_.seed || turns_ ? sampleRotation(options_.seed ^ 0x5bd1e995u, turns_).s[0] : 0.5f;
+    views_->record(executor, candidates_, count, sampleCount, offset, authored_, order_, vpls_);
 }
 
 Planes VplSampling::debugShape(lw_subset_order order) {
@@ -89,7 +117,8 @@ void VplSampling::recordPlanes(Executor& executor, const Buffer& vpls, const Pla
 }
 
 std::uint64_t VplSampling::bytes() const {
-    return texelSums_.bytes() + rowTotals_.bytes() + rowSumsBuffer_.bytes() + authored_.bytes() + vpls_.bytes();
+    return texelSums_.bytes() + rowTotals_.bytes() + rowSumsBuffer_.bytes() + authored_.bytes() + vpls_.bytes() + candidates_.bytes() +
+           (views_ ? views_->bytes() : 0);
 }
 
 lw_subset_order VplSampling::orderOf(const VplSamplingOptions& options, const FrameShape& shape) {
@@ -103,7 +132,12 @@ std::uint64_t VplSampling::estimateBytes(const VplSamplingOptions& options, cons
     const lw_subset_order order = orderOf(options, shape);
     const std::uint64_t list = std::uint64_t(order.subsets) * std::uint64_t(order.capacity) * sizeof(lw_vpl);
     const std::uint64_t sums = shape.texels && options.count ? shape.paddedTexels * 4 + shape.rows * 8 : 0;
-    return list + std::max(shape.vplCount, 1u) * sizeof(lw_vpl) + sums;
+    std::uint64_t views = 0;
+    if (options.view) {
+        const std::uint64_t candidates = shape.texels ? std::uint64_t(kCandidates) * options.count : 0;
+        views = (candidates + (candidates & 1)) * sizeof(lw_vpl) + VplViewSampling::estimateBytes(candidates, shape);
+    }
+    return list + std::max(shape.vplCount, 1u) * sizeof(lw_vpl) + sums + views;
 }
 
 }  // namespace lightwell

@@ -4,11 +4,13 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 
 #include "compute/buffer.h"
 #include "compute/executor.h"
 #include "inputs/rsm_input.h"
 #include "passes/vpl_list.h"
+#include "passes/vpl_view_sampling.h"
 #include "shared/subset_order.h"
 #include "shared/vpl_types.h"
 
@@ -17,6 +19,7 @@ namespace lightwell {
 struct VplSamplingOptions {
     std::uint32_t count = 256;     // drawn from the texels; 0: every texel is a VPL
     bool uniform = false;          // over texels, instead of by reflected flux
+    bool view = false;             // by what they bring the frame's source views, of several times as many by flux
     std::uint32_t subsets = 16;    // of the gather
     std::uint32_t seed = 0;        // Cranley-Patterson rotation; 0: none
 };
@@ -31,6 +34,10 @@ struct VplPlan {
 class VplSampling {
 public:
     VplSampling(Device& device, const VplSamplingOptions& options);
+
+    // With options.view: the views that the next record() draws for. Other options read none.
+    void check(const LWFrame& frame) const;
+    void importViews(Executor& executor, const LWFrame& frame);
 
     // Records passes "vpl_sampling.*". `authored`: the host's own VPLs, appended to those drawn; read
     // before the call returns. `plan`: not asked where none are drawn.
@@ -55,12 +62,14 @@ public:
 private:
     void reserve(const RsmInput& rsms, std::uint32_t authoredCount);
     void draw(Executor& executor, const RsmInput& rsms, std::uint32_t sampleCount, const VplPlan* plan);
+    void choose(Executor& executor, const RsmInput& rsms, std::uint32_t sampleCount);
 
     Device& device_;
     VplSamplingOptions options_;
     std::uint32_t turns_ = 0;
     Kernel &rowSums_, &total_, &draw_, &drawLive_, &all_, &planes_;
-    Buffer texelSums_, rowTotals_, rowSumsBuffer_, authored_, vpls_;
+    Buffer texelSums_, rowTotals_, rowSumsBuffer_, authored_, vpls_, candidates_;
+    std::optional<VplViewSampling> views_;  // with options.view only
     lw_subset_order order_{};
 };
 

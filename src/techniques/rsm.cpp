@@ -24,6 +24,7 @@ VplSamplingOptions samplingOptions(const LWRsmDesc& desc) {
     VplSamplingOptions options;
     options.count = desc.vpls;
     options.uniform = desc.sampling == LW_SAMPLING_UNIFORM;
+    options.view = desc.sampling == LW_SAMPLING_VIEW;
     // Shadowed ones in their own order: clusters are dealt out, not this list.
     options.subsets = isShadowed(desc) ? 1 : desc.interleave * desc.interleave;
     options.seed = desc.seed;
@@ -44,11 +45,11 @@ InterleavedOptions interleavedOptions(const LWRsmDesc& desc) {
 }
 
 // What the host gave and this technique does not read: said in the stats, so that nobody waits for its light.
-std::vector<LWChoice> inputChoices(const LWFrame& frame, const RsmShadows* shadows) {
+std::vector<LWChoice> inputChoices(const LWFrame& frame, const RsmShadows* shadows, bool usesViews) {
     constexpr const char* kReason = "not used: technique rsm takes light from RSMs and authored VPLs only";
     std::vector<LWChoice> unused;
-    if (shadows) unused = shadows->choices(frame);
-    else if (frame.sourceViewCount) unused.push_back({"frame.sourceViews", kReason});
+    if (shadows) unused = shadows->choices(frame, usesViews);
+    else if (frame.sourceViewCount && !usesViews) unused.push_back({"frame.sourceViews", kReason});
     if (frame.geometry && !shadows) unused.push_back({"frame.geometry", kReason});
     if (frame.blockerCount) unused.push_back({"frame.blockers", kReason});
     if (frame.environment[0] > 0.0f || frame.environment[1] > 0.0f || frame.environment[2] > 0.0f)
@@ -76,13 +77,15 @@ public:
     }
 
     void update(Executor& executor, const LWFrame& frame) override {
+        sampling_.check(frame);
         if (shadows_) shadows_->check(frame);
         rsms_.import(executor, frame);
         const bool lost = continuity_.beginLost(), forget = lost || frame.reset != 0;
         if (history_) sampling_.turn(forget ? turns_ = 0 : ++turns_);
+        sampling_.importViews(executor, frame);
         sampling_.record(executor, rsms_, frame.vpls, frame.vplCount);
         if (shadows_) shadows_->update(executor, frame, rsms_, {sampling_.vpls(), sampling_.vplCount()}, forget, lost);
-        choices_ = inputChoices(frame, shadows_ ? &*shadows_ : nullptr);
+        choices_ = inputChoices(frame, shadows_ ? &*shadows_ : nullptr, desc_.sampling == LW_SAMPLING_VIEW);
         states_.purge();
         states_.each([&](InterleavedView& state) { state.startFrame(forget); });
         if (points_) points_->startFrame();

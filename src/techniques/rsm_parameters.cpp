@@ -9,7 +9,7 @@
 namespace lightwell {
 namespace {
 
-constexpr const char* kSamplingNames[] = {"flux", "uniform", nullptr};
+constexpr const char* kSamplingNames[] = {"flux", "uniform", "view", nullptr};
 constexpr const char* kResolutionNames[] = {"full", "half", "quarter", nullptr};
 constexpr const char* kVisibilityNames[] = {"none", "voxel", nullptr};
 constexpr double kVoxelsValues[] = {32, 64, 128, 256};
@@ -27,8 +27,8 @@ const std::vector<LWParameter>& rsmParameters() {
         swept(parameter("vpls", "virtual point lights drawn from all RSMs together; 0: every texel. Error falls and time grows with it",
                         LW_PARAMETER_UINT, offsetof(LWRsmDesc, vpls), 0, 1u << 24, 256),
               kVplSweep),
-        swept(choosing(parameter("sampling", "what VPLs are drawn by: reflected flux, or every texel alike", LW_PARAMETER_ENUM,
-                                 offsetof(LWRsmDesc, sampling), 0, 1, LW_SAMPLING_FLUX),
+        swept(choosing(parameter("sampling", "what VPLs are drawn by: reflected flux, every texel alike, or flux by what it brings the surfaces that source views show", LW_PARAMETER_ENUM,
+                                 offsetof(LWRsmDesc, sampling), 0, 2, LW_SAMPLING_FLUX),
                        kSamplingNames),
               kSamplingSweep),
         swept(allowing(parameter("interleave", "n of n x n pixels that share out the VPLs: time falls with n^2, noise at edges grows",

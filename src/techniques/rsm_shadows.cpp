@@ -124,9 +124,9 @@ void RsmShadows::renderPoints(Executor& executor, const Points& points) {
     points_->render(executor, points, lists_, mapsRead(sights));
 }
 
-std::vector<LWChoice> RsmShadows::choices(const LWFrame& frame) const {
+std::vector<LWChoice> RsmShadows::choices(const LWFrame& frame, bool viewsAreUsed) const {
     std::vector<LWChoice> choices = {{"occluders", describe(source_)}};
-    if (frame.sourceViewCount && source_ != Source::screen)
+    if (frame.sourceViewCount && source_ != Source::screen && !viewsAreUsed)
         choices.push_back({"frame.sourceViews", "not used: they are no occluders, and technique rsm takes light from RSMs and "
                                                 "authored VPLs only"});
     if (surfelsOf(frame) && source_ != Source::surfels)

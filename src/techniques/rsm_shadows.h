@@ -45,7 +45,7 @@ public:
     lw_subset_order order() const { return gather_.order(); }
 
     // What of the frame's geometry and views is used, and what is not.
-    std::vector<LWChoice> choices(const LWFrame& frame) const;
+    std::vector<LWChoice> choices(const LWFrame& frame, bool viewsAreUsed) const;  // ... by something else
     void report(Report& report) const;
     std::uint64_t bytes() const;
     // count: of all VPLs.

@@ -38,7 +38,7 @@ struct Stage {
 std::vector<LWChoice> inputChoices(const OccluderMaps& maps, const LWSsvpDesc& desc, const LWFrame& frame) {
     constexpr const char* kReason = "not used: technique ssvp takes light from RSMs and authored VPLs only";
     std::vector<LWChoice> choices = maps.choices(frame);
-    if (frame.sourceViewCount && !maps.usesViews())
+    if (frame.sourceViewCount && !maps.usesViews() && desc.sampling != LW_SAMPLING_VIEW)
         choices.push_back({"frame.sourceViews", "not used: they are no occluders, and technique ssvp takes light from RSMs and "
                                                 "authored VPLs only"});
     if (frame.blockerCount) choices.push_back({"frame.blockers", kReason});
@@ -63,6 +63,9 @@ public:
         for (std::size_t i = 0; i < stagesOf(desc); ++i) stages_.emplace_back(device, desc, i);
         if (repairs() && desc.compensation > 0)
             fail(LW_ERROR_INVALID_ARGUMENT, "desc.autoResolution: expected 0 with desc.compensation above 0, got ", desc.autoResolution);
+        if (desc.sampling == LW_SAMPLING_VIEW && desc.compensation > 0)
+            fail(LW_ERROR_INVALID_ARGUMENT, "desc.compensation: expected 0 with desc.sampling LW_SAMPLING_VIEW, of whose VPLs it knows no "
+                 "size, got ", desc.compensation);
         if (interleavedOptions(desc).halvings) bilateral_.emplace(device, 3, repairs());
         if (repairs()) {
             repair_.emplace(device);
@@ -76,6 +79,7 @@ public:
     }
 
     void update(Executor& executor, const LWFrame& frame) override {
+        sampling_.check(frame);
         maps_.check(frame);
         if (shadows_) shadows_->check(frame);
         rsms_.import(executor, frame);
@@ -85,6 +89,7 @@ public:
         maps_.import(executor, frame, rsms_);
         if (plan_) plan_->begin(executor, restart);
         if (history_) sampling_.turn(restart ? turns_ = 0 : ++turns_);
+        sampling_.importViews(executor, frame);
         recordVpls(executor, frame);
         if (compensation_)
             compensation_->recordScale(executor, sampling_.vpls(), sampling_.order(), sampling_.vplCount() - frame.vplCount);

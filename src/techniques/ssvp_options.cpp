@@ -12,6 +12,7 @@ VplSamplingOptions samplingOptions(const LWSsvpDesc& desc) {
     VplSamplingOptions options;
     options.count = desc.vpls;
     options.uniform = desc.sampling == LW_SAMPLING_UNIFORM;
+    options.view = desc.sampling == LW_SAMPLING_VIEW;
     options.subsets = 1;  // in their own order: clusters are dealt out, not this list
     options.seed = desc.seed;
     return options;

@@ -9,7 +9,7 @@
 namespace lightwell {
 namespace {
 
-constexpr const char* kSamplingNames[] = {"flux", "uniform", nullptr};
+constexpr const char* kSamplingNames[] = {"flux", "uniform", "view", nullptr};
 constexpr const char* kResolutionNames[] = {"full", "half", "quarter", nullptr};
 constexpr const char* kVisibilityNames[] = {"none", "hard", "soft", "voxel", nullptr};
 constexpr const char* kOccludersNames[] = {"auto", "triangles", "surfels", "screen", nullptr};
@@ -40,8 +40,8 @@ std::vector<LWParameter> makeTable() {
         swept(uint("vpls", "first-bounce virtual point lights, drawn from all RSMs together; error falls and time grows with it",
                    offsetof(LWSsvpDesc, vpls), 1, 1u << 16, 256),
               kVplSweep),
-        oneOf("sampling", "what VPLs are drawn by: reflected flux, or every texel alike", offsetof(LWSsvpDesc, sampling),
-              kSamplingNames, 1, LW_SAMPLING_FLUX),
+        oneOf("sampling", "what VPLs are drawn by: reflected flux, every texel alike, or flux by what it brings the surfaces that source views show", offsetof(LWSsvpDesc, sampling),
+              kSamplingNames, 2, LW_SAMPLING_FLUX),
         swept(uint("clusters", "of VPLs that share a visibility map: fewer false shadows and leaks, and time, with more; 0: every VPL its own",
                    offsetof(LWSsvpDesc, clusters), 0, 64, 8),
               kClusterSweep),

@@ -18,7 +18,7 @@ class Errors(Contract):
                                 ({"vpls": 2.5}, "vpls: expected a whole number"), ({"vpls": "many"}, "vpls: expected a whole number"),
                                 ({"vpls": True}, "vpls: expected a whole number"), ({"vpls": math.nan}, "vpls: expected"), ({"vpls": None}, "vpls: expected"),
                                 ({"interleave": 3}, "interleave: expected one of 1, 2, 4, 8, got 3"),
-                                ({"sampling": "fluxes"}, "sampling: expected one of flux, uniform, got 'fluxes'"), ({"sampling": 7}, "sampling: expected one of"),
+                                ({"sampling": "fluxes"}, "sampling: expected one of flux, uniform, view, got 'fluxes'"), ({"sampling": 7}, "sampling: expected one of"),
                                 ({"vpls": np.True_}, "vpls: expected"), ({"vpls": b"64"}, "vpls: expected"), ({"vpls": 10**400}, "vpls: expected"),
                                 ({"sampling": True}, "sampling: expected one of"), ({"filter": np.ones(2)}, "filter: expected True or False"),
                                 ({"filter": 2}, "filter: expected True or False, got 2"), ({"filter": "on"}, "filter: expected True or False")):

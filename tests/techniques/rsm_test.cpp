@@ -105,6 +105,47 @@ TEST_CASE("the error falls with the number of VPLs, faster by flux than uniforml
     }
 }
 
+TEST_CASE("VPLs chosen for the view light it as all texels do, in the mean of seeds; without a view they are refused", "[rsm]") {
+    TestDevice device(16);
+    LitFloor floor(128, spotProfile);
+    WallAndCeiling scene(kWidth, kHeight);
+    const double limit = meanOf(render(device, descOf(0, 1), {floor.light}, scene, kWidth, kHeight));
+    TestView view(device, kWidth, kHeight);
+    const LWSourceView source{view, &scene.gbuffer};
+    LWFrame frame{};
+    frame.structSize = sizeof frame;
+    frame.lights = &floor.light;
+    frame.lightCount = 1;
+    LWRsmDesc desc = descOf(1024, 1);
+    desc.sampling = LW_SAMPLING_VIEW;
+    double mean = 0.0;
+    for (std::uint32_t seed = 1; seed <= 8; ++seed) {
+        desc.seed = seed;
+        TestTechnique technique(device, desc);
+        CHECK(lwUpdate(technique, &frame) == LW_ERROR_INVALID_ARGUMENT);
+        CHECK(lastError(device).find("frame.sourceViews: expected") != std::string::npos);
+        frame.sourceViews = &source;
+        frame.sourceViewCount = 1;
+        technique.update(frame);
+        const auto picture = technique.render(view, scene.gbuffer);
+        mean += meanOf(picture) / 8.0;
+        technique.update(frame);
+        CHECK(technique.render(view, scene.gbuffer) == picture);
+        const LWStats stats = technique.stats();
+        for (std::uint32_t i = 0; i < stats.choiceCount; ++i) CHECK(std::string(stats.choices[i].name) != "frame.sourceViews");
+        LWViewDesc size{};
+        size.structSize = sizeof size;
+        size.maxWidth = kWidth;
+        size.maxHeight = kHeight;
+        std::uint64_t bytes = 0;
+        CHECK(lwEstimateFrameMemory(device, "rsm", &desc, &size, &frame, &bytes) == LW_SUCCESS);
+        CHECK(stats.deviceBytes <= bytes);
+        frame.sourceViews = nullptr;
+        frame.sourceViewCount = 0;
+    }
+    CHECK(std::abs(mean / limit - 1.0) < kMeanOf1024);
+}
+
 TEST_CASE("interleaving, filter and half resolution keep the light", "[rsm]") {
     TestDevice device(GENERATE(1u, 16u));
     LitFloor floor(64, spotProfile);

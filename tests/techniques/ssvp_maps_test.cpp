@@ -23,6 +23,9 @@ constexpr double kLeak = 0.02;
 
 double plain(double, double) { return 0.5; }
 
+// 1,024 VPLs of each of two sets, each seen by itself: means differ by what both sets leave, and by the second bounce's draws.
+constexpr double kMeanByView = 0.02;
+
 LWSsvpDesc descOf(LWOccluders occluders, std::uint32_t bounces, std::uint32_t mapSize = 64) {
     LWSsvpDesc desc;
     lwDefaultSsvp(&desc);
@@ -278,4 +281,37 @@ TEST_CASE("surfels and screen in another unit of length", "[ssvp][surfels]") {
         CAPTURE(isScreen, scale);
         CHECK(difference(e, metres) < 1e-5);
     }
+}
+
+TEST_CASE("VPLs chosen for source views are lit with maps of any kind, and refused without views", "[ssvp][sampling]") {
+    TestDevice device(16);
+    LitFloor floor(64, plain);
+    WallAndCeiling scene(kWidth, kHeight);
+    TestView view(device, kWidth, kHeight);
+    const LWSourceView source{view, &scene.gbuffer};
+    Walls room = Walls::room();
+    LWSsvpDesc desc = descOf(LW_OCCLUDERS_AUTO, 2);
+    desc.vpls = 1024;
+    desc.clusters = 0;
+    const auto meanBy = [&](LWVplSampling sampling) {
+        desc.sampling = sampling;
+        TestTechnique technique(device, desc);
+        technique.update(Frame(floor, room.describe(1), &source).frame);
+        return meanOf(technique.render(view, scene.gbuffer));
+    };
+    CHECK(meanBy(LW_SAMPLING_VIEW) == Approx(meanBy(LW_SAMPLING_FLUX)).epsilon(kMeanByView));
+    desc.clusters = 8;
+    desc.sampling = LW_SAMPLING_VIEW;
+    desc.autoError = 0.1f;
+    TestTechnique technique(device, desc);
+    technique.update(Frame(floor, room.describe(1), &source).frame);
+    CHECK(choiceOf(technique, "vpls_used") == "the most: only VPLs drawn by flux are chosen");
+    CHECK(choiceOf(technique, "frame.sourceViews").empty());
+    const Frame bare(floor, room.describe(1));
+    CHECK(lwUpdate(technique, &bare.frame) == LW_ERROR_INVALID_ARGUMENT);
+    CHECK(lastError(device).find("frame.sourceViews: expected") != std::string::npos);
+    desc.compensation = 4;
+    LWTechnique none = nullptr;
+    CHECK(lwCreateTechnique(device, "ssvp", &desc, &none) == LW_ERROR_INVALID_ARGUMENT);
+    CHECK(lastError(device).find("desc.compensation: expected 0") != std::string::npos);
 }
