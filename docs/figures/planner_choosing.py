@@ -90,7 +90,12 @@ STEPS = [("bounces 2 to 4", "ssvp clusters=16 resolution=half", "ssvp clusters=1
          ("VPLs 256 to 1,024", "ssvp clusters=32 bounces=4 resolution=half", "ssvp vpls=1024 clusters=32 bounces=4 resolution=half"),
          ("clusters 32 to 64", "ssvp vpls=1024 clusters=32 bounces=4 resolution=half", "ssvp vpls=1024 clusters=64 bounces=4 resolution=half"),
          ("interleave 4 to 8", "ssvp vpls=1024 clusters=32 bounces=4 resolution=half", "ssvp vpls=1024 clusters=32 bounces=4 interleave=8 resolution=half"),
-         ("later bounces' light unshadowed", "ssvp clusters=16 bounces=4 resolution=half", "ssvp clusters=16 bounces=4 shadowed_bounces=1 resolution=half"),
+         ("only the first bounce shadowed", "ssvp clusters=16 bounces=4 resolution=quarter", "ssvp clusters=16 bounces=4 shadowed_bounces=1 resolution=quarter"),
+         ("third bounce shadowed too", "ssvp vpls=1024 clusters=64 bounces=4 resolution=quarter",
+          "ssvp vpls=1024 clusters=64 bounces=4 shadowed_bounces=3 resolution=quarter"),
+         ("maps of 128 to 256", "ssvp vpls=1024 clusters=64 bounces=4 resolution=half", "ssvp vpls=1024 clusters=64 map_size=256 bounces=4 resolution=half"),
+         ("quarter to half resolution", "ssvp vpls=512 clusters=16 bounces=4 resolution=quarter", "ssvp vpls=512 clusters=16 bounces=4 resolution=half"),
+         ("the same, more of all", "ssvp vpls=1024 clusters=64 bounces=4 resolution=quarter", "ssvp vpls=1024 clusters=64 bounces=4 resolution=half"),
          ("half to full resolution", "ssvp clusters=16 bounces=4 resolution=half", "ssvp clusters=16 bounces=4")]
 
 
@@ -126,7 +131,7 @@ def rival_lines(data, found):
     if not rivals:
         return []
     names, reached = data.names(), []
-    lines = ["**Against path tracing.** The [rival](techniques/rival.md) with two and with four bounces, 1 to 8 paths a pixel, filtered, traced at full, half and quarter "
+    lines = ["**Against path tracing.** The [rival](techniques/rival.md) with two bounces, all that it has, 1 to 8 paths a pixel, filtered, traced at full, half and quarter "
              "resolution: its line is the least error in no more time. Both it and the planner's choices are judged against all bounces. How many times longer the rival takes for the "
              "same error, at the budget where that is most (>: no point of the rival's line is as accurate; then its longest time); `full`: its line without coarse resolution.", "",
              "| scene | rival: errors of its line, paths a pixel | chosen | ms | relMSE | rival's ms (full) | times (full) |", "| --- | --- | --- | ---: | ---: | ---: | ---: |"]

@@ -124,7 +124,8 @@ void KMeans::iterate(Executor& executor, std::uint32_t stride, bool seeding, con
     const cl_int slots = cl_int(stride), clusters = cl_int(clusterCount_);
     const cl_float2 weights = this->weights();
     const Range chunks = gridOver(chunksOf(stride) * wideItems(clusterCount_, sums_));
-    for (std::uint32_t i = 0; i < options_.iterations; ++i) {
+    const std::uint32_t iterations = seeding && options_.firstIterations ? options_.firstIterations : options_.iterations;
+    for (std::uint32_t i = 0; i < iterations; ++i) {
         if (i || !seeding)
             executor.run("kmeans.assign", assign_, gridOver(wideItems(stride, assign_)), groupOf(assign_), sites_, slots,
                          means_, clusters, weights, assignment_);

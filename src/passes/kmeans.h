@@ -15,7 +15,10 @@ namespace lightwell {
 
 struct KMeansOptions {
     std::uint32_t clusters = 8;    // 1 to 64; 0: every VPL is a cluster of its own
-    std::uint32_t iterations = 3;  // a frame; more settle faster after a cut
+    std::uint32_t iterations = 3;  // a frame
+    // In a frame that begins anew; 0: as in any. More: the clusters of still light have settled in the frames after, and maps drawn from
+    // them stay. Fewer: they move for tens of frames, and as many maps are drawn again.
+    std::uint32_t firstIterations = 0;
     // Squared distance: positionWeight |V - C|^2 / D^2 + normalWeight (1 - n_i . n), D the diagonal of the box around the
     // VPLs; 0 to 1e6 each. Only their ratio decides. More on normals: clusters reach farther along their walls; on
     // positions: one cluster may hold both sides of a thin wall.

@@ -108,6 +108,17 @@ TEST_CASE("as the twin: k-means++, three iterations, warm starts", "[kmeans]") {
     twin.run(vpls, {}, 3);
     checkAgainst(frame, twin, vpls);
 
+    // A frame that begins anew may take more, those after it do not.
+    KMeansOptions settled = three;
+    settled.firstIterations = 9;
+    KMeans settling(rig.device(), settled);
+    KMeansTwin patient = twinOf(settled);
+    const Clustered begun = cluster(rig, settling, vpls);
+    patient.run(vpls, {}, 9);
+    checkAgainst(begun, patient, vpls);
+    patient.run(vpls, begun.clusters, 3);
+    checkAgainst(cluster(rig, settling, vpls), patient, vpls, begun.clusters);
+
     // The lists move on; each warm start is compared from the same means.
     Vpls moved = vpls;
     for (int step = 1; step <= 3; ++step) {
