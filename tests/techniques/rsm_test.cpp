@@ -1,5 +1,6 @@
 // Technique rsm through the C API: its limit, its convergence, what must not change it, and what a host
 // relies on (several views, sizes and lights; nothing built after lwPrewarm).
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
@@ -213,6 +214,26 @@ TEST_CASE("a quarter of the resolution gathers what a view of the pixels that ar
     std::vector<float> filtered(expected.size());
     REQUIRE(lwReadDebugView(technique, view, "filtered", filtered.data(), filtered.size()) == LW_SUCCESS);
     CHECK(filtered == expected);
+}
+
+TEST_CASE("pictures of a few pixels and of odd sizes: the same bits at any width", "[rsm]") {
+    const LitFloor floor(32, spotProfile);
+    TestDevice scalar(1), wide(16);
+    for (const auto& [width, height] : {std::pair{1u, 1u}, std::pair{2u, 3u}, std::pair{5u, 1u}, std::pair{17u, 6u}, std::pair{67u, 35u}}) {
+        WallAndCeiling scene(width, height);
+        for (std::uint32_t i = 0; i < width * height; i += 7) scene.normal.set(i % width, i / width, {});  // holes, and one surface at least
+        if (width == 1) scene.normal.set(0, 0, {0, -1, 0});
+        scene.position.at(width - 1, 0, 1) = std::nanf("");
+        for (int kind = 0; kind < 4; ++kind) {
+            LWRsmDesc desc = descOf(64, 4);
+            desc.resolution = kind == 1 ? LW_RESOLUTION_HALF : kind == 2 ? LW_RESOLUTION_QUARTER : LW_RESOLUTION_FULL;
+            desc.autoResolution = kind == 3 ? 0.2f : 0.0f;
+            CAPTURE(width, height, kind);
+            const auto light = render(scalar, desc, {floor.light}, scene, width, height);
+            CHECK(std::all_of(light.begin(), light.end(), [](float e) { return e >= 0.0f && e < 100.0f; }));
+            CHECK(render(wide, desc, {floor.light}, scene, width, height) == light);
+        }
+    }
 }
 
 TEST_CASE("same input, same bits: runs and widths", "[rsm]") {
