@@ -546,7 +546,7 @@ typedef struct LWSsvpDesc {
     float historyClamp;      /**< as LWRsmDesc's */
     uint32_t compensation;   /**< 0 .. 64: samples a pixel of the surfaces around it on the screen, which make up for near light
                                   that VPLs of some size lack; 0: none. Above 0 the G-buffer needs `directRadiance`, of the
-                                  lights that have RSMs, and `camera` */
+                                  lights that have RSMs, and `camera`. Not with LW_SAMPLING_VIEW */
     uint32_t voxels;         /**< as LWRsmDesc's */
     float autoResolution;    /**< as LWRsmDesc's; not with `compensation` */
 } LWSsvpDesc;

@@ -80,7 +80,7 @@ LW_FN real reflectance(real flux, real incident) {
 }
 
 // One work-item = LW_WIDTH texels of a row of one RSM; `texels`: LW_RSM_PLANES planes, `texelStride` apart; the texels'
-// surfels begin at `first`. Incident flux is E_perp A_p c_l, or I A_p c_l / d^2: see rsm_input_finish.
+// surfels begin at `first`. Incident flux is E_perp A_p c_l, or I A_p c_l / d^2: see rsm_input_unpack.
 __kernel void surfel_input_rsm(__global const float* texels, int texelStride, const LwRsmSpan span,
                                const lw_surfel_light light, __global float* surfels, int stride, int first) {
     const int x = (int)get_global_id(0) * LW_WIDTH, y = (int)get_global_id(1);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
 
 #include <glm/glm.hpp>
 
@@ -12,24 +11,12 @@
 #include "inputs/camera.h"
 #include "inputs/image_access.h"
 #include "inputs/input_light.h"
-#include "inputs/view.h"
+#include "inputs/source_view.h"
 
 namespace lightwell {
 namespace {
 
 constexpr char kProgram[] = "surfel_input/surfel_input";
-constexpr std::uint32_t kMaxSide = 16384;
-
-std::string nameOf(std::uint32_t i) { return "frame.sourceViews[" + std::to_string(i) + "].gbuffer"; }
-
-// A source view's images have one size, that of its normals.
-View viewOf(const LWGBuffer& gbuffer, const std::string& name) {
-    const LWImage& image = gbuffer.normal;
-    if (imageAbsent(image) || image.width == 0 || image.height == 0 || image.width > kMaxSide || image.height > kMaxSide)
-        fail(LW_ERROR_INVALID_ARGUMENT, name, ".normal: expected an image of 1 .. ", kMaxSide, " pixels a side, got ",
-             image.width, " x ", image.height);
-    return View(image.width, image.height);
-}
 
 std::uint32_t needsOf(const LWGBuffer& gbuffer) { return imageAbsent(gbuffer.albedo) ? 0u : std::uint32_t(kNeedsAlbedo); }
 
@@ -54,7 +41,7 @@ lw_surfel_light lightOf(const LWLight& light) {
 void ScreenSurfels::check(Device& device, const LWFrame& frame) {
     for (std::uint32_t i = 0; i < frame.sourceViewCount; ++i) {
         const LWGBuffer& gbuffer = *frame.sourceViews[i].gbuffer;
-        GBufferInput::check(device, viewOf(gbuffer, nameOf(i)), gbuffer, needsOf(gbuffer), nameOf(i).c_str());
+        GBufferInput::check(device, sourceViewOf(frame, i), gbuffer, needsOf(gbuffer), sourceViewName(i).c_str());
     }
 }
 
@@ -82,7 +69,7 @@ void ScreenSurfels::import(Executor& executor, const LWFrame& frame, const RsmIn
         std::uint32_t first = rsms.texels.width;
         for (std::uint32_t i = 0; i < frame.sourceViewCount; ++i) {
             const LWGBuffer& gbuffer = *frame.sourceViews[i].gbuffer;
-            views_[i].import(executor, viewOf(gbuffer, nameOf(i)), gbuffer, needsOf(gbuffer), nameOf(i).c_str());
+            views_[i].import(executor, sourceViewOf(frame, i), gbuffer, needsOf(gbuffer), sourceViewName(i).c_str());
             drawPixels(executor, views_[i], needsOf(gbuffer) != 0, first);
             first += paddedWidth(gbuffer.normal.width) * gbuffer.normal.height;
         }

@@ -23,8 +23,8 @@ std::uint64_t SecondBounce::estimateBytes(const SecondBounceOptions& options, st
 void SecondBounce::record(Executor& executor, const Buffer& clusters, std::uint32_t clusterCount, const Buffer& frames,
                           const Buffer& records, const Buffer& albedo, std::uint32_t mapSize) {
     const std::uint32_t lanes = draw_.width();
-    executor.run("second_bounce.draw", draw_, gridOver((count_ + lanes - 1) / lanes), {lanes == 1 ? 64u : 4u, 1}, clusters, frames, records, albedo, cl_int(mapSize),
-                 cl_int(clusterCount), cl_int(options_.perCluster), cl_int(options_.directions),
+    executor.run("second_bounce.draw", draw_, gridOver((count_ + lanes - 1) / lanes), {lanes == 1 ? 64u : 4u, 1}, clusters, frames,
+                 records, albedo, cl_int(mapSize), cl_int(clusterCount), cl_int(options_.perCluster), cl_int(options_.directions),
                  sampleRotation(options_.seed), vpls_);
 }
 

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "compute/device.h"
 #include "compute/error.h"
 #include "inputs/image_access.h"
-#include "inputs/view.h"
+#include "inputs/source_view.h"
 #include "passes/vpl_list.h"
 #include "shared/vpl_types.h"
 #include "shared/vpl_view_types.h"
@@ -17,18 +16,7 @@ namespace {
 
 constexpr char kProgram[] = "vpl_view_sampling/vpl_view_sampling";
 constexpr Range kGroup{64, 1};
-constexpr std::uint32_t kMaxSide = 16384;
 constexpr std::size_t kPlanes = 6;
-
-std::string nameOf(std::uint32_t i) { return "frame.sourceViews[" + std::to_string(i) + "].gbuffer"; }
-
-View viewOf(const LWGBuffer& gbuffer, const std::string& name) {
-    const LWImage& image = gbuffer.normal;
-    if (imageAbsent(image) || image.width == 0 || image.height == 0 || image.width > kMaxSide || image.height > kMaxSide)
-        fail(LW_ERROR_INVALID_ARGUMENT, name, ".normal: expected an image of 1 .. ", kMaxSide, " pixels a side, got ",
-             image.width, " x ", image.height);
-    return View(image.width, image.height);
-}
 
 }  // namespace
 
@@ -48,7 +36,7 @@ void VplViewSampling::check(Device& device, const LWFrame& frame) {
              "parameter sampling=view asks for them, got none");
     for (std::uint32_t i = 0; i < frame.sourceViewCount; ++i) {
         const LWGBuffer& gbuffer = *frame.sourceViews[i].gbuffer;
-        GBufferInput::check(device, viewOf(gbuffer, nameOf(i)), gbuffer, 0, nameOf(i).c_str());
+        GBufferInput::check(device, sourceViewOf(frame, i), gbuffer, 0, sourceViewName(i).c_str());
     }
 }
 
@@ -62,7 +50,7 @@ void VplViewSampling::import(Executor& executor, const LWFrame& frame) {
     std::uint32_t first = 0;
     for (std::uint32_t i = 0; i < frame.sourceViewCount; ++i) {
         const LWGBuffer& gbuffer = *frame.sourceViews[i].gbuffer;
-        views_[i].import(executor, viewOf(gbuffer, nameOf(i)), gbuffer, 0, nameOf(i).c_str());
+        views_[i].import(executor, sourceViewOf(frame, i), gbuffer, 0, sourceViewName(i).c_str());
         const Planes &position = views_[i].position, &normal = views_[i].normal;
         std::uint32_t columns = std::uint32_t(std::sqrt(double(share) * normal.width / normal.height) + 0.5);
         columns = std::clamp(columns, 1u, share);

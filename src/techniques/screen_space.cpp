@@ -1,13 +1,12 @@
 // Frame and view parts, report and registration; the table of parameters is screen_space_parameters.cpp's.
 #include "techniques/screen_space.h"
 
-#include <string>
 #include <utility>
 
 #include "compute/device.h"
 #include "compute/error.h"
-#include "inputs/image_access.h"
 #include "inputs/output_target.h"
+#include "inputs/source_view.h"
 #include "techniques/prewarm.h"
 #include "techniques/screen_space_parameters.h"
 #include "techniques/screen_picture.h"
@@ -15,8 +14,6 @@
 
 namespace lightwell {
 namespace {
-
-constexpr std::uint32_t kMaxSide = 16384;
 
 ScreenSpaceOptions optionsOf(const LWScreenSpaceDesc& desc) {
     ScreenSpaceOptions options;
@@ -31,17 +28,6 @@ ScreenSpaceOptions optionsOf(const LWScreenSpaceDesc& desc) {
     options.autoError = desc.autoError;
     options.history = {desc.history, desc.historyClamp, 1};
     return options;
-}
-
-std::string sourceName(std::uint32_t i) { return "frame.sourceViews[" + std::to_string(i) + "].gbuffer"; }
-
-// A source view's images have one size, that of its normals.
-View sourceView(const LWGBuffer& gbuffer, const std::string& name) {
-    const LWImage& image = gbuffer.normal;
-    if (imageAbsent(image) || image.width == 0 || image.height == 0 || image.width > kMaxSide || image.height > kMaxSide)
-        fail(LW_ERROR_INVALID_ARGUMENT, name, ".normal: expected an image of 1 .. ", kMaxSide, " pixels a side, got ",
-             image.width, " x ", image.height);
-    return View(image.width, image.height);
 }
 
 // What the host gave and this technique does not read.
@@ -68,7 +54,7 @@ public:
         const std::uint32_t count = desc_.cameras ? frame.sourceViewCount : 0;
         for (std::uint32_t i = 0; i < count; ++i) {
             const LWGBuffer& gbuffer = *frame.sourceViews[i].gbuffer;
-            ScreenPicture::check(device_, options_, sourceView(gbuffer, sourceName(i)), gbuffer, sourceName(i));
+            ScreenPicture::check(device_, options_, sourceViewOf(frame, i), gbuffer, sourceViewName(i));
         }
         unused_ = unusedInputs(frame, desc_.cameras != 0);
         const bool lost = continuity_.beginLost(), forget = frame.reset != 0 || lost;
@@ -83,7 +69,7 @@ public:
         for (std::uint32_t i = 0; i < count; ++i) {
             const LWGBuffer& gbuffer = *frame.sourceViews[i].gbuffer;
             sources_[i].screen->startFrame(forget);
-            sources_[i].screen->light(executor, passes_, sourceView(gbuffer, sourceName(i)), gbuffer, sourceName(i), turn_);
+            sources_[i].screen->light(executor, passes_, sourceViewOf(frame, i), gbuffer, sourceViewName(i), turn_);
         }
     }
 
@@ -134,7 +120,7 @@ private:
     void takeSources(const LWFrame& frame, std::uint32_t count) {
         std::vector<Source> next(count);
         for (std::uint32_t i = 0; i < count; ++i) {
-            const View size = sourceView(*frame.sourceViews[i].gbuffer, sourceName(i));
+            const View size = sourceViewOf(frame, i);
             next[i].view = frame.sourceViews[i].view;
             for (std::size_t j = 0; j < sources_.size() && !next[i].screen; ++j) {
                 Source& before = sources_[j];
@@ -145,7 +131,7 @@ private:
         }
         sources_.clear();  // what is not taken gives its memory back first
         for (std::uint32_t i = 0; i < count; ++i) {
-            const View size = sourceView(*frame.sourceViews[i].gbuffer, sourceName(i));
+            const View size = sourceViewOf(frame, i);
             if (!next[i].screen) next[i].screen = std::make_unique<ScreenPicture>(device_, options_, size.width, size.height);
         }
         sources_ = std::move(next);

@@ -161,3 +161,97 @@ TEST_CASE("beside a wide cluster a VPL is as wide as the cluster makes the light
               Approx(double(points[i].positionArea.s[3]) * std::max(1.0, kArea / (4.0 * M_PI * r2))).epsilon(1e-3));
     }
 }
+
+namespace {
+
+struct Bounds {
+    double least = 0.0, most = 0.0;
+};
+
+// A sample takes the surface that the centre of its texel sees; in a map of 64 it lies within 3.3 degrees of that.
+constexpr double kTexel = 0.06;
+// Where a look-up falls on the border of two texels, or a surface is as far off as just counts as the texel's.
+constexpr double kBorder = 1e-3, kSlack = 1.05;
+
+// Whether map `m` shows the surface at `way` from its origin: by every texel that rounding may choose, and by any.
+std::pair<bool, bool> sees(const DrawnMaps& maps, std::size_t m, const reference::ParaboloidFrame& frame, Vec way) {
+    const double distance = reference::length(way);
+    const Vec d = frame.local(way) * (1.0 / distance);
+    std::pair<bool, bool> seen{true, false};
+    for (const double i : {-kBorder, kBorder})
+        for (const double j : {-kBorder, kBorder}) {
+            const auto texel = [&](double along, double by) {
+                const double at = (along / (1.0 + d.z) / reference::kRim + 1.0) * 0.5 * maps.size + by;
+                return std::uint32_t(std::clamp(at, 0.0, maps.size - 1.0));
+            };
+            const double limit = kSlack * double(maps.distance(maps.at(m, texel(d.x, i), texel(d.y, j))));
+            seen.first = seen.first && distance <= limit * (1.0 - kBorder);
+            seen.second = seen.second || distance <= limit * (1.0 + kBorder);
+        }
+    return seen;
+}
+
+// The radiosity, its channels summed up, that all clusters cause at a VPL drawn from `own`.
+Bounds radiosityAt(const lw_vpl& vpl, std::size_t own, const std::vector<lw_cluster>& clusters, const DrawnMaps& maps) {
+    const Vec position = reference::vecOf(vpl.positionArea), normal = reference::vecOf(vpl.normal);
+    Bounds sum;
+    for (std::size_t m = 0; m < clusters.size(); ++m) {
+        if (!(clusters[m].position.s[3] > 0.0f)) continue;
+        const reference::ParaboloidFrame frame(maps.frames[m]);
+        const Vec way = position - frame.origin, flux = reference::vecOf(clusters[m].flux);
+        const double distance = reference::length(way), cosine = dot(frame.z, way) / distance, facing = -dot(normal, way) / distance;
+        const double straight = kAlbedo * (flux.x + flux.y + flux.z) / (M_PI * distance * distance);
+        if (m == own) {
+            sum.least += straight * std::max(facing, 0.05) * std::max(cosine - kTexel, 0.0);
+            sum.most += straight * std::max(facing, 0.05) * (cosine + kTexel);
+        } else if (cosine > 0.0 && facing > 0.0) {
+            const auto [surely, perhaps] = sees(maps, m, frame, way);
+            sum.least += surely ? straight * cosine * facing : 0.0;
+            sum.most += perhaps ? straight * cosine * facing : 0.0;
+        }
+    }
+    return sum;
+}
+
+// 28 VPLs of four clusters, one of them empty: they fill no registers.
+const std::vector<lw_cluster>& fewClusters() {
+    static const std::vector<lw_cluster> clusters = {cluster({0.6, 0.0, 1.0}, {0, 1, 0}, 4.0), cluster({2.0, 0.7, 2.2}, {-1, 0, 0}, 9.0),
+                                                     lw_cluster{}, cluster({1.1, 1.5, 0.4}, {0, -1, 0}, 3.0)};
+    return clusters;
+}
+
+SecondBounceOptions fewEach() {
+    SecondBounceOptions options;
+    options.perCluster = 7;
+    return options;
+}
+
+}  // namespace
+
+TEST_CASE("a VPL stands for its flux over the radiosity of all clusters whose maps show its place", "[second_bounce]") {
+    ParaboloidRig rig(16, 64);
+    rig.draw(furnace(), fewClusters());
+    const DrawnMaps maps = rig.maps();
+    const std::vector<lw_vpl> vpls = drawn(rig, fewClusters(), fewEach());
+    REQUIRE(vpls.size() == 28);
+    for (std::size_t i = 0; i < vpls.size(); ++i) {
+        CAPTURE(i);
+        const double flux = fluxOf(vpls, i, 1, 0) + fluxOf(vpls, i, 1, 1) + fluxOf(vpls, i, 1, 2), area = double(vpls[i].positionArea.s[3]);
+        REQUIRE((flux > 0.0) == (i / 7 != 2));
+        if (flux == 0.0) continue;
+        const Bounds radiosity = radiosityAt(vpls[i], i / 7, fewClusters(), maps);
+        CHECK(area >= flux / radiosity.most * (1.0 - kAlbedoRounding));
+        CHECK(area * radiosity.least <= flux * (1.0 + kAlbedoRounding));
+    }
+}
+
+TEST_CASE("widths draw the same VPLs, bit for bit", "[second_bounce][large]") {
+    std::vector<lw_vpl> first;
+    for (const std::uint32_t width : {1u, 16u}) {
+        ParaboloidRig rig(width, 64);
+        rig.draw(furnace(), fewClusters());
+        const std::vector<lw_vpl> vpls = drawn(rig, fewClusters(), fewEach());
+        if (first.empty()) first = vpls;
+        CHECK(std::memcmp(first.data(), vpls.data(), vpls.size() * sizeof(lw_vpl)) == 0);
+    }
+}

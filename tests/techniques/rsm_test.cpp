@@ -1,5 +1,6 @@
 // Technique rsm through the C API: its limit, its convergence, what must not change it, and what a host
 // relies on (several views, sizes and lights; nothing built after lwPrewarm).
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
@@ -8,6 +9,7 @@
 #include "support/lit_room.h"
 #include "support/packed_light.h"
 #include "support/scoped_api.h"
+#include "techniques/rsm_rig.h"
 
 using namespace lightwell::test;
 using lightwell::reference::Vec;
@@ -15,30 +17,6 @@ using lightwell::reference::Vec;
 namespace {
 
 double uniformProfile(double, double) { return 1.0; }
-// A spot's pool of light with a hard rim on a floor of light and dark tiles. Off the middle of the map: a
-// symmetric one puts sample points exactly on the borders between texels, where rounding decides.
-double spotProfile(double x, double z) {
-    const double dx = x - 0.037, dz = z - 0.521, r2 = dx * dx + dz * dz;
-    const bool isDark = (int(std::floor(x * 9.1)) + int(std::floor(z * 9.1))) % 2 != 0;
-    return r2 > 0.06 ? 0.0 : (isDark ? 0.15 : 0.8) * (1.0 - 6.0 * r2);
-}
-
-LWRsmDesc descOf(std::uint32_t vpls, std::uint32_t interleave) {
-    LWRsmDesc desc;
-    lwDefaultRsm(&desc);
-    desc.vpls = vpls;
-    desc.interleave = interleave;
-    return desc;
-}
-
-// One frame on a fresh technique.
-std::vector<float> render(LWDevice device, const LWRsmDesc& desc, const std::vector<LWLight>& lights,
-                          const WallAndCeiling& scene, std::uint32_t width, std::uint32_t height) {
-    TestTechnique technique(device, desc);
-    TestView view(device, width, height);
-    technique.update(lights);
-    return technique.render(view, scene.gbuffer);
-}
 
 constexpr std::uint32_t kWidth = 96, kHeight = 64;
 
@@ -46,14 +24,6 @@ constexpr std::uint32_t kWidth = 96, kHeight = 64;
 constexpr double kPolygonTolerance = 5e-4;
 // The issue's bound on the log-log slope of the error; independent samples have -0.5.
 constexpr double kSlope = -0.4;
-// Interleaving deals the same 256 VPLs out: means differ by what the pixels' places in the pattern have to do
-// with the light, filtered or not, and by half-resolution samples that stand for their neighbours.
-constexpr double kMeanFiltered = 0.01, kMeanUnfiltered = 0.02, kMeanHalf = 0.01;
-// Rows beside the edge between wall and ceiling find only half of the subsets in their window, and a wider
-// window meets more of them: times the interleaving, beside what a window's blur takes.
-constexpr double kFilterBase = 0.02, kFilterPerSide = 0.01;
-// A sample two pixels away stands for a pixel; steepest where the wall meets the floor.
-constexpr double kHalfError = 0.05;
 // Different sums of the same terms in float.
 constexpr double kRounding = 3e-6;
 // 1,024 VPLs from both maps against every texel of both, in the mean over the view.
@@ -146,75 +116,6 @@ TEST_CASE("VPLs chosen for the view light it as all texels do, in the mean of se
     CHECK(std::abs(mean / limit - 1.0) < kMeanOf1024);
 }
 
-TEST_CASE("interleaving, filter and half resolution keep the light", "[rsm]") {
-    TestDevice device(GENERATE(1u, 16u));
-    LitFloor floor(64, spotProfile);
-    WallAndCeiling scene(kWidth, kHeight);
-    const auto full = render(device, descOf(256, 1), {floor.light}, scene, kWidth, kHeight);
-    const double mean = meanOf(full);
-    for (const std::uint32_t n : {2u, 4u, 8u}) {
-        CAPTURE(n);
-        LWRsmDesc desc = descOf(256, n);
-        const auto filtered = render(device, desc, {floor.light}, scene, kWidth, kHeight);
-        CHECK(std::abs(meanOf(filtered) / mean - 1.0) < kMeanFiltered);
-        CHECK(difference(filtered, full) < kFilterBase + kFilterPerSide * n);
-        desc.filter = 0;
-        const double raw = meanOf(render(device, desc, {floor.light}, scene, kWidth, kHeight));
-        CHECK(std::abs(raw / mean - 1.0) < kMeanUnfiltered);
-    }
-    LWRsmDesc reduced = descOf(256, 1);
-    for (const LWResolution resolution : {LW_RESOLUTION_HALF, LW_RESOLUTION_QUARTER}) {
-        const int times = int(resolution);
-        CAPTURE(times);
-        reduced.resolution = resolution;
-        const auto fewer = render(device, reduced, {floor.light}, scene, kWidth, kHeight);
-        CHECK(std::abs(meanOf(fewer) / mean - 1.0) < times * kMeanHalf);
-        CHECK(difference(fewer, full) < times * kHalfError);
-    }
-}
-
-namespace {
-
-// The surface that `times` halvings leave of the block at (x, y): of each two by two the first that there is.
-bool findSurface(const WallAndCeiling& scene, int times, std::uint32_t x, std::uint32_t y, Vec& position, Vec& normal) {
-    if (times == 0) {
-        position = scene.position.get(x, y);
-        normal = scene.normal.get(x, y);
-        return dot(normal, normal) > 0.0;
-    }
-    for (const auto& at : {std::pair{0, 0}, std::pair{1, 1}, std::pair{1, 0}, std::pair{0, 1}})
-        if (findSurface(scene, times - 1, 2 * x + std::uint32_t(at.first), 2 * y + std::uint32_t(at.second), position, normal)) return true;
-    return false;
-}
-
-}  // namespace
-
-TEST_CASE("a quarter of the resolution gathers what a view of the pixels that are left would", "[rsm]") {
-    TestDevice device(GENERATE(1u, 16u));
-    LitFloor floor(64, spotProfile);
-    const WallAndCeiling scene(kWidth, kHeight);
-    const int times = GENERATE(1, 2);
-    const std::uint32_t width = kWidth >> times, height = kHeight >> times;
-    WallAndCeiling left(width, height);
-    for (std::uint32_t y = 0; y < height; ++y)
-        for (std::uint32_t x = 0; x < width; ++x) {
-            Vec position{}, normal{};
-            if (!findSurface(scene, times, x, y, position, normal)) position = normal = {};
-            left.position.set(x, y, position);
-            left.normal.set(x, y, normal);
-        }
-    LWRsmDesc desc = descOf(256, 4);
-    const auto expected = render(device, desc, {floor.light}, left, width, height);
-    desc.resolution = times == 1 ? LW_RESOLUTION_HALF : LW_RESOLUTION_QUARTER;
-    TestTechnique technique(device, desc);
-    TestView view(device, kWidth, kHeight);
-    technique.update({floor.light});
-    technique.render(view, scene.gbuffer);
-    std::vector<float> filtered(expected.size());
-    REQUIRE(lwReadDebugView(technique, view, "filtered", filtered.data(), filtered.size()) == LW_SUCCESS);
-    CHECK(filtered == expected);
-}
-
 TEST_CASE("same input, same bits: runs and widths", "[rsm]") {
     LitFloor floor(64, spotProfile);
     WallAndCeiling scene(kWidth, kHeight);
@@ -286,6 +187,7 @@ TEST_CASE("after lwPrewarm 500 frames with resizes build nothing", "[rsm]") {
     LitFloor floor(32, spotProfile);
     LWRsmDesc desc = descOf(64, 4);
     desc.resolution = GENERATE(LW_RESOLUTION_FULL, LW_RESOLUTION_QUARTER);
+    if (desc.resolution == LW_RESOLUTION_QUARTER) desc.sampling = LW_SAMPLING_VIEW;
     TestTechnique technique(device, desc);
     TestView view(device, 64, 64);
     REQUIRE(lwPrewarm(technique, view) == LW_SUCCESS);
@@ -294,8 +196,14 @@ TEST_CASE("after lwPrewarm 500 frames with resizes build nothing", "[rsm]") {
     for (int frame = 0; frame < 500; ++frame) {
         const bool isSmall = frame % 5 == 4;
         view.resize(isSmall ? 40 : 64, isSmall ? 24 : 64);
-        technique.update({floor.light});
-        technique.render(view, isSmall ? small.gbuffer : scene.gbuffer);
+        const LWSourceView source{view, isSmall ? &small.gbuffer : &scene.gbuffer};
+        LWFrame seen{};
+        seen.structSize = sizeof seen;
+        seen.lightCount = seen.sourceViewCount = 1;
+        seen.lights = &floor.light;
+        seen.sourceViews = &source;
+        technique.update(seen);
+        technique.render(view, *source.gbuffer);
     }
     const LWDeviceInfo after = device.info();
     CHECK(after.programsBuilt == before.programsBuilt);
