@@ -90,7 +90,7 @@ def fit_block(data, kept, ms, log, found, strength, sigma):
     lines = [f"Measured {raw['date']} at {raw['size'][0]}x{raw['size'][1]} on {raw['device']}, {raw['threads']} threads of one shared machine: time is processor time of "
              f"all threads over their number, times {raw['clock_over_processor']:.3f}, what the clock showed beyond it where nothing else ran. "
              f"{len(data.candidates)} configurations in {len(data.views)} views of {len(set(v['scene'] for v in data.views))} scenes; {len(kept)} of them, within 5 % of a front "
-             "somewhere, are the table. Errors are against all bounces, at one pixel of each "
+             "in two scenes or more, are the table. Errors are against all bounces, at one pixel of each "
              f"{raw['judged_block']} x {raw['judged_block']}, the geometric mean over {raw['seeds']} sample sets where VPLs are drawn; the truth's own noise ({min(v['noise'] for v in data.views):.1g} to {max(v['noise'] for v in data.views):.1g}) is taken off.", "",
              "Everything below is *leave one scene out*: each view is predicted by models that were fitted without its scene (the two Cornell "
              "boxes count as one), with the strengths of shrinking chosen within the scenes that are left. The fit to all: "
