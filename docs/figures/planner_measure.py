@@ -1,7 +1,7 @@
 """Measures what docs/figures/planner.py fits, with the program `lightwell`, into planner_data.json.
 
 Below `work`: chart*/ (errors and times of all views; the point with more frames counts, of equals the quicker), seeds*/ (errors of further
-sample sets), sizes_*/ (times at other sizes), rival/ (path tracing), probes.json, rsm_sizes.json, launches.json. Every command goes on where it was stopped.
+sample sets), sizes_*/ (times at other sizes), rival/ (path tracing), probes.json, rsm_sizes.json, launches.json. Every command goes on where it was stopped. Over 300 lines: a fifth is the list of candidates.
 """
 import json
 import pathlib
@@ -117,7 +117,7 @@ def measure(program, work):
         chart(f"seeds{seed}", [f"{variant(c)},seed={seed}" for c in drawn], SIZE, 1, "--scenes", *SCENES, *truth)
     for size in SIZES:
         chart(f"sizes_{size[1]}", all_of, size, 11, "--scenes", *SIZED, "--cameras", "first", "--noise", "1e3")
-    chart("rival", RIVALS, SIZE, 1, "--scenes", *SHARED, *truth)
+    chart("rival", RIVALS, SIZE, 1, "--scenes", *SHARED, "--cameras", "first", *truth)
     views = json.loads((work / "chart/results.json").read_text())["views"]
     (work / "probes.json").write_text(json.dumps([probe(lightwell, v) for v in views]))
     (work / "rsm_sizes.json").write_text(json.dumps([

@@ -1,5 +1,5 @@
 // Technique rsm through the C API: its limit, its convergence, what must not change it, and what a host
-// relies on (several views, sizes and lights; nothing built after lwPrewarm).
+// relies on (several views, sizes and lights; nothing built after lwPrewarm). Some lines over 300: one list of what every technique promises.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>

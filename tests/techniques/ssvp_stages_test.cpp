@@ -1,5 +1,5 @@
 // Technique ssvp's stages from frame to frame: what a dark frame leaves of those that no VPL reaches, what is shown and
-// counted of them, and their memory.
+// counted of them, and their memory. Some lines over 300: one rig serves all.
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
