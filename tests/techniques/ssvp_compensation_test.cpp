@@ -88,10 +88,20 @@ TEST_CASE("the light beside a lit floor's edge is nearer to the truth with compe
     const bool half = GENERATE(false, true);
     plain.resolution = compensated.resolution = half ? LW_RESOLUTION_HALF : LW_RESOLUTION_FULL;
     plain.sampling = compensated.sampling = GENERATE(LW_SAMPLING_FLUX, LW_SAMPLING_UNIFORM);
-    const auto without = render(device, plain, floor, corner), with = render(device, compensated, floor, corner);
-    CAPTURE(errorBesideEdge(without, corner), errorBesideEdge(with, corner));
-    // A VPL's radius is five pixels; at half resolution two and a half, and the row beside the edge counts twice.
-    CHECK(errorBesideEdge(with, corner) < (half ? 0.9 : 0.6) * errorBesideEdge(without, corner));
+    // A VPL's radius is five pixels; at half resolution two and a half, and the row beside the edge counts twice: there which cluster a pixel
+    // gets counts for more than the bounds, in a single set of VPLs.
+    const std::uint32_t sets = half ? 8 : 1;
+    double before = 0.0, after = 0.0;
+    std::vector<float> without, with;
+    for (std::uint32_t seed = 0; seed < sets; ++seed) {
+        plain.seed = compensated.seed = seed;
+        without = render(device, plain, floor, corner);
+        with = render(device, compensated, floor, corner);
+        before += errorBesideEdge(without, corner) / sets;
+        after += errorBesideEdge(with, corner) / sets;
+    }
+    CAPTURE(half, before, after);
+    CHECK(after < (half ? 0.8 : 0.6) * before);
     // It takes nothing away, and floor does not light floor.
     for (std::uint32_t y = 0; y < kHeight; ++y)
         for (std::uint32_t x = 0; x < kWidth; ++x) {
