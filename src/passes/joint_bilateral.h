@@ -12,7 +12,7 @@ public:
     // channels: of what recordUpsample up-samples, 1 or 3; 5 for recordUpsampleAll. marks: 3, for recordUpsampleMarked.
     explicit JointBilateral(Device& device, std::uint32_t channels = 3, bool marks = false);
 
-    static std::uint32_t halved(std::uint32_t size) { return (size + 1) / 2; }
+    static std::uint32_t halved(std::uint32_t size, std::uint32_t times = 1) { return times ? halved((size + 1) / 2, times - 1) : size; }
 
     // Pass "joint_bilateral.downsample": one surface of each 2x2 block of pixels.
     void recordDownsample(Executor& executor, const Planes& position, const Planes& normal,

@@ -27,11 +27,6 @@ bool isInterleaved(const LWConeTracingDesc& desc) {
 }
 bool dimsLight(const LWConeTracingDesc& desc) { return desc.occlusion == LW_CONE_OCCLUSION_ALL; }
 
-std::uint32_t halved(std::uint32_t side, std::uint32_t times) {
-    for (; times; --times) side = JointBilateral::halved(side);
-    return side;
-}
-
 std::uint64_t planeBytes(std::uint32_t width, std::uint32_t height) { return sizeof(float) * std::uint64_t(paddedWidth(width)) * height; }
 
 }  // namespace
@@ -88,11 +83,11 @@ ConeTracingView::ConeTracingView(Device& device, const LWConeTracingDesc& desc)
 // Memory of what this frame needs, for the view's largest size.
 void ConeTracingView::reserve(const View& view, bool wantsOpen) {
     if (interleaved_ && !gathered_)
-        gathered_ = PlanarImage(device_, halved(view.maxWidth, halvings_), halved(view.maxHeight, halvings_), ConeGather::kGathered,
+        gathered_ = PlanarImage(device_, JointBilateral::halved(view.maxWidth, halvings_), JointBilateral::halved(view.maxHeight, halvings_), ConeGather::kGathered,
                                 "shares of pixels' cones");
     if (!halvings_ && wantsOpen && !ownOpen_) ownOpen_ = PlanarImage(device_, view.maxWidth, view.maxHeight, 1, "ambient occlusion");
     for (std::uint32_t l = std::uint32_t(levels_.size()); l < halvings_; ++l) {
-        const std::uint32_t w = halved(view.maxWidth, l + 1), h = halved(view.maxHeight, l + 1);
+        const std::uint32_t w = JointBilateral::halved(view.maxWidth, l + 1), h = JointBilateral::halved(view.maxHeight, l + 1);
         levels_.push_back({PlanarImage(device_, w, h, 3, "positions of fewer pixels"), PlanarImage(device_, w, h, 3, "normals of fewer pixels"),
                            PlanarImage(device_, w, h, kLightPlanes, "light of fewer pixels")});
     }
@@ -142,7 +137,7 @@ void ConeTracingView::traceReduced(Executor& executor, const View& view, ConeTra
                                    const Light& light) {
     std::vector<Planes> positions{gbuffer_.position}, normals{gbuffer_.normal}, lights{Planes{}};
     for (std::uint32_t l = 0; l < halvings_; ++l) {
-        const std::uint32_t w = halved(view.width, l + 1), h = halved(view.height, l + 1);
+        const std::uint32_t w = JointBilateral::halved(view.width, l + 1), h = JointBilateral::halved(view.height, l + 1);
         positions.push_back(levels_[l].position.planes(w, h));
         normals.push_back(levels_[l].normal.planes(w, h));
         lights.push_back(levels_[l].light.planes(w, h));
@@ -203,10 +198,10 @@ std::uint64_t ConeTracingView::estimateBytes(const LWConeTracingDesc& desc, cons
     std::uint64_t total = GBufferInput::estimateBytes(view, 0, uploads) + OutputTarget::estimateBytes(view, 3, uploads) +
                           2 * OutputTarget::estimateBytes(view, 1, uploads) + kCountBytes + kUpsampleCountBytes +
                           ConeTracingRays::estimateBytes(view, uploads);
-    if (isInterleaved(desc)) total += ConeGather::kGathered * planeBytes(halved(view.maxWidth, halvingsOf(desc)), halved(view.maxHeight, halvingsOf(desc)));
+    if (isInterleaved(desc)) total += ConeGather::kGathered * planeBytes(JointBilateral::halved(view.maxWidth, halvingsOf(desc)), JointBilateral::halved(view.maxHeight, halvingsOf(desc)));
     if (dimsLight(desc) && !halvingsOf(desc)) total += planeBytes(view.maxWidth, view.maxHeight);
     for (std::uint32_t l = 1; l <= halvingsOf(desc); ++l)
-        total += (3 + 3 + kLightPlanes) * planeBytes(halved(view.maxWidth, l), halved(view.maxHeight, l));
+        total += (3 + 3 + kLightPlanes) * planeBytes(JointBilateral::halved(view.maxWidth, l), JointBilateral::halved(view.maxHeight, l));
     return total;
 }
 

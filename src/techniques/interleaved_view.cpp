@@ -43,7 +43,7 @@ InterleavedView::InterleavedView(Device& device, const InterleavedOptions& optio
     if (options.halvings || options.filters() || options.keeps()) gathered_ = PlanarImage(device, width, height, 3, "gathered irradiance");
     if (options.halvings && options.filters()) filtered_ = PlanarImage(device, width, height, 3, "filtered irradiance");
     for (std::uint32_t l = 1; l <= options.halvings; ++l) {
-        const std::uint32_t w = options.halved(view.maxWidth, l), h = options.halved(view.maxHeight, l);
+        const std::uint32_t w = JointBilateral::halved(view.maxWidth, l), h = JointBilateral::halved(view.maxHeight, l);
         Level& level = levels_.emplace_back();
         level.position = PlanarImage(device, w, h, 3, "positions of fewer pixels");
         level.normal = PlanarImage(device, w, h, 3, "normals of fewer pixels");
@@ -219,7 +219,7 @@ std::uint64_t InterleavedView::estimateBytes(const InterleavedOptions& options, 
     std::uint64_t levels = 0;
     for (std::uint32_t l = 1; l <= options.halvings; ++l)
         levels += ((options.compensated ? 3u : 2u) + (l < options.halvings ? 1u : 0u)) * 3 * sizeof(float) *
-                  std::uint64_t(paddedWidth(options.halved(view.maxWidth, l))) * options.halved(view.maxHeight, l);
+                  std::uint64_t(paddedWidth(JointBilateral::halved(view.maxWidth, l))) * JointBilateral::halved(view.maxHeight, l);
     const std::uint64_t history =
         !keeps ? 0
                : ViewHistory::estimateBytes(options.history, view.maxWidth, view.maxHeight) +

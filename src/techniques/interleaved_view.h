@@ -30,10 +30,7 @@ struct InterleavedOptions {
 
     bool keeps() const { return history.frames > 0; }
     bool filters() const { return filter && interleave > 1; }
-    std::uint32_t halved(std::uint32_t along, std::uint32_t times) const {
-        return times ? halved(JointBilateral::halved(along), times - 1) : along;
-    }
-    std::uint32_t gathered(std::uint32_t along) const { return halved(along, halvings); }
+    std::uint32_t gathered(std::uint32_t along) const { return JointBilateral::halved(along, halvings); }
 };
 
 class InterleavedView {
