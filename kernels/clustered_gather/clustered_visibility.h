@@ -3,7 +3,7 @@
 #define LW_CLUSTERED_VISIBILITY_H
 
 #ifndef LW_VISIBILITY
-#define LW_VISIBILITY 1  // 0: none, 1: hard, 2: soft (percentage-closer), 3: through voxels
+#define LW_VISIBILITY 1  // 0: none, 1: hard, 2: soft (percentage-closer), 3: through voxels, 4: strict
 #endif
 #include "shared/paraboloid.h"
 #include "shared/surface.h"
@@ -43,6 +43,8 @@ LW_FN real cluster_visibility(lw_maps maps, int cluster, const lw_surface s) {
     const lw_map_receiver receiver = paraboloid_receiver(maps.frames[list][map], size, s.px, s.py, s.pz, s.nx, s.ny, s.nz);
 #if LW_VISIBILITY == 1
     return ones_(paraboloid_sees(maps.records[list], first, size, receiver));
+#elif LW_VISIBILITY == 4
+    return ones_(paraboloid_sees_strictly(maps.records[list], first, size, receiver));
 #else
     return paraboloid_visibility(maps.records[list], first, size, receiver);
 #endif

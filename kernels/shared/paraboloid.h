@@ -18,6 +18,12 @@
 // Cosine between the receiver's normal and the stored one above which it can be the same surface; lax, as
 // normals of a G-buffer are bent by normal maps. At 0 the wall behind an edge would count as the one before it.
 #define LW_PARABOLOID_AGREES 0.5f
+// What a texel beside the nearest one met hides a receiver from a strict look-up where it is nearer than the receiver by this
+// share of the ray's length, and stands before the receiver's plane by that share. Nearer, raised: light passes again
+// along the rims of openings; lowered: corners between walls and curved things darken. Before, raised: the same rims, where
+// normals are smoothed; lowered: mouldings and folds darken each other. Measured in docs/techniques/ssvp_visibility.md.
+#define LW_PARABOLOID_NEARER 2e-2f
+#define LW_PARABOLOID_BEFORE 1e-2f
 
 // ---- texels and directions
 
@@ -80,6 +86,7 @@ typedef struct {
     real qx, qy, qz;  // from the origin, in the map's frame
     real nx, ny, nz;  // its normal there
     real distance;    // |q|
+    real behind;      // how far the origin lies behind the receiver's plane
     real x, y;        // in texels; whole numbers are texel centres
     mask inside;      // before the rim, and not on the back of the surface that the origin stands on
 } lw_map_receiver;
@@ -99,11 +106,11 @@ LW_FN lw_map_receiver paraboloid_receiver(lw_paraboloid map, int size, real px, 
     r.ny = along_axis(map.axisY, nx, ny, nz);
     r.nz = along_axis(map.axisZ, nx, ny, nz);
     r.distance = sqrt(fma_(r.qx, r.qx, fma_(r.qy, r.qy, r.qz * r.qz)));
-    // How far the origin lies behind the receiver's plane. Behind it by next to nothing, it stands on the other side of the
-    // receiver's own sheet, a ceiling of no thickness: there the horizon runs through the texel, which saw the sky.
+    // Behind its plane by next to nothing, the origin stands on the other side of the receiver's own sheet, a ceiling of no
+    // thickness: there the horizon runs through the texel, which saw the sky.
     // Farther behind, normal maps and smooth normals on coarse facets are the usual case, and the texel is asked.
-    const real behind = fma_(r.qx, r.nx, fma_(r.qy, r.ny, r.qz * r.nz));
-    const mask faces = or_(behind <= 0.0f, and_(behind > LW_PARABOLOID_BIAS * r.distance, behind > 2.0f * map.axisX.w));
+    r.behind = fma_(r.qx, r.nx, fma_(r.qy, r.ny, r.qz * r.nz));
+    const mask faces = or_(r.behind <= 0.0f, and_(r.behind > LW_PARABOLOID_BIAS * r.distance, r.behind > 2.0f * map.axisX.w));
     // Strict: also false at the origin, where there is no direction, and for what is not a number.
     r.inside = and_(r.qz > LW_PARABOLOID_RIM_COSINE * r.distance, faces);
     const real denominator = select_((real)(1.0f), (r.distance + r.qz) * paraboloid_step(size), r.inside);
@@ -114,10 +121,11 @@ LW_FN lw_map_receiver paraboloid_receiver(lw_paraboloid map, int size, real px, 
     return r;
 }
 
-// Whether the surface that texel (x, y) saw leaves the receiver lit. Two gathers.
+// Whether the surface that texel (x, y) saw leaves the receiver lit; `hides`: whether that surface, not the receiver's own, clearly
+// stands before it, for receivers beside the texel. Two gathers.
 // Plane of the hit: n.(p - h w/m) = 0 with the texel's ray w of length m; multiplied by m, it takes no division.
 LW_FN mask paraboloid_texel_lit(__global const float* records, int firstRecord, int size, lanei x, lanei y,
-                                lw_map_receiver r) {
+                                lw_map_receiver r, mask* hides) {
     const lanei at = 2 * (firstRecord + y * size + x);
     const real hit = gather(records, at);
     const lanei bits = gatheri((__global const int*)records, at + 1);
@@ -134,6 +142,10 @@ LW_FN mask paraboloid_texel_lit(__global const float* records, int firstRecord, 
     // Not the other side of a sheet, as near as the side that the texel saw. (Not as the negation of its being that: Oclgrind
     // misreads negated comparisons.)
     const mask front = or_(off > limit, agreement > -LW_PARABOLOID_AGREES);
+    // The hit's height over the receiver's plane, times m.
+    const real height = fma_(hit, fma_(2.0f * u, r.nx, fma_(2.0f * v, r.ny, (1.0f - r2) * r.nz)), -r.behind * length);
+    const mask stands = and_(hit < r.distance * (1.0f - LW_PARABOLOID_NEARER), height > LW_PARABOLOID_BEFORE * r.distance * length);
+    *hides = and_(stands, not_(own));
     return and_(or_(and_(before, front), own), r2 <= LW_PARABOLOID_RIM * LW_PARABOLOID_RIM);
 }
 
@@ -143,23 +155,57 @@ LW_FN mask paraboloid_sees(__global const float* records, int firstRecord, int s
     // Rounding may leave the map by less than a texel: below, the conversion towards zero brings it back.
     const lanei x = min(to_lanei(r.x + 0.5f), (lanei)(size - 1));
     const lanei y = min(to_lanei(r.y + 0.5f), (lanei)(size - 1));
-    return and_(r.inside, paraboloid_texel_lit(records, firstRecord, size, x, y, r));
+    mask hides;
+    return and_(r.inside, paraboloid_texel_lit(records, firstRecord, size, x, y, r, &hides));
+}
+
+// The four texels around a receiver, and where it lies between their centres.
+typedef struct {
+    lanei x0, y0, x1, y1;
+    real fx, fy;  // in [0,1]: 0 at x0, y0
+} lw_four_texels;
+
+LW_FN lw_four_texels texels_around(int size, lw_map_receiver r) {
+    const real last = (float)(size - 1);
+    const real x = fmin(fmax(r.x, 0.0f), last), y = fmin(fmax(r.y, 0.0f), last);
+    lw_four_texels t;
+    t.x0 = to_lanei(x);
+    t.y0 = to_lanei(y);
+    t.x1 = min(t.x0 + 1, (lanei)(size - 1));
+    t.y1 = min(t.y0 + 1, (lanei)(size - 1));
+    t.fx = x - to_real(t.x0);
+    t.fy = y - to_real(t.y0);
+    return t;
 }
 
 // Soft, in [0,1]: the share of the four nearest texels that are lit, weighted bilinearly (percentage-closer
 // filtering, Reeves et al. 1987). Eight gathers.
 LW_FN real paraboloid_visibility(__global const float* records, int firstRecord, int size, lw_map_receiver r) {
-    const real last = (float)(size - 1);
-    const real x = fmin(fmax(r.x, 0.0f), last), y = fmin(fmax(r.y, 0.0f), last);
-    const lanei x0 = to_lanei(x), y0 = to_lanei(y);
-    const lanei x1 = min(x0 + 1, (lanei)(size - 1)), y1 = min(y0 + 1, (lanei)(size - 1));
-    const real fx = x - to_real(x0), fy = y - to_real(y0);
-    const real a = ones_(paraboloid_texel_lit(records, firstRecord, size, x0, y0, r));
-    const real b = ones_(paraboloid_texel_lit(records, firstRecord, size, x1, y0, r));
-    const real c = ones_(paraboloid_texel_lit(records, firstRecord, size, x0, y1, r));
-    const real d = ones_(paraboloid_texel_lit(records, firstRecord, size, x1, y1, r));
-    const real upper = fma_(fx, b - a, a), lower = fma_(fx, d - c, c);
-    return select_((real)(0.0f), fma_(fy, lower - upper, upper), r.inside);
+    const lw_four_texels t = texels_around(size, r);
+    mask hides;
+    const real a = ones_(paraboloid_texel_lit(records, firstRecord, size, t.x0, t.y0, r, &hides));
+    const real b = ones_(paraboloid_texel_lit(records, firstRecord, size, t.x1, t.y0, r, &hides));
+    const real c = ones_(paraboloid_texel_lit(records, firstRecord, size, t.x0, t.y1, r, &hides));
+    const real d = ones_(paraboloid_texel_lit(records, firstRecord, size, t.x1, t.y1, r, &hides));
+    const real upper = fma_(t.fx, b - a, a), lower = fma_(t.fx, d - c, c);
+    return select_((real)(0.0f), fma_(t.fy, lower - upper, upper), r.inside);
+}
+
+// Strict: as hard, and dark where one of the four texels around met something that clearly stands before the receiver. Light that passes
+// along the rim of what hides a lit surface is as strong as that surface is bright, and rules the error of dark rooms; what is
+// dark by mistake misses its own light at most. Eight gathers.
+LW_FN mask paraboloid_sees_strictly(__global const float* records, int firstRecord, int size, lw_map_receiver r) {
+    const lw_four_texels t = texels_around(size, r);
+    mask hides[4];
+    const mask a = paraboloid_texel_lit(records, firstRecord, size, t.x0, t.y0, r, &hides[0]);
+    const mask b = paraboloid_texel_lit(records, firstRecord, size, t.x1, t.y0, r, &hides[1]);
+    const mask c = paraboloid_texel_lit(records, firstRecord, size, t.x0, t.y1, r, &hides[2]);
+    const mask d = paraboloid_texel_lit(records, firstRecord, size, t.x1, t.y1, r, &hides[3]);
+    const mask right = t.fx >= 0.5f, below = t.fy >= 0.5f;
+    const mask upper = or_(and_(right, b), and_(not_(right), a)), lower = or_(and_(right, d), and_(not_(right), c));
+    const mask nearest = or_(and_(below, lower), and_(not_(below), upper));
+    const mask hidden = or_(or_(hides[0], hides[1]), or_(hides[2], hides[3]));
+    return and_(and_(r.inside, nearest), not_(hidden));
 }
 
 #endif

@@ -15,7 +15,7 @@
 
 namespace lightwell {
 
-enum class ClusterVisibility { none, hard, soft, voxel };
+enum class ClusterVisibility { none, hard, soft, voxel, strict };
 
 // A list of VPLs by index.
 struct VplList {

@@ -10,6 +10,8 @@ ClusterVisibility visibilityOf(LWVisibility visibility) {
             return ClusterVisibility::none;
         case LW_VISIBILITY_SOFT:
             return ClusterVisibility::soft;
+        case LW_VISIBILITY_STRICT:
+            return ClusterVisibility::strict;
         case LW_VISIBILITY_VOXEL:
             return ClusterVisibility::voxel;
         default:

@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* kSamplingNames[] = {"flux", "uniform", "view", nullptr};
 constexpr const char* kResolutionNames[] = {"full", "half", "quarter", nullptr};
-constexpr const char* kVisibilityNames[] = {"none", "hard", "soft", "voxel", nullptr};
+constexpr const char* kVisibilityNames[] = {"none", "hard", "soft", "voxel", "strict", nullptr};
 constexpr const char* kOccludersNames[] = {"auto", "triangles", "surfels", "screen", nullptr};
 constexpr const char* kDirectionsNames[] = {"cosine", "disc", "square", nullptr};
 constexpr double kInterleaveValues[] = {1, 2, 4, 8};
@@ -19,7 +19,7 @@ constexpr double kGroupValues[] = {1, 2, 4, 8, 16, 32, 64};
 constexpr double kMapSizeValues[] = {64, 96, 128, 192, 256, 384, 512};
 constexpr double kVplSweep[] = {256, 1024};
 constexpr double kClusterSweep[] = {4, 8, 16, 32};
-constexpr double kVisibilitySweep[] = {LW_VISIBILITY_HARD, LW_VISIBILITY_SOFT, LW_VISIBILITY_VOXEL};
+constexpr double kVisibilitySweep[] = {LW_VISIBILITY_HARD, LW_VISIBILITY_SOFT, LW_VISIBILITY_VOXEL, LW_VISIBILITY_STRICT};
 constexpr double kVoxelsValues[] = {32, 64, 128, 256};
 constexpr double kBouncesSweep[] = {1, 2};
 constexpr double kResolutionSweep[] = {LW_RESOLUTION_FULL, LW_RESOLUTION_HALF, LW_RESOLUTION_QUARTER};
@@ -48,8 +48,8 @@ std::vector<LWParameter> makeTable() {
         allowing(uint("map_size", "texels a side of a cluster's map: finer occluders, memory and drawing time with its square",
                       offsetof(LWSsvpDesc, mapSize), 64, 512, 128),
                  kMapSizeValues),
-        swept(oneOf("visibility", "of VPLs: none, the map's nearest texel, its four nearest, or, instead of maps, past the voxels that occluders touch",
-                    offsetof(LWSsvpDesc, visibility), kVisibilityNames, 3, LW_VISIBILITY_HARD),
+        swept(oneOf("visibility", "of VPLs: none; the map's nearest texel, its four nearest, or strictly, as far as none of the four hides it; past voxels instead of maps",
+                    offsetof(LWSsvpDesc, visibility), kVisibilityNames, 4, LW_VISIBILITY_HARD),
               kVisibilitySweep),
         swept(uint("bounces", "indirect bounces; those after the first with VPLs drawn from the maps of the bounce before", offsetof(LWSsvpDesc, bounces), 1, 4, 2),
               kBouncesSweep),

@@ -10,7 +10,7 @@ namespace {
 
 constexpr const char* kVariantNames[] = {"static", "phantom", nullptr};
 constexpr const char* kResolutionNames[] = {"full", "half", "quarter", nullptr};
-constexpr const char* kVisibilityNames[] = {"none", "hard", "soft", "voxel", nullptr};
+constexpr const char* kVisibilityNames[] = {"none", "hard", "soft", "voxel", "strict", nullptr};
 constexpr const char* kOccludersNames[] = {"auto", "triangles", "surfels", nullptr};
 constexpr double kMapSizeValues[] = {64, 96, 128, 192, 256, 384, 512};
 constexpr double kVoxelsValues[] = {32, 64, 128, 256};
@@ -94,8 +94,8 @@ const std::vector<LWParameter>& staticVplParameters() {
                   parameter(
                       "visibility",
                       "of VPLs: none, or past the frame's geometry, by a map's nearest texel, its four "
-                      "nearest, or voxels: no light through walls, time and memory",
-                      LW_PARAMETER_ENUM, offsetof(Desc, visibility), 0, 3, LW_VISIBILITY_NONE),
+                      "nearest, strictly by all four, or voxels: no light through walls, time and memory",
+                      LW_PARAMETER_ENUM, offsetof(Desc, visibility), 0, 4, LW_VISIBILITY_NONE),
                   kVisibilityNames),
               kVisibilitySweep),
         whole("clusters",

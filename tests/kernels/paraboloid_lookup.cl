@@ -26,7 +26,7 @@ __kernel void lookup_round_trip(__global const float* x, __global const float* y
     store(packed_normal(normal, 2), planes, i + 8 * stride);
 }
 
-// Receivers: planes position xyz, normal xyz. Out: hard, soft.
+// Receivers: planes position xyz, normal xyz. Out: hard, soft, strict.
 __kernel void lookup_receivers(__global const lw_paraboloid* frames, __global const float* records, int size, int map,
                                __global const float* receivers, int stride, __global float* out) {
     const int i = (int)get_global_id(0) * LW_WIDTH;
@@ -36,4 +36,5 @@ __kernel void lookup_receivers(__global const lw_paraboloid* frames, __global co
         load(receivers, i + 3 * stride), load(receivers, i + 4 * stride), load(receivers, i + 5 * stride));
     store(ones_(paraboloid_sees(records, map * size * size, size, r)), out, i);
     store(paraboloid_visibility(records, map * size * size, size, r), out, i + stride);
+    store(ones_(paraboloid_sees_strictly(records, map * size * size, size, r)), out, i + 2 * stride);
 }
