@@ -121,32 +121,52 @@ LW_FN lw_map_receiver paraboloid_receiver(lw_paraboloid map, int size, real px, 
     return r;
 }
 
-// Whether the surface that texel (x, y) saw leaves the receiver lit; `hides`: whether that surface, not the receiver's own, clearly
-// stands before it, for receivers beside the texel. Two gathers.
-// Plane of the hit: n.(p - h w/m) = 0 with the texel's ray w of length m; multiplied by m, it takes no division.
+LW_FN lanei paraboloid_record(int firstRecord, int size, lanei x, lanei y) { return 2 * (firstRecord + y * size + x); }
+
+// How far the receiver lies off the plane of a texel's hit, and how far their normals agree (a cosine).
+// Plane of the hit: n.(p - h w/m) = 0 with the texel's ray w of length m = 1 + r2; multiplied by m, it takes no division.
+LW_FN void compare_planes(real hit, lanei bits, real u, real v, real r2, lw_map_receiver r, real* off, real* agreement) {
+    const real nx = packed_normal(bits, 0), ny = packed_normal(bits, 1), nz = packed_normal(bits, 2);
+    const real receiverSide = fma_(nx, r.qx, fma_(ny, r.qy, nz * r.qz)) * (1.0f + r2);
+    const real hitSide = hit * fma_(2.0f * u, nx, fma_(2.0f * v, ny, (1.0f - r2) * nz));
+    *off = fabs(receiverSide - hitSide);
+    *agreement = fma_(nx, r.nx, fma_(ny, r.ny, nz * r.nz));
+}
+
+// Whether the surface that texel (x, y) saw leaves the receiver lit. Two gathers.
 LW_FN mask paraboloid_texel_lit(__global const float* records, int firstRecord, int size, lanei x, lanei y,
-                                lw_map_receiver r, mask* hides) {
-    const lanei at = 2 * (firstRecord + y * size + x);
+                                lw_map_receiver r) {
+    const lanei at = paraboloid_record(firstRecord, size, x, y);
     const real hit = gather(records, at);
-    const lanei bits = gatheri((__global const int*)records, at + 1);
     const float step = paraboloid_step(size);
     const real u = paraboloid_uv(to_real(x), step), v = paraboloid_uv(to_real(y), step);
-    const real r2 = fma_(u, u, v * v), length = 1.0f + r2;
-    const real nx = packed_normal(bits, 0), ny = packed_normal(bits, 1), nz = packed_normal(bits, 2);
-    const real receiverSide = fma_(nx, r.qx, fma_(ny, r.qy, nz * r.qz)) * length;
-    const real hitSide = hit * fma_(2.0f * u, nx, fma_(2.0f * v, ny, (1.0f - r2) * nz));
+    const real r2 = fma_(u, u, v * v), limit = LW_PARABOLOID_BIAS * r.distance * (1.0f + r2);
+    real off, agreement;
+    compare_planes(hit, gatheri((__global const int*)records, at + 1), u, v, r2, r, &off, &agreement);
     const mask before = r.distance <= hit * (1.0f + LW_PARABOLOID_BIAS);
-    const real off = fabs(receiverSide - hitSide), limit = LW_PARABOLOID_BIAS * r.distance * length;
-    const real agreement = fma_(nx, r.nx, fma_(ny, r.ny, nz * r.nz));
     const mask own = and_(off <= limit, agreement >= LW_PARABOLOID_AGREES);
     // Not the other side of a sheet, as near as the side that the texel saw. (Not as the negation of its being that: Oclgrind
     // misreads negated comparisons.)
     const mask front = or_(off > limit, agreement > -LW_PARABOLOID_AGREES);
-    // The hit's height over the receiver's plane, times m.
-    const real height = fma_(hit, fma_(2.0f * u, r.nx, fma_(2.0f * v, r.ny, (1.0f - r2) * r.nz)), -r.behind * length);
-    const mask stands = and_(hit < r.distance * (1.0f - LW_PARABOLOID_NEARER), height > LW_PARABOLOID_BEFORE * r.distance * length);
-    *hides = and_(stands, not_(own));
     return and_(or_(and_(before, front), own), r2 <= LW_PARABOLOID_RIM * LW_PARABOLOID_RIM);
+}
+
+// Of receivers that the nearest texel leaves lit, `seen`, those that what texel (x, y) saw doesn't hide: it hides what it is clearly
+// nearer than, whose plane it stands before, and which is not on its own. One gather, and one more where it is nearer.
+LW_FN mask left_by_texel(__global const float* records, int firstRecord, int size, lanei x, lanei y, lw_map_receiver r, mask seen) {
+    const lanei at = paraboloid_record(firstRecord, size, x, y);
+    const real hit = gather(records, at);
+    const mask nearer = and_(seen, hit < r.distance * (1.0f - LW_PARABOLOID_NEARER));
+    if (!any_(nearer)) return seen;
+    const float step = paraboloid_step(size);
+    const real u = paraboloid_uv(to_real(x), step), v = paraboloid_uv(to_real(y), step);
+    const real r2 = fma_(u, u, v * v), unit = r.distance * (1.0f + r2);
+    real off, agreement;
+    compare_planes(hit, gatheri((__global const int*)records, at + 1), u, v, r2, r, &off, &agreement);
+    const mask other = or_(off > LW_PARABOLOID_BIAS * unit, agreement < LW_PARABOLOID_AGREES);
+    // Over the receiver's plane, times m.
+    const real height = fma_(hit, fma_(2.0f * u, r.nx, fma_(2.0f * v, r.ny, (1.0f - r2) * r.nz)), -r.behind * (1.0f + r2));
+    return and_(seen, not_(and_(and_(nearer, other), height > LW_PARABOLOID_BEFORE * unit)));
 }
 
 // Hard: the nearest texel decides. Where the map saw nothing: lit. Beyond the rim: dark, as behind the surface that the medoid
@@ -155,8 +175,7 @@ LW_FN mask paraboloid_sees(__global const float* records, int firstRecord, int s
     // Rounding may leave the map by less than a texel: below, the conversion towards zero brings it back.
     const lanei x = min(to_lanei(r.x + 0.5f), (lanei)(size - 1));
     const lanei y = min(to_lanei(r.y + 0.5f), (lanei)(size - 1));
-    mask hides;
-    return and_(r.inside, paraboloid_texel_lit(records, firstRecord, size, x, y, r, &hides));
+    return and_(r.inside, paraboloid_texel_lit(records, firstRecord, size, x, y, r));
 }
 
 // The four texels around a receiver, and where it lies between their centres.
@@ -182,30 +201,27 @@ LW_FN lw_four_texels texels_around(int size, lw_map_receiver r) {
 // filtering, Reeves et al. 1987). Eight gathers.
 LW_FN real paraboloid_visibility(__global const float* records, int firstRecord, int size, lw_map_receiver r) {
     const lw_four_texels t = texels_around(size, r);
-    mask hides;
-    const real a = ones_(paraboloid_texel_lit(records, firstRecord, size, t.x0, t.y0, r, &hides));
-    const real b = ones_(paraboloid_texel_lit(records, firstRecord, size, t.x1, t.y0, r, &hides));
-    const real c = ones_(paraboloid_texel_lit(records, firstRecord, size, t.x0, t.y1, r, &hides));
-    const real d = ones_(paraboloid_texel_lit(records, firstRecord, size, t.x1, t.y1, r, &hides));
+    const real a = ones_(paraboloid_texel_lit(records, firstRecord, size, t.x0, t.y0, r));
+    const real b = ones_(paraboloid_texel_lit(records, firstRecord, size, t.x1, t.y0, r));
+    const real c = ones_(paraboloid_texel_lit(records, firstRecord, size, t.x0, t.y1, r));
+    const real d = ones_(paraboloid_texel_lit(records, firstRecord, size, t.x1, t.y1, r));
     const real upper = fma_(t.fx, b - a, a), lower = fma_(t.fx, d - c, c);
     return select_((real)(0.0f), fma_(t.fy, lower - upper, upper), r.inside);
 }
 
 // Strict: as hard, and dark where one of the four texels around met something that clearly stands before the receiver. Light that passes
 // along the rim of what hides a lit surface is as strong as that surface is bright, and rules the error of dark rooms; what is
-// dark by mistake misses its own light at most. Eight gathers.
+// dark by mistake misses its own light at most. Five gathers, and up to three more.
 LW_FN mask paraboloid_sees_strictly(__global const float* records, int firstRecord, int size, lw_map_receiver r) {
     const lw_four_texels t = texels_around(size, r);
-    mask hides[4];
-    const mask a = paraboloid_texel_lit(records, firstRecord, size, t.x0, t.y0, r, &hides[0]);
-    const mask b = paraboloid_texel_lit(records, firstRecord, size, t.x1, t.y0, r, &hides[1]);
-    const mask c = paraboloid_texel_lit(records, firstRecord, size, t.x0, t.y1, r, &hides[2]);
-    const mask d = paraboloid_texel_lit(records, firstRecord, size, t.x1, t.y1, r, &hides[3]);
     const mask right = t.fx >= 0.5f, below = t.fy >= 0.5f;
-    const mask upper = or_(and_(right, b), and_(not_(right), a)), lower = or_(and_(right, d), and_(not_(right), c));
-    const mask nearest = or_(and_(below, lower), and_(not_(below), upper));
-    const mask hidden = or_(or_(hides[0], hides[1]), or_(hides[2], hides[3]));
-    return and_(and_(r.inside, nearest), not_(hidden));
+    const lanei x = selecti_(t.x0, t.x1, right), y = selecti_(t.y0, t.y1, below);
+    const lanei otherX = selecti_(t.x1, t.x0, right), otherY = selecti_(t.y1, t.y0, below);
+    mask seen = and_(r.inside, paraboloid_texel_lit(records, firstRecord, size, x, y, r));
+    if (!any_(seen)) return seen;
+    seen = left_by_texel(records, firstRecord, size, otherX, y, r, seen);
+    seen = left_by_texel(records, firstRecord, size, x, otherY, r, seen);
+    return left_by_texel(records, firstRecord, size, otherX, otherY, r, seen);
 }
 
 #endif
