@@ -23,7 +23,7 @@ from planner_model import BUDGETS, FLOORS, LIMIT, PROBES, Data, ErrorModel, choo
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 NEAR = 1.05  # of the least error that a view has in no more time: nearer than this is on the front, or as good
 SCENES = 2  # that a row of the table is so near the front in: one scene alone may be its luck
-NEEDS = {"rsms": 1, "radiance": 2, "camera": 4, "geometry": 8}
+NEEDS = {"rsms": 1, "radiance": 2, "camera": 4, "geometry": 8, "views": 64}
 
 
 def main():
@@ -59,7 +59,7 @@ def rows_of_table(data):
     light maps or triangles has a front of its own."""
     kept = set()
     needs = [needs_of(*c) for c in data.candidates]
-    for have in (15, 1 + 2 + 4, 9, 1, 2 + 4, 4):
+    for have in (64 + 15, 15, 1 + 2 + 4, 9, 1, 2 + 4, 4):
         able = [c for c in range(len(needs)) if needs[c] & ~have == 0]
         for c in able:
             quick = [[k for k in able if ms[k] <= ms[c] * 1.02] for ms in data.ms]
@@ -77,7 +77,9 @@ def needs_of(technique, settings):
     light, shape = NEEDS["rsms"], NEEDS["geometry"]
     if technique == "rsm":
         return light | (shape if "voxel" in settings else 0)
-    return {"ssvp": light | shape, "lpv": light | shape, "cone_tracing": light | shape, "ao": NEEDS["radiance"] | NEEDS["camera"],
+    if technique == "ssvp":
+        return light | shape | (NEEDS["views"] if "sampling=view" in settings else 0)
+    return {"lpv": light | shape, "cone_tracing": light | shape, "ao": NEEDS["radiance"] | NEEDS["camera"],
             "screen_space": NEEDS["radiance"] | NEEDS["camera"], "horizon": NEEDS["radiance"] | NEEDS["camera"]}[technique]
 
 

@@ -8,7 +8,7 @@ from planner_model import BUDGETS
 from planner_page import COLOURS, save, short, view_name
 
 # What a host may have, and which bits of PlanNeeds that is.
-INPUTS = [("RSMs, triangles, G-buffer with direct light", 15), ("RSMs and G-buffer, no triangles", 7), ("G-buffer with direct light alone", 6),
+INPUTS = [("RSMs, triangles, G-buffer with direct light, source views", 64 + 15), ("RSMs, triangles, G-buffer with direct light", 15), ("RSMs and G-buffer, no triangles", 7), ("G-buffer with direct light alone", 6),
           ("G-buffer without light", 4)]
 WANTED_TIMES = 20
 DRAWN_BUDGETS = np.geomspace(4, 100, 200)
@@ -96,6 +96,14 @@ STEPS = [("bounces 2 to 4", "ssvp clusters=16 resolution=half", "ssvp clusters=1
          ("maps of 128 to 256", "ssvp vpls=1024 clusters=64 bounces=4 resolution=half", "ssvp vpls=1024 clusters=64 map_size=256 bounces=4 resolution=half"),
          ("quarter to half resolution", "ssvp vpls=512 clusters=16 bounces=4 resolution=quarter", "ssvp vpls=512 clusters=16 bounces=4 resolution=half"),
          ("the same, more of all", "ssvp vpls=1024 clusters=64 bounces=4 resolution=quarter", "ssvp vpls=1024 clusters=64 bounces=4 resolution=half"),
+         ("visibility hard to strict", "ssvp vpls=512 clusters=16 bounces=4 resolution=quarter",
+          "ssvp vpls=512 clusters=16 visibility=strict bounces=4 resolution=quarter"),
+         ("the same, more of all", "ssvp vpls=1024 clusters=64 bounces=4 resolution=half",
+          "ssvp vpls=1024 clusters=64 visibility=strict bounces=4 resolution=half"),
+         ("VPLs by flux to by view", "ssvp vpls=1024 clusters=64 visibility=strict bounces=4 resolution=quarter",
+          "ssvp vpls=1024 sampling=view clusters=64 visibility=strict bounces=4 resolution=quarter"),
+         ("the same, third bounce shadowed", "ssvp vpls=1024 clusters=64 visibility=strict bounces=4 shadowed_bounces=3 resolution=quarter",
+          "ssvp vpls=1024 sampling=view clusters=64 visibility=strict bounces=4 shadowed_bounces=3 resolution=quarter"),
          ("half to full resolution", "ssvp clusters=16 bounces=4 resolution=half", "ssvp clusters=16 bounces=4")]
 
 
@@ -108,6 +116,24 @@ def thrift_block(data):
         lines.append(f"| {title} | `{short(before)}` | x {np.median(data.ms[:, b] / data.ms[:, a]):.2f} | x {10 ** change.mean():.2f} | "
                      f"{(change < 0).sum()} of {len(change)} |")
     return lines
+
+
+STRICT = ["ssvp vpls=512 clusters=16{} bounces=4 resolution=quarter", "ssvp vpls=1024 clusters=64{} bounces=4 resolution=quarter",
+          "ssvp vpls=1024 clusters=64{} bounces=4 resolution=half"]
+
+
+def strict_block(data):
+    """What docs/techniques/ssvp_visibility.md says of strict look-ups: both errors of every view, and what they cost."""
+    names = data.names()
+    pairs = [(names.index(name.format("")), names.index(name.format(" visibility=strict"))) for name in STRICT]
+    both = lambda a, b: f"{a:.2g} → {b:.2g}"  # noqa: E731
+    lines = [f"{data.raw['size'][0]}x{data.raw['size'][1]}, relMSE against all bounces, `hard` → `strict`, geometric mean of {data.raw['seeds']} sample sets; at the end geometric "
+             "means over the views, and medians of the time's ratio in frames at rest.", "",
+             "| view | " + " | ".join(f"`{short(name.format(''))}`" for name in STRICT) + " |", "| --- |" + " --- |" * len(STRICT)]
+    for v, view in enumerate(data.views):
+        lines.append(f"| {view_name(view)} | " + " | ".join(both(data.error[v, a], data.error[v, b]) for a, b in pairs) + " |")
+    lines.append("| all | " + " | ".join(both(10 ** data.log[:, a].mean(), 10 ** data.log[:, b].mean()) for a, b in pairs) + " |")
+    return lines + ["| time | " + " | ".join(f"x {np.median(data.ms[:, b] / data.ms[:, a]):.2f}" for a, b in pairs) + " |"]
 
 
 def rival_time(points, error):

@@ -18,7 +18,7 @@ COLOURS = {"rsm": "#d98b2b", "ssvp": "#1f6fb4", "lpv": "#3f9b57", "cone_tracing"
 
 
 def short(name):
-    return name.replace("resolution=half", "half").replace("resolution=quarter", "quarter").replace("shadowed_bounces", "shadowed")
+    return name.replace("resolution=half", "half").replace("resolution=quarter", "quarter").replace("shadowed_bounces", "shadowed").replace("visibility=strict", "strict").replace("sampling=view", "view")
 
 
 def view_name(view):
@@ -38,6 +38,8 @@ def write(data, kept, heldOut, strength, sigma, model, costs):
     write_between(ROOT / "docs/planner.md", BEGIN, END, fit_block(data, kept, ms, log, found, strength, sigma))
     write_between(ROOT / "docs/choosing.md", BEGIN, END, planner_choosing.block(data, needs, found))
     write_between(ROOT / "docs/choosing.md", "<!-- begin: thrift, written by docs/figures/planner.py -->", "<!-- end: thrift -->", planner_choosing.thrift_block(data))
+    write_between(ROOT / "docs/techniques/ssvp_visibility.md", "<!-- begin: strict, written by docs/figures/planner.py -->", "<!-- end: strict -->",
+                  planner_choosing.strict_block(data))
     write_between(ROOT / "docs/accuracy.md", BEGIN, END, accuracy_block(data, kept))
 
 

@@ -18,7 +18,7 @@ from split import GREY_ALBEDO, write_grey
 CLUSTERS, SIDES = [4, 8, 16, 32, 64, 0], [64, 128, 256, 512]
 SOURCES, SOURCE_CLUSTERS, SOURCE_SIDES = ["triangles", "surfels", "screen"], [8, 32], [128, 256]
 BEGIN, END = "<!-- begin: figures -->", "<!-- end: figures -->"
-SOFT_SIDE = 128
+SOFT_SIDE, OTHERS = 128, ["soft", "strict"]
 # The set-up of an earlier experiment, with what it found: relMSE in Crytek Sponza's first camera and the living room.
 GREY_SCENES = ["sponza_crytek", "living_room"]
 GREY_CLUSTERS = [8, 32, 64]
@@ -41,7 +41,7 @@ def main():
 
     lines = [f"One pixel of each 4 x 4 at {options.size}, 256 VPLs by flux, one bounce; false light / false shadow in per cent *of pairs* and *of light* "
              "(each pair weighed by what it would bring with nothing between), and the relMSE against a ray for each pair. N: every VPL its own "
-             "cluster. *mean*, *medoid*: rays to the clusters' means and medoids. Numbers: the side of a hard map; soft ones by name.", ""]
+             "cluster. *mean*, *medoid*: rays to the clusters' means and medoids. Numbers: the side of a hard map; other look-ups by name.", ""]
     for scene in options.scenes:
         lines += sweep_table(scene, lambda name, *arguments, s=scene: count(name, s, "--no-truth", *arguments))
     lines += sources_table(options.scenes, count)
@@ -62,18 +62,18 @@ def sweep(key, values):
 
 def sweep_table(scene, count):
     hard = count(f"{scene}_triangles", *sweep("clusters", CLUSTERS), *sweep("map_size", SIDES))
-    soft = count(f"{scene}_triangles_soft", *sets([f"map_size={SOFT_SIDE}", "visibility=soft"]), *sweep("clusters", CLUSTERS))
+    others = {way: count(f"{scene}_triangles_{way}", *sets([f"map_size={SOFT_SIDE}", f"visibility={way}"]), *sweep("clusters", CLUSTERS)) for way in OTHERS}
     by_place = {(p["parameters"]["clusters"], p["parameters"]["map_size"]): p for p in hard["points"]}
-    soft = {p["parameters"]["clusters"]: p for p in soft["points"]}
+    others = [{p["parameters"]["clusters"]: p for p in found["points"]} for found in others.values()]
     none = next(iter(by_place.values()))
     lines = [f"### {scene}, maps of triangles", "",
              f"{none['pairs']:,} pairs. With nothing between judged lit, {share(none, 'none', '')} % of pairs are false light, {share(none, 'none', '_weighted')} % of "
              f"light; relMSE {error(none, 'none')}.", "",
-             "| clusters | what | mean | medoid | " + " | ".join(map(str, SIDES)) + f" | {SOFT_SIDE} soft |",
-             "| ---: | --- | " + " | ".join(["---:"] * (len(SIDES) + 3)) + " |"]
+             "| clusters | what | mean | medoid | " + " | ".join(map(str, SIDES)) + "".join(f" | {SOFT_SIDE} {way}" for way in OTHERS) + " |",
+             "| ---: | --- | " + " | ".join(["---:"] * (len(SIDES) + 2 + len(OTHERS))) + " |"]
     for clusters in CLUSTERS:
         points = [by_place[clusters, side] for side in SIDES]
-        cells = [(points[0], "mean"), (points[0], "medoid"), *((p, "map") for p in points), (soft[clusters], "map")]
+        cells = [(points[0], "mean"), (points[0], "medoid"), *((p, "map") for p in points), *((other[clusters], "map") for other in others)]
         rows = {"of pairs": [both(p, way, "") for p, way in cells], "of light": [both(p, way, "_weighted") for p, way in cells],
                 "relMSE": [error(p, way) for p, way in cells]}
         for what, row in rows.items():

@@ -13,7 +13,8 @@ enum PlanNeeds : std::uint32_t {
     kPlanNeedsCamera = 4,      // LWGBuffer::camera
     kPlanNeedsGeometry = 8,    // triangles or surfels
     kPlanNeedsStaticVpls = 16, // places of the host's
-    kPlanNeedsMotion = 32      // LWGBuffer::motion: of what keeps a history
+    kPlanNeedsMotion = 32,     // LWGBuffer::motion: of what keeps a history
+    kPlanNeedsViews = 64       // LWFrame::sourceViews
 };
 
 constexpr std::size_t kPlanProbes = 8;  // in the order of LWPlanProbes' fields

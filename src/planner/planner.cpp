@@ -27,14 +27,16 @@ struct NeedName {
 };
 constexpr NeedName kNeedNames[] = {{kPlanNeedsRsms, "RSMs or VPLs"},           {kPlanNeedsRadiance, "directRadiance"},
                                    {kPlanNeedsCamera, "a camera"},             {kPlanNeedsGeometry, "triangles or surfels"},
-                                   {kPlanNeedsStaticVpls, "static VPLs"},      {kPlanNeedsMotion, "motion"}};
+                                   {kPlanNeedsStaticVpls, "static VPLs"},      {kPlanNeedsMotion, "motion"},
+                                   {kPlanNeedsViews, "source views"}};
 
 // PlanNeeds that the frame satisfies.
 std::uint32_t broughtBy(const FrameTraits& traits) {
     const auto bit = [](bool has, std::uint32_t need) { return has ? need : 0u; };
     return bit(traits.hasRsms || traits.hasVpls, kPlanNeedsRsms) | bit(traits.hasDirectRadiance, kPlanNeedsRadiance) |
            bit(traits.hasCamera, kPlanNeedsCamera) | bit(traits.triangles + traits.surfels > 0.0, kPlanNeedsGeometry) |
-           bit(traits.staticVpls > 0, kPlanNeedsStaticVpls) | bit(traits.hasMotion, kPlanNeedsMotion);
+           bit(traits.staticVpls > 0, kPlanNeedsStaticVpls) | bit(traits.hasMotion, kPlanNeedsMotion) |
+           bit(traits.hasViews, kPlanNeedsViews);
 }
 
 bool allows(std::uint32_t brought, const PlanRow& row) {
@@ -142,6 +144,7 @@ FrameTraits traitsOf(const LWFrame& frame, const LWGBuffer& gbuffer, double pixe
     }
     traits.hasRsms = traits.rsmTexels > 0.0;
     traits.hasVpls = frame.vplCount > 0;
+    traits.hasViews = frame.sourceViewCount > 0;
     traits.hasDirectRadiance = !imageAbsent(gbuffer.directRadiance);
     traits.hasAlbedo = !imageAbsent(gbuffer.albedo);
     traits.hasMotion = !imageAbsent(gbuffer.motion);

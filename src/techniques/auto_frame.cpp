@@ -29,7 +29,8 @@ constexpr std::size_t kNobody = ~std::size_t(0);
 // What decides which techniques are possible, as a word.
 std::uint32_t inputsOf(const FrameTraits& traits) {
     const bool has[] = {traits.hasRsms,   traits.hasVpls,   traits.hasDirectRadiance,             traits.hasAlbedo,
-                        traits.hasCamera, traits.hasMotion, traits.triangles + traits.surfels > 0, traits.staticVpls > 0};
+                        traits.hasCamera, traits.hasMotion, traits.triangles + traits.surfels > 0, traits.staticVpls > 0,
+                        traits.hasViews};
     std::uint32_t word = 0;
     for (std::size_t i = 0; i < std::size(has); ++i) word |= has[i] ? 1u << i : 0u;
     return word;

@@ -35,7 +35,7 @@ FrameTraits everything() {
     traits.triangles = 1e4;
     traits.lights = 1;
     traits.staticVpls = 100;
-    traits.hasRsms = traits.hasVpls = traits.hasDirectRadiance = traits.hasAlbedo = traits.hasCamera = traits.hasMotion = true;
+    traits.hasRsms = traits.hasVpls = traits.hasDirectRadiance = traits.hasAlbedo = traits.hasCamera = traits.hasMotion = traits.hasViews = true;
     return traits;
 }
 
@@ -120,6 +120,7 @@ TEST_CASE("a frame allows what it brings the inputs for", "[planner]") {
     without(kPlanNeedsGeometry, [](FrameTraits& t) { t.triangles = 0.0; });
     without(kPlanNeedsStaticVpls, [](FrameTraits& t) { t.staticVpls = 0; });
     without(kPlanNeedsMotion, [](FrameTraits& t) { t.hasMotion = false; });
+    without(kPlanNeedsViews, [](FrameTraits& t) { t.hasViews = false; });
     FrameTraits bare = everything();
     bare.hasRsms = bare.hasVpls = false;
     CHECK_THAT(missingFor(bare), StartsWith("RSMs"));
@@ -257,8 +258,9 @@ TEST_CASE("traits are those of the frame", "[planner]") {
     frame.lights = lights;
     FrameTraits traits = traitsOf(frame, gbuffer, 200.0, 0);
     CHECK((traits.views == 1 && traits.pixels == 200.0 && traits.rsmTexels == 0.0));
-    CHECK_FALSE((traits.hasRsms || traits.hasVpls || traits.hasAlbedo || traits.hasDirectRadiance || traits.hasCamera || traits.hasMotion));
+    CHECK_FALSE((traits.hasRsms || traits.hasVpls || traits.hasAlbedo || traits.hasDirectRadiance || traits.hasCamera || traits.hasMotion || traits.hasViews));
     frame.lightCount = 2;
+    frame.sourceViewCount = 1;
     frame.vplCount = 3;
     frame.staticVplCount = 4;
     LWGeometry geometry{};
@@ -270,7 +272,7 @@ TEST_CASE("traits are those of the frame", "[planner]") {
     traits = traitsOf(frame, gbuffer, 200.0, 2);
     CHECK((traits.rsmTexels == 64.0 * 32.0 + 100.0 && traits.views == 2 && traits.lights == 2 && traits.staticVpls == 4));
     CHECK((traits.triangles == 5.0 && traits.surfels == 6.0));
-    CHECK((traits.hasRsms && traits.hasVpls && traits.hasAlbedo && traits.hasDirectRadiance && traits.hasCamera && traits.hasMotion));
+    CHECK((traits.hasRsms && traits.hasVpls && traits.hasAlbedo && traits.hasDirectRadiance && traits.hasCamera && traits.hasMotion && traits.hasViews));
 }
 
 TEST_CASE("a device's rates are measured once, and kept on disk", "[planner][large]") {
