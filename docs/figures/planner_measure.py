@@ -1,7 +1,7 @@
 """Measures what docs/figures/planner.py fits, with the program `lightwell`, into planner_data.json.
 
-Below `work`: chart*/ (errors and times of all views; the point with more frames counts, of equals the quicker), seeds*/ (errors of further
-sample sets), sizes_*/ (times at other sizes), rival/ (path tracing), probes.json, rsm_sizes.json, launches.json. Every command goes on where it was stopped. Over 300 lines: a fifth is the list of candidates.
+Below `work`: chart*/ (errors and times of all views; of times the point with more frames counts, of equals the quicker, of errors the last folder's), seeds*/ (errors of further
+sample sets), sizes_*/ (times at other sizes), rival/ (path tracing), probes.json, rsm_sizes.json, launches.json. Every command goes on where it was stopped. Over 300 lines: a quarter is the list of candidates.
 """
 import json
 import pathlib
@@ -35,16 +35,26 @@ ssvp clusters=4 map_size=64 resolution=quarter
 ssvp resolution=quarter
 ssvp bounces=4 resolution=quarter
 ssvp clusters=16 resolution=quarter
+ssvp clusters=16 visibility=strict resolution=quarter
 ssvp clusters=16 bounces=4 resolution=quarter
+ssvp clusters=16 visibility=strict bounces=4 resolution=quarter
 ssvp clusters=16 bounces=4 shadowed_bounces=1 resolution=quarter
 ssvp vpls=512 clusters=16 bounces=4 resolution=quarter
+ssvp vpls=512 clusters=16 visibility=strict bounces=4 resolution=quarter
 ssvp vpls=512 clusters=16 bounces=4 shadowed_bounces=3 resolution=quarter
+ssvp vpls=512 clusters=16 visibility=strict bounces=4 shadowed_bounces=3 resolution=quarter
 ssvp vpls=512 clusters=32 bounces=4 resolution=quarter
+ssvp vpls=512 clusters=32 visibility=strict bounces=4 resolution=quarter
 ssvp vpls=1024 clusters=32 bounces=4 resolution=quarter
+ssvp vpls=1024 clusters=32 visibility=strict bounces=4 resolution=quarter
 ssvp vpls=1024 clusters=64 resolution=quarter
+ssvp vpls=1024 clusters=64 visibility=strict resolution=quarter
 ssvp vpls=1024 clusters=64 bounces=4 resolution=quarter
+ssvp vpls=1024 clusters=64 visibility=strict bounces=4 resolution=quarter
 ssvp vpls=1024 clusters=64 bounces=4 shadowed_bounces=3 resolution=quarter
+ssvp vpls=1024 clusters=64 visibility=strict bounces=4 shadowed_bounces=3 resolution=quarter
 ssvp vpls=1024 clusters=64 map_size=256 bounces=4 resolution=quarter
+ssvp vpls=1024 clusters=64 map_size=256 visibility=strict bounces=4 resolution=quarter
 ssvp vpls=128 clusters=4 map_size=64 bounces=1 resolution=half
 ssvp vpls=64 clusters=4 map_size=64 second_vpls=16 resolution=half
 ssvp resolution=half
@@ -52,19 +62,34 @@ ssvp bounces=4 resolution=half
 ssvp clusters=16 resolution=half
 ssvp clusters=16 bounces=4 resolution=half
 ssvp vpls=512 clusters=16 bounces=4 resolution=half
+ssvp vpls=512 clusters=16 visibility=strict bounces=4 resolution=half
 ssvp clusters=32 resolution=half
 ssvp clusters=32 bounces=4 resolution=half
 ssvp vpls=1024 clusters=32 bounces=4 resolution=half
+ssvp vpls=1024 clusters=32 visibility=strict bounces=4 resolution=half
 ssvp vpls=1024 clusters=32 bounces=4 interleave=8 resolution=half
 ssvp vpls=1024 clusters=64 resolution=half
+ssvp vpls=1024 clusters=64 visibility=strict resolution=half
 ssvp vpls=1024 clusters=64 bounces=4 resolution=half
+ssvp vpls=1024 clusters=64 visibility=strict bounces=4 resolution=half
 ssvp vpls=1024 clusters=64 bounces=4 interleave=8 resolution=half
 ssvp vpls=1024 clusters=64 bounces=4 shadowed_bounces=3 resolution=half
+ssvp vpls=1024 clusters=64 visibility=strict bounces=4 shadowed_bounces=3 resolution=half
 ssvp vpls=1024 clusters=64 map_size=256 bounces=4 resolution=half
+ssvp vpls=1024 clusters=64 map_size=256 visibility=strict bounces=4 resolution=half
 ssvp
 ssvp clusters=16 bounces=4
 ssvp vpls=1024 clusters=32 bounces=4
+ssvp vpls=1024 clusters=32 visibility=strict bounces=4
 ssvp vpls=1024 clusters=64 bounces=4
+ssvp vpls=512 sampling=view clusters=16 visibility=strict resolution=quarter
+ssvp vpls=1024 sampling=view clusters=32 visibility=strict bounces=4 resolution=quarter
+ssvp vpls=1024 sampling=view clusters=64 visibility=strict resolution=quarter
+ssvp vpls=1024 sampling=view clusters=64 visibility=strict bounces=4 resolution=quarter
+ssvp vpls=1024 sampling=view clusters=64 visibility=strict bounces=4 shadowed_bounces=3 resolution=quarter
+ssvp vpls=1024 sampling=view clusters=64 visibility=strict resolution=half
+ssvp vpls=1024 sampling=view clusters=64 visibility=strict bounces=4 shadowed_bounces=3 resolution=half
+ssvp vpls=1024 sampling=view clusters=64 map_size=256 visibility=strict bounces=4 shadowed_bounces=3 resolution=half
 lpv transport=sweep size=16 directions=96 resolution=half
 lpv transport=sweep size=16 directions=96 bounces=4 resolution=half
 cone_tracing size=32 cones=6 bounces=0 resolution=quarter
@@ -215,7 +240,7 @@ def collect(work, date):
     for (v, c), some in points.items():
         most = max(p["frames"] for p in some)
         # Of logarithms: single sets lie up to a decade off where few pixels rule the error.
-        errors[v][c] = rounded(statistics.geometric_mean([noiseless(some[0]["errors"]["all"]), *further.get((v, c), [])]))
+        errors[v][c] = rounded(statistics.geometric_mean([noiseless(some[-1]["errors"]["all"]), *further.get((v, c), [])]))
         ms[v][c] = rounded(min(time_of(p, threads) for p in some if p["frames"] == most) * beyond * drift(v, most))
     launched = json.loads((work / "launches.json").read_text()) if (work / "launches.json").exists() else {}
     rates = json.loads((work / "rates.json").read_text())

@@ -498,7 +498,7 @@ typedef enum LWVisibility {
     LW_VISIBILITY_HARD = 1, /**< the nearest texel of the cluster's map decides */
     LW_VISIBILITY_SOFT = 2, /**< the share of its four nearest texels (percentage-closer) */
     LW_VISIBILITY_VOXEL = 3, /**< instead of maps, the voxels that the occluders occupy, between each VPL and the pixel */
-    LW_VISIBILITY_STRICT = 4 /**< as HARD, and nothing arrives where one of the four texels around met something before the surface */
+    LW_VISIBILITY_STRICT = 4 /**< as HARD, fading to dark beside texels that met something before the surface: no light along rims */
 } LWVisibility;
 
 typedef enum LWDirections {

@@ -44,7 +44,7 @@ LW_FN real cluster_visibility(lw_maps maps, int cluster, const lw_surface s) {
 #if LW_VISIBILITY == 1
     return ones_(paraboloid_sees(maps.records[list], first, size, receiver));
 #elif LW_VISIBILITY == 4
-    return ones_(paraboloid_sees_strictly(maps.records[list], first, size, receiver));
+    return paraboloid_strict_visibility(maps.records[list], first, size, receiver);
 #else
     return paraboloid_visibility(maps.records[list], first, size, receiver);
 #endif
