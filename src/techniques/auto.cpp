@@ -93,7 +93,6 @@ void Auto::prewarm(Executor& executor, const std::shared_ptr<View>& view) {
     if (!hasSeen_) traits.hasDirectRadiance = traits.hasAlbedo = traits.hasCamera = traits.hasMotion = traits.hasVpls = true;
     if (updates_ == 0) {
         traits.triangles = traits.staticVpls = 1;
-        traits.hasViews = true;
     } else {
         traits.triangles = brought_.triangles;
         traits.surfels = brought_.surfels;
@@ -101,7 +100,6 @@ void Auto::prewarm(Executor& executor, const std::shared_ptr<View>& view) {
         traits.lights = brought_.lights;
         traits.staticVpls = brought_.staticVpls;
         traits.hasVpls = brought_.hasVpls;
-        traits.hasViews = brought_.hasViews;
     }
     std::vector<Prediction> quicker;  // that can be chosen
     int warmed = 0;

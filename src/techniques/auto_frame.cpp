@@ -29,8 +29,7 @@ constexpr std::size_t kNobody = ~std::size_t(0);
 // What decides which techniques are possible, as a word.
 std::uint32_t inputsOf(const FrameTraits& traits) {
     const bool has[] = {traits.hasRsms,   traits.hasVpls,   traits.hasDirectRadiance,             traits.hasAlbedo,
-                        traits.hasCamera, traits.hasMotion, traits.triangles + traits.surfels > 0, traits.staticVpls > 0,
-                        traits.hasViews};
+                        traits.hasCamera, traits.hasMotion, traits.triangles + traits.surfels > 0, traits.staticVpls > 0};
     std::uint32_t word = 0;
     for (std::size_t i = 0; i < std::size(has); ++i) word |= has[i] ? 1u << i : 0u;
     return word;
@@ -77,6 +76,8 @@ void Auto::learn() {
 // The G-buffer is that of the last frame: this one's comes after the choice.
 FrameTraits Auto::traitsNow(const LWFrame& frame) {
     FrameTraits traits = traitsOf(frame, seen_, pixels_, desc_.views);
+    // VPLs drawn for what views show are others with every step of the camera, and all maps with them: no candidate for frame after frame.
+    traits.hasViews = false;
     // Lamps that go out for a while ask for no other technique.
     hasHadRsms_ = traits.hasRsms || (hasHadRsms_ && !frame.reset);
     traits.hasRsms = hasHadRsms_;

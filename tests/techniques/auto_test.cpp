@@ -31,8 +31,10 @@ struct Plan {
     std::vector<Prediction> predictions;
     std::size_t ofGeometry = ~std::size_t(0);  // a candidate that takes triangles
     double mostTriangles = 0.0;                // of the frames that it was asked about
+    bool hasAskedForViews = false;
     std::vector<Prediction> of(const FrameTraits& traits) {
         mostTriangles = std::max(mostTriangles, traits.triangles);
+        hasAskedForViews = hasAskedForViews || traits.hasViews;
         std::vector<Prediction> possible;
         for (const Prediction& one : predictions)
             if (one.candidate != ofGeometry || traits.triangles > 0.0) possible.push_back(one);
@@ -375,6 +377,17 @@ TEST_CASE("two views fade alike, each from its own picture; a size may change wi
     rig.update(scene);
     CHECK(rig.render(scene, rig.view) == second);
     CHECK(rig.render(scene, other) == second);
+}
+
+TEST_CASE("VPLs for what source views show change with every step of the camera: no candidate for frame after frame", "[auto]") {
+    Scene scene;
+    const LWSourceView source{};  // rsm by flux reads none
+    scene.frame.sourceViews = &source;
+    scene.frame.sourceViewCount = 1;
+    CHECK(traitsOf(scene.frame, scene.gbuffer, 1.0, 1).hasViews);
+    AutoRig rig(describe(0));
+    for (int i = 0; i < 3; ++i) CHECK(rig.frame(scene) == alone(0, scene));
+    CHECK_FALSE(rig.plan.hasAskedForViews);
 }
 
 TEST_CASE("a budget that nothing holds: the quickest runs, and frames over it are counted", "[auto]") {
