@@ -498,7 +498,7 @@ typedef enum LWVisibility {
     LW_VISIBILITY_HARD = 1, /**< the nearest texel of the cluster's map decides */
     LW_VISIBILITY_SOFT = 2, /**< the share of its four nearest texels (percentage-closer) */
     LW_VISIBILITY_VOXEL = 3, /**< instead of maps, the voxels that the occluders occupy, between each VPL and the pixel */
-    LW_VISIBILITY_STRICT = 4 /**< as HARD, fading to dark beside texels that met something before the surface: no light along rims */
+    LW_VISIBILITY_STRICT = 4 /**< as HARD, fading to dark beside texels that met something before the surface: next to no light along rims */
 } LWVisibility;
 
 typedef enum LWDirections {
@@ -816,7 +816,7 @@ LW_API void lwDefaultStaticVpl(LWStaticVplDesc* desc);
 /** The name of the technique that chooses others; "auto" for lwCreateTechnique. */
 #define LW_TECHNIQUE_AUTO "auto"
 
-/** Technique "auto": in each frame the technique and parameters that lwPlan finds best for what the frame brings, kept until
+/** Technique "auto": in each frame the technique and parameters that lwPlan finds best for what the frame brings (without VPLs drawn for source views), kept until
  *  another is clearly better or the budget is broken; changes are cross-faded. Stats say which, and why. The first on a device measures its rates, as lwPlan. */
 typedef struct LWAutoDesc {
     uint32_t structSize;
@@ -995,7 +995,8 @@ typedef struct LWPlan {
 /** Picks technique and parameters for what this frame brings and what may be spent: what is possible by the inputs given; how long it
  *  takes by a model calibrated on this device (in less than two seconds at the first call, with the lock held, then kept in the device's cache); how wrong it
  *  is by a model fitted to `lightwell chart`'s results and probes of the frame. docs/planner.md says how, and how good it is.
- *  `view`, `gbuffer`: of the view that is to be lit, as for lwRender. Waits for the probes: a few milliseconds. Changes nothing.
+ *  Times are of frames at rest; VPLs drawn for source views cost more under a camera that moves. `view`, `gbuffer`: of the view that is to be lit.
+ *  Waits for the probes: a few milliseconds. Changes nothing.
  *  Errors: INVALID_*, as lwUpdate and lwRender, and where no technique can light such a frame; OUT_OF_MEMORY. */
 LW_API LWStatus lwPlan(LWView view, const LWFrame* frame, const LWGBuffer* gbuffer, const LWPlanDesc* desc, LWPlan* plan);
 

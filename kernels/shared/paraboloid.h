@@ -172,12 +172,13 @@ LW_FN real hidden_by_texel(__global const float* records, int firstRecord, int s
     return ones_(and_(and_(nearer, other), height > LW_PARABOLOID_BEFORE * unit));
 }
 
+// Rounding may leave the map by less than a texel: below, the conversion towards zero brings it back.
+LW_FN lanei nearest_texel(int size, real x) { return min(to_lanei(x + 0.5f), (lanei)(size - 1)); }
+
 // Hard: the nearest texel decides. Where the map saw nothing: lit. Beyond the rim: dark, as behind the surface that the medoid
 // lies on; lit there, clusters with members on either side of an edge shine through walls. `firstRecord`: of the map.
 LW_FN mask paraboloid_sees(__global const float* records, int firstRecord, int size, lw_map_receiver r) {
-    // Rounding may leave the map by less than a texel: below, the conversion towards zero brings it back.
-    const lanei x = min(to_lanei(r.x + 0.5f), (lanei)(size - 1));
-    const lanei y = min(to_lanei(r.y + 0.5f), (lanei)(size - 1));
+    const lanei x = nearest_texel(size, r.x), y = nearest_texel(size, r.y);
     return and_(r.inside, paraboloid_texel_lit(records, firstRecord, size, x, y, r));
 }
 
@@ -217,8 +218,8 @@ LW_FN real paraboloid_visibility(__global const float* records, int firstRecord,
 // dark by mistake misses its own light at most. Five gathers, and up to three more.
 LW_FN real paraboloid_strict_visibility(__global const float* records, int firstRecord, int size, lw_map_receiver r) {
     const lw_four_texels t = texels_around(size, r);
-    const mask right = t.fx >= 0.5f, below = t.fy >= 0.5f;
-    const lanei x = selecti_(t.x0, t.x1, right), y = selecti_(t.y0, t.y1, below);
+    const lanei x = nearest_texel(size, r.x), y = nearest_texel(size, r.y);
+    const mask right = x > t.x0, below = y > t.y0;
     const mask seen = and_(r.inside, paraboloid_texel_lit(records, firstRecord, size, x, y, r));
     if (!any_(seen)) return (real)0.0f;
     const lanei otherX = selecti_(t.x1, t.x0, right), otherY = selecti_(t.y1, t.y0, below);

@@ -35,6 +35,12 @@ std::uint32_t inputsOf(const FrameTraits& traits) {
     return word;
 }
 
+// For what is missing: views, of which nothing is made here, are not.
+FrameTraits withoutViews(FrameTraits traits) {
+    traits.hasViews = true;
+    return traits;
+}
+
 // Where lights stand, and which geometry there is: what maps of a frame are drawn of. Light that only grows or fades moves nothing.
 std::vector<float> placesOf(const LWFrame& frame) {
     std::vector<float> places;
@@ -241,7 +247,7 @@ SteeringStep Auto::choose(Executor& executor, const LWFrame& frame, const FrameT
     const std::uint32_t inputs = inputsOf(traits);
     std::vector<Prediction> possible = predictions(traits);
     if (possible.empty())
-        fail(LW_ERROR_INVALID_ARGUMENT, "frame, gbuffer: expected what a technique can make light of, got none of: ", missingFor(traits));
+        fail(LW_ERROR_INVALID_ARGUMENT, "frame, gbuffer: expected what a technique can make light of, got none of: ", missingFor(withoutViews(traits)));
     hasOther_ = false;
     inputs_ = inputs;
     const std::size_t ran = children_.running() ? children_.running()->candidate() : kNobody;

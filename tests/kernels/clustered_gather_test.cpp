@@ -241,7 +241,7 @@ TEST_CASE("a wall's shadow as rays from the clusters cast it", "[clustered_gathe
                 excess += std::max(got - exact, 0.0);
             }
         // Only where the shadow's edge runs through a texel: some 60 texels along the edge of two
-        // shadows, of a map in which the floor covers half of 256 x 256; soft ones blur it over two, and strict ones lie half a texel
+        // shadows, of a map in which the floor covers half of 256 x 256; soft ones blur it over two, and strict ones end up to half a texel
         // farther out.
         const bool isHard = visibility == ClusterVisibility::hard, isStrict = visibility == ClusterVisibility::strict;
         CAPTURE(int(visibility), off, excess / expected, sum / expected);

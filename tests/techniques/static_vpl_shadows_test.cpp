@@ -9,7 +9,7 @@ using namespace lightwell::test::plates;
 
 TEST_CASE("static_vpl: a plate shadows what the rays through it would light", "[static_vpl][shadows]") {
     const LWVisibility visibility =
-        GENERATE(LW_VISIBILITY_HARD, LW_VISIBILITY_SOFT, LW_VISIBILITY_VOXEL);
+        GENERATE(LW_VISIBILITY_HARD, LW_VISIBILITY_SOFT, LW_VISIBILITY_VOXEL, LW_VISIBILITY_STRICT);
     LWStaticVplDesc desc = descOf(visibility, 256);
     desc.voxels = 128;
     StaticRig rig(GENERATE(1u, 16u), desc);
@@ -52,7 +52,7 @@ TEST_CASE("static_vpl: where nothing stands, shadows change no bit", "[static_vp
     WallAndCeiling view(kWidth, kHeight);
     Walls walls = open();
     const StaticScene scene = litFloor(20, walls.describe());
-    LWStaticVplDesc desc = descOf(GENERATE(LW_VISIBILITY_HARD, LW_VISIBILITY_SOFT));
+    LWStaticVplDesc desc = descOf(GENERATE(LW_VISIBILITY_HARD, LW_VISIBILITY_SOFT, LW_VISIBILITY_STRICT));
     desc.bounces = GENERATE(1u, 2u);
     desc.secondDistance = 0.6f;
     desc.shadowedBounces = GENERATE(1u, 2u);
