@@ -21,11 +21,11 @@ def best_by_budget(data, able, budget, rows=None):
     return min(affordable, key=lambda c: data.log[rows, c].mean()) if affordable else None
 
 
-def draw(data, needs):
+def draw(data, needs, kept):
     figure, every = plt.subplots(len(INPUTS), 1, figsize=(9.2, 1.5 * len(INPUTS) + 0.8), dpi=100, sharex=True)
     names = data.names()
     for axes, (title, have) in zip(every, INPUTS):
-        able = [c for c in range(len(needs)) if needs[c] & ~have == 0]
+        able = [c for c in kept if needs[c] & ~have == 0]
         picks = [best_by_budget(data, able, b) for b in DRAWN_BUDGETS]
         start = 0
         for i in range(1, len(picks) + 1):
@@ -56,14 +56,14 @@ def label_of(name, error):
     return "\n".join(lines + [f"{error:.2g}"])
 
 
-def block(data, needs, found):
+def block(data, needs, kept, found):
     names = data.names()
     lines = [f"Measured {data.raw['date']} at {data.raw['size'][0]}x{data.raw['size'][1]} on {data.raw['device']}, {data.raw['threads']} threads; see "
-             "[the planner](planner.md#how-good-it-is) for how. relMSE against all bounces, geometric mean over the views; in brackets the least and the "
+             "[the planner](planner.md#how-good-it-is) for how. Of the planner's rows; relMSE against all bounces, geometric mean over the views; in brackets the least and the "
              "largest of them.", "", "![What to take for which inputs and budget](images/choosing.png)", "",
              "| what the host has | " + " | ".join(f"{b} ms" for b in BUDGETS) + " |", "| --- |" + " --- |" * len(BUDGETS)]
     for title, have in INPUTS:
-        able = [c for c in range(len(needs)) if needs[c] & ~have == 0]
+        able = [c for c in kept if needs[c] & ~have == 0]
         cells = []
         for budget in BUDGETS:
             c = best_by_budget(data, able, budget)

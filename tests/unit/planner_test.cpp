@@ -80,7 +80,7 @@ TEST_CASE("the planner's table holds techniques that can be made, each once, and
         CHECK(seen.insert({row.technique, row.settings}).second);
         CHECK(std::string(row.technique).size() < sizeof LWPlan::technique);
         CHECK(std::string(row.settings).size() < sizeof LWPlan::parameters);
-        CHECK((row.needs & ~63u) == 0);
+        CHECK((row.needs & ~127u) == 0);
         for (const double cost : row.cost) CHECK((cost >= 0.0 && std::isfinite(cost)));
         CHECK(row.cost[0] + row.cost[1] > 0.0);
         CHECK((row.launches >= 0.0 && std::isfinite(row.errorMean)));

@@ -19,7 +19,7 @@ FrameTraits frameOf(const PlannerValue& value) {
     traits.rsmTexels = 512.0 * 512.0;
     traits.triangles = value.triangles;
     traits.lights = 1;
-    traits.hasRsms = traits.hasDirectRadiance = traits.hasAlbedo = traits.hasCamera = true;
+    traits.hasRsms = traits.hasDirectRadiance = traits.hasAlbedo = traits.hasCamera = traits.hasViews = true;
     return traits;
 }
 
