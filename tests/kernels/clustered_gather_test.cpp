@@ -1,5 +1,4 @@
-// The gather with clusters' visibility: the list that it walks, and its light against rays traced in
-// double.
+// The gather with clusters' visibility: the list that it walks, and its light against rays traced in double.
 #include "passes/clustered_gather.h"
 
 #include <algorithm>
@@ -133,8 +132,7 @@ struct Walled {
 
 }  // namespace
 
-TEST_CASE("the list holds every VPL once, cluster by cluster, then the further ones",
-          "[clustered_gather]") {
+TEST_CASE("the list holds every VPL once, cluster by cluster, then the further ones", "[clustered_gather]") {
     const auto n = GENERATE(1u, 4u);
     const auto clusters = GENERATE(1u, 8u, 64u, 200u);
     const auto groups = GENERATE(1u, 2u, 16u);
@@ -226,9 +224,7 @@ TEST_CASE("a wall's shadow as rays from the clusters cast it", "[clustered_gathe
     for (const ClusterVisibility visibility : {ClusterVisibility::hard, ClusterVisibility::soft, ClusterVisibility::strict}) {
         ClusteredGather pass(rig.device(), 1, 1, visibility);
         recordOrder(rig, pass, room.scene, 2);
-        const Image light =
-            gatherOn(rig, pass, 1, room.position, room.normal,
-                     mapsOf(rig), Bits::found);
+        const Image light = gatherOn(rig, pass, 1, room.position, room.normal, mapsOf(rig), Bits::found);
         int off = 0;
         double sum = 0.0, expected = 0.0, excess = 0.0;
         for (std::uint32_t y = 0; y < light.height; ++y)
@@ -248,7 +244,7 @@ TEST_CASE("a wall's shadow as rays from the clusters cast it", "[clustered_gathe
         CHECK(off <= int(0.03 * (isHard ? 1.0 : 2.0) * light.width * light.height));
         CHECK(std::abs(sum / expected - 1.0) < 0.01 * (isStrict ? 2.0 : 1.0));
         if (isHard) excessOfHard = excess;
-        if (isStrict) CHECK(excess <= 0.75 * excessOfHard);
+        if (isStrict) CHECK(excess <= 0.75 * excessOfHard + 1e-6 * expected);  // small pictures have rounding alone
     }
 }
 
@@ -261,9 +257,7 @@ TEST_CASE("widths agree, and ten runs are one", "[clustered_gather][large]") {
         for (int run = 0; run < (width == 16 ? 10 : 1); ++run) {
             ClusteredGather pass(rig.device(), 4, 4, ClusterVisibility::hard);
             recordOrder(rig, pass, room.scene, 2);
-            const Image light =
-                gatherOn(rig, pass, 4, room.position, room.normal,
-                         mapsOf(rig), Bits::found);
+            const Image light = gatherOn(rig, pass, 4, room.position, room.normal, mapsOf(rig), Bits::found);
             if (first.empty()) first = light.planes;
             CHECK(bitDifference(light.planes, first) == "");
         }

@@ -1,4 +1,4 @@
-// What receivers ask of paraboloid maps: directions to texels and back, lit or not.
+// What receivers ask of paraboloid maps: directions to texels and back, lit or not. Over 300 lines: all kinds of look-ups answer to the same rooms.
 #include <catch2/catch.hpp>
 #include <random>
 
