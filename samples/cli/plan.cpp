@@ -66,15 +66,20 @@ void printText(const LWPlan& plan) {
                plan.predictedMs, plan.predictedError, 100.0f * plan.confidence, plan.reason);
 }
 
-// The frame as a host of the library would give it.
+// The frame as a host of the library would give it, and as `lightwell render` does: the view itself is a source view.
 struct PlannedFrame {
-    PlannedFrame(const RenderInputs& inputs, bool hasGeometry) {
+    PlannedFrame(const RenderInputs& inputs, LWView view, bool hasGeometry) : source{view, &inputs.lwGBuffer()} {
         frame.lights = inputs.lights().data();
         frame.lightCount = std::uint32_t(inputs.lights().size());
         if (hasGeometry) frame.geometry = &inputs.geometry();
         std::copy_n(inputs.environment(), 3, frame.environment);
         frame.focus = inputs.focus();
+        frame.sourceViews = &source;
+        frame.sourceViewCount = 1;
     }
+    PlannedFrame(const PlannedFrame&) = delete;
+    PlannedFrame& operator=(const PlannedFrame&) = delete;
+    LWSourceView source;
     LWFrame frame = lightwell::make<LWFrame>();
 };
 
@@ -120,10 +125,10 @@ void planScene(const PlanOptions& options) {
     inputOptions.rsm.cascades = options.cascades;
     const auto rayScene = asUsage([&] { return std::make_unique<studio::RayScene>(scene, inputOptions.time); });
     const RenderInputs inputs(*rayScene, camera, inputOptions);
-    const PlannedFrame planned(inputs, options.hasGeometry);
 
     const lightwell::Device device = openDevice(options.device, std::uint32_t(options.width));
     const lightwell::View view(device, std::uint32_t(size.width), std::uint32_t(size.height));
+    const PlannedFrame planned(inputs, view.get(), options.hasGeometry);
     const LWPlan plan = lightwell::plan(view, planned.frame, inputs.lwGBuffer(), desc);
     print(options, scene->name, camera.name, size, device, planned.frame, plan,
           lightwell::listPlans(view, planned.frame, inputs.lwGBuffer(), desc));

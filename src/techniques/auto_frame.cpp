@@ -35,8 +35,8 @@ std::uint32_t inputsOf(const FrameTraits& traits) {
     return word;
 }
 
-// For what is missing: views, of which nothing is made here, are not.
-FrameTraits withoutViews(FrameTraits traits) {
+// As if views were given: of them nothing is made here, so that their lack is no reason.
+FrameTraits asWithViews(FrameTraits traits) {
     traits.hasViews = true;
     return traits;
 }
@@ -247,7 +247,7 @@ SteeringStep Auto::choose(Executor& executor, const LWFrame& frame, const FrameT
     const std::uint32_t inputs = inputsOf(traits);
     std::vector<Prediction> possible = predictions(traits);
     if (possible.empty())
-        fail(LW_ERROR_INVALID_ARGUMENT, "frame, gbuffer: expected what a technique can make light of, got none of: ", missingFor(withoutViews(traits)));
+        fail(LW_ERROR_INVALID_ARGUMENT, "frame, gbuffer: expected what a technique can make light of, got none of: ", missingFor(asWithViews(traits)));
     hasOther_ = false;
     inputs_ = inputs;
     const std::size_t ran = children_.running() ? children_.running()->candidate() : kNobody;
