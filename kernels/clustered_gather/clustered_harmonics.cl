@@ -2,6 +2,7 @@
 // clustered_gather_gather takes, before a surface's cosine is known. A point without a normal is seen as far as nothing lies
 // before it.
 #include "clustered_visibility.h"
+#include "shared/doubtful_light.h"
 #include "shared/subset_order.h"
 #include "shared/vpl_bands.h"
 
@@ -19,7 +20,8 @@ __kernel void clustered_gather_harmonics(__global const float* position, int4 po
     const lw_surface s = load_point(position, positionLayout, normal, normalLayout, hasNormals, x, y);
     lw_bands sum = no_bands();
     if (any_(s.valid)) {
-        lw_current current = {-1.0f, -1.0f, (real)1.0f, (real)1.0f};
+        lw_current current = no_cluster();
+        real doubt = (real)0.0f;  // of what a surface that faces each VPL gets, over the channels
         for (int k = 0; k < order.capacity; k += 2) {
             __global const float* const vpl[2] = {vpls + 12 * k, vpls + 12 * k + 12};
             real facing[2], from[2][3];
@@ -27,8 +29,10 @@ __kernel void clustered_gather_harmonics(__global const float* position, int4 po
             LW_UNROLL for (int u = 0; u < 2; ++u) {
                 const real seen = visibility_of(&current, maps, vpl[u], s);
                 add_bands(&sum, facing[u], from[u], seen, vpl[u]);
+                if (current.isDoubtful) doubt = fma_(facing[u] * current.doubt, vpl[u][8] + vpl[u][9] + vpl[u][10], doubt);
             }
         }
+        if (LW_VISIBILITY == 4) scale_bands(&sum, borne_out(sum.c[0][0] + sum.c[0][1] + sum.c[0][2], doubt));
     }
     const mask saturated = store_bands(finish_bands(sum), s.valid, harmonics, harmonicsLayout, band, x, y);
     const mask counted = and_(saturated, lanei_iota() + x < width);

@@ -30,7 +30,9 @@ typedef struct {
     {{frames1, frames2, frames3, frames4}, {records1, records2, records3, records4}, lists, sights, eyes, sight}
 
 // 1 where the cluster's map sees the surface, or the share of it that does; of voxels, of its light that arrives. Cluster -1 is seen everywhere.
-LW_FN real cluster_visibility(lw_maps maps, int cluster, const lw_surface s) {
+// doubt: 1 where that is doubtful, which only strict look-ups tell, else 0.
+LW_FN real cluster_visibility(lw_maps maps, int cluster, const lw_surface s, real* doubt) {
+    *doubt = (real)0.0f;
     if (cluster < 0) return (real)1.0f;
 #if LW_VISIBILITY == 0
     return (real)1.0f;
@@ -44,7 +46,10 @@ LW_FN real cluster_visibility(lw_maps maps, int cluster, const lw_surface s) {
 #if LW_VISIBILITY == 1
     return ones_(paraboloid_sees(maps.records[list], first, size, receiver));
 #elif LW_VISIBILITY == 4
-    return paraboloid_strict_visibility(maps.records[list], first, size, receiver);
+    mask doubtful;
+    const mask sees = paraboloid_sees_strictly(maps.records[list], first, size, receiver, &doubtful);
+    *doubt = ones_(doubtful);
+    return ones_(sees);
 #else
     return paraboloid_visibility(maps.records[list], first, size, receiver);
 #endif
@@ -55,13 +60,28 @@ LW_FN real cluster_visibility(lw_maps maps, int cluster, const lw_surface s) {
 typedef struct {
     float cluster, last;
     real seen, lastSeen;
+    real doubt, lastDoubt;
+    int isDoubtful;  // some lane's
 } lw_current;
+
+LW_FN lw_current no_cluster(void) {
+    const lw_current none = {-1.0f, -1.0f, (real)1.0f, (real)1.0f, (real)0.0f, (real)0.0f, 0};
+    return none;
+}
+
+LW_FN int some_doubt(real doubt) { return LW_VISIBILITY == 4 && any_(doubt > 0.0f); }
 
 LW_FN real visibility_of(lw_current* current, lw_maps maps, __global const float* vpl, const lw_surface s) {
     const float cluster = vpl[11];
     if (cluster != current->cluster) {
         current->cluster = cluster;
-        current->seen = cluster == current->last ? current->lastSeen : cluster_visibility(maps, (int)cluster, s);
+        if (cluster == current->last) {
+            current->seen = current->lastSeen;
+            current->doubt = current->lastDoubt;
+        } else {
+            current->seen = cluster_visibility(maps, (int)cluster, s, &current->doubt);
+        }
+        current->isDoubtful = some_doubt(current->doubt);
     }
     return current->seen;
 }

@@ -8,12 +8,16 @@
 #include "shared/surface.h"
 #include "shared/edge_weight.h"
 #include "shared/filter_rows.h"
+#include "shared/doubtful_light.h"
+#ifndef LW_DOUBT
+#define LW_DOUBT 0  // 1: a fourth plane of the irradiance holds what of its sum over the channels is doubtful
+#endif
 
 #define LW_UNROLL _Pragma("unroll")
 #define LW_BACK (LW_INTERLEAVE / 2 - 1)  // the window is [x - LW_BACK, x - LW_BACK + LW_INTERLEAVE)
 
 // Weighted sum of irradiance over the window; `weight` is the sum of the weights.
-typedef struct { real r, g, b, weight; } lw_window_sum;
+typedef struct { real r, g, b, weight, doubt; } lw_window_sum;
 
 // Where the window's rows begin in each image, and the distances between planes.
 typedef struct { int position, normal, irradiance, positionPlane, normalPlane, irradiancePlane; } lw_window_row;
@@ -32,6 +36,7 @@ LW_FN void add_row(lw_window_sum* sums, const lw_edges* edges, const int which, 
                    nz = LW_TAP(normal, row.normal + 2 * row.normalPlane);
         const real r = LW_TAP(irradiance, row.irradiance), g = LW_TAP(irradiance, row.irradiance + row.irradiancePlane),
                    b = LW_TAP(irradiance, row.irradiance + 2 * row.irradiancePlane);
+        const real doubt = LW_DOUBT ? LW_TAP(irradiance, row.irradiance + 3 * row.irradiancePlane) : (real)0.0f;
         LW_UNROLL for (int k = 0; k < LW_FILTER_ROWS; ++k) {
             if (!(which >> k & 1)) continue;
             const real w = edge_weight(edges[k], px, py, pz, nx, ny, nz);
@@ -39,6 +44,7 @@ LW_FN void add_row(lw_window_sum* sums, const lw_edges* edges, const int which, 
             sums[k].g = fma_(w, g, sums[k].g);
             sums[k].b = fma_(w, b, sums[k].b);
             sums[k].weight += w;
+            if (LW_DOUBT) sums[k].doubt = fma_(w, doubt, sums[k].doubt);
         }
     }
 #undef LW_TAP
@@ -48,7 +54,8 @@ LW_FN void add_row(lw_window_sum* sums, const lw_edges* edges, const int which, 
 LW_FN void store_mean(const lw_window_sum sum, mask valid, __global float* filtered, int4 filteredLayout,
                       __global float* validity, int4 validityLayout, int hasValidity, int x, int y) {
     // The pixel itself has weight 1 up to rounding, so the sum is never small.
-    const real scale = select_((real)0.0f, 1.0f / sum.weight, and_(valid, sum.weight > 0.0f));
+    real scale = select_((real)0.0f, 1.0f / sum.weight, and_(valid, sum.weight > 0.0f));
+    if (LW_DOUBT) scale *= borne_out(sum.r + sum.g + sum.b, sum.doubt);
     const int o = filteredLayout.x + y * filteredLayout.y + x;
     store_past(sum.r * scale, filtered, o);
     store_past(sum.g * scale, filtered, o + filteredLayout.z);
@@ -56,7 +63,7 @@ LW_FN void store_mean(const lw_window_sum sum, mask valid, __global float* filte
     if (hasValidity) store_past(ones_(valid), validity, validityLayout.x + y * validityLayout.y + x);
 }
 
-// One work-item = LW_WIDTH adjacent pixels of LW_FILTER_ROWS rows. irradiance -> filtered: 3 planes, W/m^2. validity: 1 on
+// One work-item = LW_WIDTH adjacent pixels of LW_FILTER_ROWS rows. irradiance -> filtered: 3 planes, W/m^2 (with LW_DOUBT: 4 -> 3). validity: 1 on
 // surfaces, 0 elsewhere; not written unless hasValidity.
 __kernel void interleaved_gather_filter(__global const float* position, int4 positionLayout,
                                         __global const float* normal, int4 normalLayout, int width, int height,
@@ -75,7 +82,7 @@ __kernel void interleaved_gather_filter(__global const float* position, int4 pos
     lw_window_sum sums[LW_FILTER_ROWS];
     mask some = splat_mask(0);
     LW_UNROLL for (int k = 0; k < LW_FILTER_ROWS; ++k) {
-        const lw_window_sum none = {(real)0.0f, (real)0.0f, (real)0.0f, (real)0.0f};
+        const lw_window_sum none = {(real)0.0f, (real)0.0f, (real)0.0f, (real)0.0f, (real)0.0f};
         const lw_surface s =
             load_surface(position, positionLayout, normal, normalLayout, x, min(y + k, height - 1));
         edges[k] = edges_of(s, s.scale);

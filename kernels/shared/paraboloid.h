@@ -18,15 +18,12 @@
 // Cosine between the receiver's normal and the stored one above which it can be the same surface; lax, as
 // normals of a G-buffer are bent by normal maps. At 0 the wall behind an edge would count as the one before it.
 #define LW_PARABOLOID_AGREES 0.5f
-// What a texel beside the nearest one met hides a receiver from a strict look-up where it is nearer than the receiver by this
+// What a texel beside the nearest one met makes a strict look-up doubt a receiver where it is nearer than the receiver by this
 // share of the ray's length, and stands before the receiver's plane by that share. Nearer, raised: light passes again
 // along the rims of openings; lowered: corners between walls and curved things darken. Before, raised: the same rims, where
 // normals are smoothed; lowered: mouldings and folds darken each other. Measured in docs/techniques/ssvp_visibility.md.
 #define LW_PARABOLOID_NEARER 2e-2f
 #define LW_PARABOLOID_BEFORE 1e-2f
-// The bilinear weight of such texels from which on nothing is seen. Raised, to 1/2, rims are lit again by half; lowered, all that
-// touches a hiding texel turns dark, corners of bright rooms too.
-#define LW_PARABOLOID_HIDDEN 0.25f
 
 // ---- texels and directions
 
@@ -154,13 +151,13 @@ LW_FN mask paraboloid_texel_lit(__global const float* records, int firstRecord, 
     return and_(or_(and_(before, front), own), r2 <= LW_PARABOLOID_RIM * LW_PARABOLOID_RIM);
 }
 
-// 1 where what texel (x, y) saw hides receivers that the nearest texel leaves lit, `seen`, else 0: it hides what it is clearly nearer
+// Whether what texel (x, y) saw hides receivers that the nearest texel leaves lit, `seen`: it hides what it is clearly nearer
 // than, whose plane it stands before, and which is not on its own. One gather, and one more where it is nearer.
-LW_FN real hidden_by_texel(__global const float* records, int firstRecord, int size, lanei x, lanei y, lw_map_receiver r, mask seen) {
+LW_FN mask hidden_by_texel(__global const float* records, int firstRecord, int size, lanei x, lanei y, lw_map_receiver r, mask seen) {
     const lanei at = paraboloid_record(firstRecord, size, x, y);
     const real hit = gather(records, at);
     const mask nearer = and_(seen, hit < r.distance * (1.0f - LW_PARABOLOID_NEARER));
-    if (!any_(nearer)) return (real)0.0f;
+    if (!any_(nearer)) return nearer;
     const float step = paraboloid_step(size);
     const real u = paraboloid_uv(to_real(x), step), v = paraboloid_uv(to_real(y), step);
     const real r2 = fma_(u, u, v * v), unit = r.distance * (1.0f + r2);
@@ -169,7 +166,7 @@ LW_FN real hidden_by_texel(__global const float* records, int firstRecord, int s
     const mask other = or_(off > LW_PARABOLOID_BIAS * unit, agreement < LW_PARABOLOID_AGREES);
     // Over the receiver's plane, times m.
     const real height = fma_(hit, fma_(2.0f * u, r.nx, fma_(2.0f * v, r.ny, (1.0f - r2) * r.nz)), -r.behind * (1.0f + r2));
-    return ones_(and_(and_(nearer, other), height > LW_PARABOLOID_BEFORE * unit));
+    return and_(and_(nearer, other), height > LW_PARABOLOID_BEFORE * unit);
 }
 
 // Rounding may leave the map by less than a texel: below, the conversion towards zero brings it back.
@@ -213,22 +210,20 @@ LW_FN real paraboloid_visibility(__global const float* records, int firstRecord,
     return select_((real)(0.0f), fma_(t.fy, lower - upper, upper), r.inside);
 }
 
-// Strict, in [0,1]: as hard, and fading to dark beside texels that met something which clearly stands before the receiver. Light that
-// passes along the rim of what hides a lit surface is as strong as that surface is bright, and rules the error of dark rooms; what is
-// dark by mistake misses its own light at most. Five gathers, and up to three more.
-LW_FN real paraboloid_strict_visibility(__global const float* records, int firstRecord, int size, lw_map_receiver r) {
+// Strict: as hard; `doubtful` where one of the three other texels around met something which clearly stands before the receiver. Light
+// that passes along the rim of what hides a lit surface is as strong as that surface is bright, and rules the error of dark rooms.
+// Five gathers, and up to three more.
+LW_FN mask paraboloid_sees_strictly(__global const float* records, int firstRecord, int size, lw_map_receiver r, mask* doubtful) {
     const lw_four_texels t = texels_around(size, r);
     const lanei x = nearest_texel(size, r.x), y = nearest_texel(size, r.y);
-    const mask right = x > t.x0, below = y > t.y0;
     const mask seen = and_(r.inside, paraboloid_texel_lit(records, firstRecord, size, x, y, r));
-    if (!any_(seen)) return (real)0.0f;
-    const lanei otherX = selecti_(t.x1, t.x0, right), otherY = selecti_(t.y1, t.y0, below);
-    // What the other column and row weigh, 1/2 at most.
-    const real wx = select_(t.fx, 1.0f - t.fx, right), wy = select_(t.fy, 1.0f - t.fy, below);
-    real hidden = hidden_by_texel(records, firstRecord, size, otherX, y, r, seen) * (wx * (1.0f - wy));
-    hidden = fma_(hidden_by_texel(records, firstRecord, size, x, otherY, r, seen), wy * (1.0f - wx), hidden);
-    hidden = fma_(hidden_by_texel(records, firstRecord, size, otherX, otherY, r, seen), wx * wy, hidden);
-    return select_((real)0.0f, fmax(fma_(hidden, -1.0f / LW_PARABOLOID_HIDDEN, 1.0f), 0.0f), seen);
+    *doubtful = splat_mask(0);
+    if (!any_(seen)) return seen;
+    const lanei otherX = selecti_(t.x1, t.x0, x > t.x0), otherY = selecti_(t.y1, t.y0, y > t.y0);
+    const mask column = hidden_by_texel(records, firstRecord, size, otherX, y, r, seen);
+    const mask row = or_(column, hidden_by_texel(records, firstRecord, size, x, otherY, r, and_(seen, not_(column))));
+    *doubtful = or_(row, hidden_by_texel(records, firstRecord, size, otherX, otherY, r, and_(seen, not_(row))));
+    return seen;
 }
 
 #endif

@@ -34,6 +34,10 @@ LW_FN void add_bands(lw_bands* sum, real facing, const real* from, real seen, __
     }
 }
 
+LW_FN void scale_bands(lw_bands* sum, real by) {
+    LW_UNROLL for (int b = 0; b < 4; ++b) LW_UNROLL for (int c = 0; c < 3; ++c) sum->c[b][c] *= by;
+}
+
 LW_FN lw_bands no_bands(void) {
     lw_bands none;
     LW_UNROLL for (int b = 0; b < 4; ++b) LW_UNROLL for (int c = 0; c < 3; ++c) none.c[b][c] = (real)0.0f;

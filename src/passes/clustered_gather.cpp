@@ -131,7 +131,7 @@ void ClusteredGather::recordGather(Executor& executor, const Planes& position, c
     withMaps(maps, [&](const auto&... of) {
         executor.run("clustered_gather.gather", gather_, {(position.width + pixels - 1) / pixels, position.height}, groupOf(gather_),
                      position, normal, cl_int(position.width), cl_int(position.height), vpls_, order_, masks, tiles, of..., shadowed_,
-                     irradiance, counts);
+                     cl_int(irradiance.count > 3), irradiance, counts);
     });
 }
 

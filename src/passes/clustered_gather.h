@@ -63,7 +63,8 @@ public:
     // cluster. At most kMostClusteredLists of them.
     void recordOrder(Executor& executor, const std::vector<GatheredList>& lists);
     // Pass "clustered_gather.gather"; masks (of `vpls`, by InterleavedGather::recordCull), irradiance and counts as in
-    // InterleavedGather::recordGather.
+    // InterleavedGather::recordGather. Of strict look-ups: a fourth plane of irradiance, if there is one, takes what is doubtful (the sum
+    // over its channels), for a filter made with `doubtful`; otherwise what is not borne out is gone already.
     void recordGather(Executor& executor, const Planes& position, const Planes& normal, const Buffer& masks,
                       const lw_vpl_tiles& tiles, const ClusterMaps& maps, const Planes& irradiance, const Buffer& counts);
 

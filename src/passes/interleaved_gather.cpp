@@ -31,9 +31,15 @@ std::size_t boundsBytes(const lw_vpl_tiles& tiles) {
 
 Defines definesOf(std::uint32_t interleave) { return {{"LW_INTERLEAVE", std::to_string(interleave)}}; }
 
+Defines filterDefines(std::uint32_t interleave, bool doubtful) {
+    Defines defines = definesOf(interleave);
+    if (doubtful) defines.push_back({"LW_DOUBT", "1"});
+    return defines;
+}
+
 }  // namespace
 
-InterleavedGather::InterleavedGather(Device& device, std::uint32_t interleave)
+InterleavedGather::InterleavedGather(Device& device, std::uint32_t interleave, bool doubtful)
     : interleave_(interleave),
       gather_(device.programs().kernel("interleaved_gather/interleaved_gather", "interleaved_gather_gather",
                                        definesOf(interleave))),
@@ -43,7 +49,7 @@ InterleavedGather::InterleavedGather(Device& device, std::uint32_t interleave)
       cull_(device.programs().kernel(kTilesProgram, "interleaved_gather_cull")) {
     if (interleave > 1)
         filter_ = &device.programs().kernel("interleaved_gather/interleaved_filter", "interleaved_gather_filter",
-                                            definesOf(interleave));
+                                            filterDefines(interleave, doubtful));
 }
 
 lw_vpl_tiles VplTiles::layout(std::uint32_t width, std::uint32_t height, lw_subset_order order,

@@ -39,7 +39,8 @@ private:
 class InterleavedGather {
 public:
     // interleave: 1, 2, 4 or 8.
-    InterleavedGather(Device& device, std::uint32_t interleave);
+    // doubtful: the filter takes what a strict ClusteredGather left in a fourth plane, and keeps of it what the rest of the light bears out.
+    InterleavedGather(Device& device, std::uint32_t interleave, bool doubtful = false);
 
     // Passes "interleaved_gather.bounds" and ".cull": finds the VPLs (lw_vpl by slot) that tiles of the
     // image can skip. `tiles` has room for them.

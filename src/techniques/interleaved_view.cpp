@@ -40,7 +40,7 @@ InterleavedView::InterleavedView(Device& device, const InterleavedOptions& optio
       gatheredHeight_(options.gathered(view.maxHeight)),
       counts_(device, kCountBytes, "counts of a view") {
     const std::uint32_t width = gatheredWidth_, height = gatheredHeight_;
-    if (options.halvings || options.filters() || options.keeps()) gathered_ = PlanarImage(device, width, height, 3, "gathered irradiance");
+    if (options.halvings || options.filters() || options.keeps()) gathered_ = PlanarImage(device, width, height, options.gatheredPlanes(), "gathered irradiance");
     if (options.halvings && options.filters()) filtered_ = PlanarImage(device, width, height, 3, "filtered irradiance");
     for (std::uint32_t l = 1; l <= options.halvings; ++l) {
         const std::uint32_t w = JointBilateral::halved(view.maxWidth, l), h = JointBilateral::halved(view.maxHeight, l);
@@ -99,6 +99,7 @@ void InterleavedView::light(Executor& executor, const Passes& passes, const LWCa
     if (history_)
         passes.history->record(executor, {gbuffer_.position, gbuffer_.normal, gbuffer_.motion, made, irradiance, {}, {}}, camera, *history_);
     lastGathered_ = gathered;
+    lastGathered_.count = 3;
     lastFiltered_ = lit;
 }
 
@@ -234,7 +235,7 @@ std::uint64_t InterleavedView::estimateBytes(const InterleavedOptions& options, 
     return history + senders + repairs + levels + GBufferInput::estimateBytes(view, needsOf(options), uploads) +
            OutputTarget::estimateBytes(view, 3, uploads) +
            OutputTarget::estimateBytes(view, 1, uploads) + kCountBytes +
-           images * 3 * paddedWidth(width) * height * sizeof(float) +
+           (images * 3 + (options.gatheredPlanes() - 3)) * paddedWidth(width) * height * sizeof(float) +
            VplTiles::estimateBytes(width, height, order, options.interleave);
 }
 

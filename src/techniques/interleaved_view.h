@@ -26,10 +26,12 @@ struct InterleavedOptions {
     std::uint32_t halvings = 0;  // of columns and rows before the gather: 0, 1, 2
     TemporalHistoryOptions history;  // of what comes of these; none with 0 frames
     bool compensated = false;  // by BoundingCompensation; needs the G-buffer's direct radiance and camera
+    bool doubtful = false;  // the gather is strict: what it doubts waits for the filter, if there is one
     float repairs = 0.0f;  // above 0, with one halving: the share by which light may differ around pixels that are not gathered by themselves
 
     bool keeps() const { return history.frames > 0; }
     bool filters() const { return filter && interleave > 1; }
+    std::uint32_t gatheredPlanes() const { return doubtful && filters() ? 4 : 3; }
     std::uint32_t gathered(std::uint32_t along) const { return JointBilateral::halved(along, halvings); }
 };
 

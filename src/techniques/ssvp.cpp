@@ -58,7 +58,7 @@ public:
           desc_(desc),
           sampling_(device, samplingOptions(desc)),
           maps_(device, occluderOptions(desc), stagesOf(desc)),
-          passes_(device, desc.interleave),
+          passes_(device, desc.interleave, interleavedOptions(desc).doubtful),
           gather_(device, desc.interleave, groupsOf(desc), visibilityOf(desc.visibility)) {
         for (std::size_t i = 0; i < stagesOf(desc); ++i) stages_.emplace_back(device, desc, i);
         if (repairs() && desc.compensation > 0)

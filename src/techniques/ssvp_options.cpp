@@ -46,6 +46,7 @@ InterleavedOptions interleavedOptions(const LWSsvpDesc& desc) {
     options.halvings = desc.autoResolution > 0.0f ? 1 : std::uint32_t(desc.resolution);
     options.history = {desc.history, desc.historyClamp, 0};
     options.compensated = desc.compensation > 0;
+    options.doubtful = desc.visibility == LW_VISIBILITY_STRICT;
     options.repairs = desc.autoResolution;
     return options;
 }

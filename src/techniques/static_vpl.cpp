@@ -34,6 +34,7 @@ InterleavedOptions interleavedOptions(const LWStaticVplDesc& desc) {
     options.interleave = desc.interleave;
     options.filter = desc.filter != 0;
     options.halvings = std::uint32_t(desc.resolution);
+    options.doubtful = desc.visibility == LW_VISIBILITY_STRICT;
     options.history.frames = 0;  // nothing in a frame differs by chance from the last one's
     return options;
 }
@@ -77,7 +78,7 @@ public:
           light_(device),
           phantom_(device),
           list_(device, listOptions(desc)),
-          gather_(device, desc.interleave) {
+          gather_(device, desc.interleave, interleavedOptions(desc).doubtful) {
         if (interleavedOptions(desc).halvings) bilateral_.emplace(device);
         if (isShadowed(desc)) shadows_.emplace(device, desc);
     }

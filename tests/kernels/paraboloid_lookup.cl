@@ -36,5 +36,7 @@ __kernel void lookup_receivers(__global const lw_paraboloid* frames, __global co
         load(receivers, i + 3 * stride), load(receivers, i + 4 * stride), load(receivers, i + 5 * stride));
     store(ones_(paraboloid_sees(records, map * size * size, size, r)), out, i);
     store(paraboloid_visibility(records, map * size * size, size, r), out, i + stride);
-    store(paraboloid_strict_visibility(records, map * size * size, size, r), out, i + 2 * stride);
+    mask doubtful;
+    const mask seen = paraboloid_sees_strictly(records, map * size * size, size, r, &doubtful);
+    store(ones_(seen) - ones_(doubtful), out, i + 2 * stride);
 }
