@@ -47,6 +47,25 @@ __kernel void paraboloid_map_clear(__global const int* states, int texels, __glo
     vstore2((uint2)(as_uint(INFINITY), 0xffffffffu), (size_t)map * texels + texel, records);
 }
 
+// One work-item = LW_WIDTH texels (x) of a map (y): marks those of stale maps beside which another met something nearer. Distances
+// are read and normals written: no item reads what another writes.
+__kernel void paraboloid_map_marks(__global const int* states, int size, __global float* records) {
+    const int texel = (int)get_global_id(0) * LW_WIDTH, map = (int)get_global_id(1);
+    if (texel >= size * size || !(states[map] & LW_MAP_STALE)) return;
+    const lanei x = lanei_iota() + texel % size, last = (lanei)(size - 1);
+    const int y = texel / size, first = map * size * size;
+    const lanei at = paraboloid_record(first, size, x, (lanei)y);
+    real nearest = gather(records, at);
+    const real limit = nearest * (1.0f - 0.5f * LW_PARABOLOID_NEARER);
+    for (int dy = -1; dy <= 1; ++dy)
+        for (int dx = -1; dx <= 1; ++dx) {
+            const lanei column = clamp(x + dx, (lanei)0, last);
+            nearest = fmin(nearest, gather(records, paraboloid_record(first, size, column, (lanei)clamp(y + dy, 0, size - 1))));
+        }
+    const lanei mark = selecti_((lanei)0, (lanei)(int)LW_PARABOLOID_BESIDE_NEARER, nearest < limit);
+    scatter(as_real_(as_lanei_(gather(records, at + 1)) | mark), records, at + 1);
+}
+
 // One work-item = LW_WIDTH texels (x) of a map (y): distance, normal in the world, albedo as planes for a debug
 // view, the maps one below the other; 0 where nothing was met.
 __kernel void paraboloid_map_planes(__global const lw_paraboloid* frames, __global const float* records,
@@ -56,7 +75,7 @@ __kernel void paraboloid_map_planes(__global const lw_paraboloid* frames, __glob
     const int at = map * size * size + texel;
     const real low = load(records, 2 * at), high = load(records, 2 * at + LW_WIDTH);
     const lanei bits = as_lanei_(odd_(low, high)), colour = loadi(albedo, at);
-    const mask hit = bits != 0;
+    const mask hit = (bits & (lanei)LW_PARABOLOID_HIT) != 0;
     const lw_paraboloid f = frames[map];
     const real x = packed_normal(bits, 0), y = packed_normal(bits, 1), z = packed_normal(bits, 2);
     const real zero = 0.0f;

@@ -133,22 +133,26 @@ LW_FN void compare_planes(real hit, lanei bits, real u, real v, real r2, lw_map_
     *agreement = fma_(nx, r.nx, fma_(ny, r.ny, nz * r.nz));
 }
 
-// Whether the surface that texel (x, y) saw leaves the receiver lit. Two gathers.
-LW_FN mask paraboloid_texel_lit(__global const float* records, int firstRecord, int size, lanei x, lanei y,
-                                lw_map_receiver r) {
-    const lanei at = paraboloid_record(firstRecord, size, x, y);
-    const real hit = gather(records, at);
+// Whether the surface that texel (x, y) saw, of record (hit, bits), leaves the receiver lit.
+LW_FN mask record_lit(real hit, lanei bits, int size, lanei x, lanei y, lw_map_receiver r) {
     const float step = paraboloid_step(size);
     const real u = paraboloid_uv(to_real(x), step), v = paraboloid_uv(to_real(y), step);
     const real r2 = fma_(u, u, v * v), limit = LW_PARABOLOID_BIAS * r.distance * (1.0f + r2);
     real off, agreement;
-    compare_planes(hit, gatheri((__global const int*)records, at + 1), u, v, r2, r, &off, &agreement);
+    compare_planes(hit, bits, u, v, r2, r, &off, &agreement);
     const mask before = r.distance <= hit * (1.0f + LW_PARABOLOID_BIAS);
     const mask own = and_(off <= limit, agreement >= LW_PARABOLOID_AGREES);
     // Not the other side of a sheet, as near as the side that the texel saw. (Not as the negation of its being that: Oclgrind
     // misreads negated comparisons.)
     const mask front = or_(off > limit, agreement > -LW_PARABOLOID_AGREES);
     return and_(or_(and_(before, front), own), r2 <= LW_PARABOLOID_RIM * LW_PARABOLOID_RIM);
+}
+
+// The same; two gathers.
+LW_FN mask paraboloid_texel_lit(__global const float* records, int firstRecord, int size, lanei x, lanei y,
+                                lw_map_receiver r) {
+    const lanei at = paraboloid_record(firstRecord, size, x, y);
+    return record_lit(gather(records, at), gatheri((__global const int*)records, at + 1), size, x, y, r);
 }
 
 // Whether what texel (x, y) saw hides receivers that the nearest texel leaves lit, `seen`: it hides what it is clearly nearer
@@ -212,17 +216,19 @@ LW_FN real paraboloid_visibility(__global const float* records, int firstRecord,
 
 // Strict: as hard; `doubtful` where one of the three other texels around met something which clearly stands before the receiver. Light
 // that passes along the rim of what hides a lit surface is as strong as that surface is bright, and rules the error of dark rooms.
-// Five gathers, and up to three more.
+// Two gathers, and beside something nearer, as the map's marks tell (paraboloid_map_marks), three to six more.
 LW_FN mask paraboloid_sees_strictly(__global const float* records, int firstRecord, int size, lw_map_receiver r, mask* doubtful) {
-    const lw_four_texels t = texels_around(size, r);
-    const lanei x = nearest_texel(size, r.x), y = nearest_texel(size, r.y);
-    const mask seen = and_(r.inside, paraboloid_texel_lit(records, firstRecord, size, x, y, r));
+    const lanei x = nearest_texel(size, r.x), y = nearest_texel(size, r.y), at = paraboloid_record(firstRecord, size, x, y);
+    const lanei bits = gatheri((__global const int*)records, at + 1);
+    const mask seen = and_(r.inside, record_lit(gather(records, at), bits, size, x, y, r));
+    const mask asked = and_(seen, bits < 0);  // marked: LW_PARABOLOID_BESIDE_NEARER is the sign
     *doubtful = splat_mask(0);
-    if (!any_(seen)) return seen;
+    if (!any_(asked)) return seen;
+    const lw_four_texels t = texels_around(size, r);
     const lanei otherX = selecti_(t.x1, t.x0, x > t.x0), otherY = selecti_(t.y1, t.y0, y > t.y0);
-    const mask column = hidden_by_texel(records, firstRecord, size, otherX, y, r, seen);
-    const mask row = or_(column, hidden_by_texel(records, firstRecord, size, x, otherY, r, and_(seen, not_(column))));
-    *doubtful = or_(row, hidden_by_texel(records, firstRecord, size, otherX, otherY, r, and_(seen, not_(row))));
+    const mask column = hidden_by_texel(records, firstRecord, size, otherX, y, r, asked);
+    const mask row = or_(column, hidden_by_texel(records, firstRecord, size, x, otherY, r, and_(asked, not_(column))));
+    *doubtful = or_(row, hidden_by_texel(records, firstRecord, size, otherX, otherY, r, and_(asked, not_(row))));
     return seen;
 }
 

@@ -35,6 +35,7 @@ ParaboloidMap::ParaboloidMap(Device& device, std::uint32_t size)
       clear_(device.programs().kernel(kProgram, "paraboloid_map_clear")),
       trace_(device.programs().kernel(kTrace, "paraboloid_map_trace")),
       notice_(device.programs().kernel(kTrace, "paraboloid_map_notice")),
+      marks_(device.programs().kernel(kProgram, "paraboloid_map_marks")),
       planes_(device.programs().kernel(kProgram, "paraboloid_map_planes")) {
     if (size < kSmallest || size > kLargest || size % 16 != 0)
         fail(LW_ERROR_INVALID_ARGUMENT, "mapSize: expected a multiple of 16 in ", kSmallest, " .. ", kLargest,
@@ -76,6 +77,12 @@ void ParaboloidMap::recordPlaces(Executor& executor, const Buffer& clusters, std
 void ParaboloidMap::noteDrawn(std::uint64_t revision) {
     drawnCount_ = mapCount_;
     drawnRevision_ = revision;
+}
+
+void ParaboloidMap::recordMarks(Executor& executor) {
+    if (mapCount_ == 0) return;
+    executor.run("paraboloid_map.marks", marks_, {std::size_t(size_) * size_ / marks_.width(), mapCount_}, rowGroup(device_), state_,
+                 cl_int(size_), records_);
 }
 
 Range ParaboloidMap::grid() const {

@@ -35,6 +35,8 @@ public:
     void recordPlaces(Executor& executor, const Buffer& clusters, std::uint32_t clusterCount, const Buffer& diagonal,
                       std::uint64_t revision);
     void noteDrawn(std::uint64_t revision);
+    // Pass "paraboloid_map.marks", after all that draws: what strict look-ups ask for (LW_PARABOLOID_BESIDE_NEARER), of the maps drawn anew.
+    void recordMarks(Executor& executor);
     MapTexels texels() const { return {frames_, state_, records_, albedo_, size_, mapCount_}; }
     void redrawAll() { drawnCount_ = 0; }  // in the next record(), whatever moved
 
@@ -65,7 +67,7 @@ private:
 
     Device& device_;
     std::uint32_t size_;
-    Kernel &place_, &clear_, &trace_, &notice_, &planes_;
+    Kernel &place_, &clear_, &trace_, &notice_, &marks_, &planes_;
     Buffer frames_, state_, records_, albedo_, counters_, diagonal_;
     std::uint32_t mapCount_ = 0;
     std::uint32_t drawnCount_ = 0;  // maps that hold what `drawnRevision_` showed

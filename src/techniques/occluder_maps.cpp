@@ -142,6 +142,11 @@ SurfelSet OccluderMaps::surfels() const {
 }
 
 void OccluderMaps::record(Executor& executor, std::size_t index, const Buffer& clusters, std::uint32_t clusterCount) {
+    draw(executor, index, clusters, clusterCount);
+    if (options_.isStrict) stages_[index].maps.recordMarks(executor);
+}
+
+void OccluderMaps::draw(Executor& executor, std::size_t index, const Buffer& clusters, std::uint32_t clusterCount) {
     Stage& stage = stages_[index];
     if (!draws(index)) clusterCount = 0;
     if (!draws(index) || source_ == Source::triangles) {

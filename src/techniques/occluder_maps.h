@@ -24,6 +24,7 @@ struct OccluderOptions {
     std::uint32_t mapSize = 128;
     std::size_t drawn = 1;       // the first so many stages have maps; those of the others are left empty
     bool isWanted = true;        // false: nothing asks for occluders
+    bool isStrict = false;       // maps are marked for strict look-ups
     bool throughVoxels = false;  // the light goes past voxels; maps serve what is drawn from them
     // What RSMs and source views show may be occluders; else a frame without triangles and surfels is refused.
     bool takesScreen = true;
@@ -70,6 +71,7 @@ private:
         PullPush holes;
     };
 
+    void draw(Executor& executor, std::size_t stage, const Buffer& clusters, std::uint32_t clusterCount);
     Source sourceOf(const LWFrame& frame) const;
     bool draws(std::size_t stage) const { return source_ != Source::none && stage < options_.drawn; }
     SurfelSet surfels() const;

@@ -62,6 +62,7 @@ OccluderOptions occluderOptions(const LWSsvpDesc& desc) {
     options.occluders = desc.occluders;
     options.mapSize = desc.mapSize;
     options.isWanted = desc.visibility != LW_VISIBILITY_NONE || desc.bounces > 1;
+    options.isStrict = desc.visibility == LW_VISIBILITY_STRICT;
     options.throughVoxels = desc.visibility == LW_VISIBILITY_VOXEL;
     const bool looks = desc.visibility != LW_VISIBILITY_NONE && !options.throughVoxels;
     options.drawn = looks ? stagesOf(desc) : desc.bounces - 1;

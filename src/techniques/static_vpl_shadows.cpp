@@ -25,6 +25,7 @@ OccluderOptions occluderOptions(const LWStaticVplDesc& desc) {
     OccluderOptions options;
     options.occluders = desc.occluders;
     options.mapSize = desc.mapSize;
+    options.isStrict = desc.visibility == LW_VISIBILITY_STRICT;
     options.throughVoxels = isThroughVoxels(desc);
     options.drawn = options.throughVoxels ? 0 : 1;
     options.takesScreen = false;  // neither RSMs nor views are asked for
