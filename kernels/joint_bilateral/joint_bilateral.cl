@@ -229,18 +229,20 @@ LW_FN void sum_any(lw_sum* sum, const lw_surface s, const lw_coarse* coarse, int
         }
 }
 
-// For pixels that have no sample on their own surface, and those that are neither surface nor background: counts those that exist, and
-// lights the former like their neighbourhood.
-LW_FN void substitute(lw_sum sum[2], const mask lost[2], int* lostPixels, int* badPixels, const lw_surface s[2], const lw_coarse* coarse, int hx,
-                      int hy, int k, int width) {
+// For pixels that have no sample on their own surface, and those that are neither surface nor background: counts those that exist (the
+// former by 1, the latter by 1 << 16), and lights the former like their neighbourhood.
+LW_FN int substitute(lw_sum sum[2], const mask lost[2], const lw_surface s[2], const lw_coarse* coarse, int hx, int hy, int k, int width) {
+    lanei found = (lanei)0;
     LW_UNROLL for (int odd = 0; odd < 2; ++odd) {
         const mask exists = lanei_iota() * 2 + (lanei)(2 * hx + odd) < (lanei)width;
-        *lostPixels += count_(and_(lost[odd], exists)), *badPixels += count_(and_(s[odd].rejected, exists));
+        found += selecti_((lanei)0, (lanei)1, and_(lost[odd], exists)) + selecti_((lanei)0, (lanei)(1 << 16), and_(s[odd].rejected, exists));
+        if (!any_(lost[odd])) continue;
         lw_sum rest;
         sum_any(&rest, s[odd], coarse, hx, hy, k, odd, 1);
         sum[odd].weight = select_(sum[odd].weight, rest.weight, lost[odd]);
         LW_UNROLL for (int a = 0; a < LW_CHANNELS; ++a) sum[odd].light[a] = select_(sum[odd].light[a], rest.light[a], lost[odd]);
     }
+    return sum_(found);
 }
 
 // One work-item = 2 * LW_WIDTH pixels of two rows: the even and the odd columns of LW_WIDTH blocks.
@@ -277,7 +279,7 @@ __kernel void joint_bilateral_upsample(__global const float* position, int4 posi
 
     if (hy + 1 < coarse.height) expect_samples(&coarse, hx + 2 * LW_WIDTH, hy + 1);
     const int isInside = shift_inside(hx, -1, coarse.width) && shift_inside(hx, 1, coarse.width), hasSecond = x + LW_WIDTH < rowEnd;
-    int lostPixels = 0, badPixels = 0;
+    int found = 0;
 #if LW_MARKS
     mask steep = splat_mask(0);
 #endif
@@ -309,7 +311,7 @@ __kernel void joint_bilateral_upsample(__global const float* position, int4 posi
         marks[(y + k) * LW_REPAIR_WORDS_OF_ROW(width) + (int)get_global_id(0)] = marked;
 #endif
         if (rarely_(any_(or_(or_(lost[0], s[0].rejected), or_(lost[1], s[1].rejected)))))
-            substitute(sum, lost, &lostPixels, &badPixels, s, &coarse, hx, hy, k, width);
+            found += substitute(sum, lost, s, &coarse, hx, hy, k, width);
 
         real out[LW_CHANNELS][2];
         LW_UNROLL for (int odd = 0; odd < 2; ++odd) {
@@ -329,6 +331,6 @@ __kernel void joint_bilateral_upsample(__global const float* position, int4 posi
         if (hasValidity) store_pair(validity, validityLayout.x + (y + k) * validityLayout.y + x, hasSecond, ones_(s[0].valid), ones_(s[1].valid));
 #endif
     }
-    if (lostPixels) atomic_add(counts + 1, lostPixels);
-    if (badPixels) atomic_add(counts, badPixels);
+    if (found & 0xffff) atomic_add(counts + 1, found & 0xffff);
+    if (found >> 16) atomic_add(counts, found >> 16);
 }
