@@ -164,6 +164,14 @@ LW_FN void expect_samples(const lw_coarse* coarse, int hx, int hy) {
         will_load(coarse->light + coarse->lightLayout.x + a * coarse->lightLayout.z + hy * coarse->lightLayout.y + hx);
 }
 
+// The surfaces of 2 * LW_WIDTH pixels from column x on will be: those of the next work-item, which else waits for memory first.
+LW_FN void expect_surfaces(__global const float* position, int4 positionLayout, __global const float* normal, int4 normalLayout, int x, int y) {
+    LW_UNROLL for (int a = 0; a < 3; ++a) LW_UNROLL for (int next = 0; next < 2; ++next) {
+        will_load(position + positionLayout.x + a * positionLayout.z + y * positionLayout.y + x + next * LW_WIDTH);
+        will_load(normal + normalLayout.x + a * normalLayout.z + y * normalLayout.y + x + next * LW_WIDTH);
+    }
+}
+
 LW_FN void clear_sum(lw_sum* sum) {
     LW_UNROLL for (int a = 0; a < LW_CHANNELS; ++a) sum->light[a] = (real)0.0f;
     sum->weight = (real)0.0f;
@@ -229,6 +237,29 @@ LW_FN void sum_any(lw_sum* sum, const lw_surface s, const lw_coarse* coarse, int
         }
 }
 
+// Sums around row k of LW_WIDTH blocks, and the pixels that no sample is on the surface of.
+LW_FN void sum_around(lw_sum sum[2], mask lost[2], const lw_surface s[2], const lw_coarse* coarse, int hx, int hy, int k) {
+    if (usually_(shift_inside(hx, -1, coarse->width) && shift_inside(hx, 1, coarse->width)))
+        sum_inside(sum, s, coarse, hx, hy, k);
+    else
+        LW_UNROLL for (int odd = 0; odd < 2; ++odd) sum_any(&sum[odd], s[odd], coarse, hx, hy, k, odd, 0);
+    // A weight this far below a sample's own tent comes from rounding at the edge tests' borders.
+    LW_UNROLL for (int odd = 0; odd < 2; ++odd) lost[odd] = and_(s[odd].valid, not_(sum[odd].weight > 1e-4f));
+}
+
+#if LW_MARKS
+// Bits of the pixels x + ... that exist, are surfaces, and lost or in a block where light is steep.
+LW_FN uint marks_of(const lw_surface s[2], const mask lost[2], mask steep, int x, int width) {
+    uint marked = 0;
+    LW_UNROLL for (int odd = 0; odd < 2; ++odd) {
+        const mask exists = lanei_iota() * 2 + (lanei)(x + odd) < (lanei)width;
+        const mask here = and_(and_(s[odd].valid, or_(lost[odd], steep)), exists);
+        if (any_(here)) marked |= apart(bits_(here)) << odd;
+    }
+    return marked;
+}
+#endif
+
 // For pixels that have no sample on their own surface, and those that are neither surface nor background: counts those that exist (the
 // former by 1, the latter by 1 << 16), and lights the former like their neighbourhood.
 LW_FN int substitute(lw_sum sum[2], const mask lost[2], const lw_surface s[2], const lw_coarse* coarse, int hx, int hy, int k, int width) {
@@ -278,7 +309,7 @@ __kernel void joint_bilateral_upsample(__global const float* position, int4 posi
                           (width + 1) / 2, (height + 1) / 2};
 
     if (hy + 1 < coarse.height) expect_samples(&coarse, hx + 2 * LW_WIDTH, hy + 1);
-    const int isInside = shift_inside(hx, -1, coarse.width) && shift_inside(hx, 1, coarse.width), hasSecond = x + LW_WIDTH < rowEnd;
+    const int hasSecond = x + LW_WIDTH < rowEnd;
     int found = 0;
 #if LW_MARKS
     mask steep = splat_mask(0);
@@ -286,29 +317,14 @@ __kernel void joint_bilateral_upsample(__global const float* position, int4 posi
     for (int k = 0; k < rows; ++k) {
         lw_pair p[3], n[3];
         load_pairs(p, n, position, positionLayout, normal, normalLayout, x, y + k, rowEnd);
-        // What the next work-item reads: without, it waits for memory first.
-        LW_UNROLL for (int a = 0; a < 3; ++a) LW_UNROLL for (int next = 2; next < 4; ++next) {
-            will_load(position + positionLayout.x + a * positionLayout.z + (y + k) * positionLayout.y + x + next * LW_WIDTH);
-            will_load(normal + normalLayout.x + a * normalLayout.z + (y + k) * normalLayout.y + x + next * LW_WIDTH);
-        }
+        expect_surfaces(position, positionLayout, normal, normalLayout, x + 2 * LW_WIDTH, y + k);
         const lw_surface s[2] = {surface_of(p, n, 0), surface_of(p, n, 1)};
         lw_sum sum[2];
-        if (usually_(isInside))
-            sum_inside(sum, s, &coarse, hx, hy, k);
-        else
-            LW_UNROLL for (int odd = 0; odd < 2; ++odd) sum_any(&sum[odd], s[odd], &coarse, hx, hy, k, odd, 0);
-        // A weight this far below a sample's own tent comes from rounding at the edge tests' borders.
         mask lost[2];
-        LW_UNROLL for (int odd = 0; odd < 2; ++odd) lost[odd] = and_(s[odd].valid, not_(sum[odd].weight > 1e-4f));
+        sum_around(sum, lost, s, &coarse, hx, hy, k);
 #if LW_MARKS
         if (k == 0) steep = is_steep(&sum[0], share);
-        uint marked = 0;
-        LW_UNROLL for (int odd = 0; odd < 2; ++odd) {
-            const mask exists = lanei_iota() * 2 + (lanei)(x + odd) < (lanei)width;
-            const mask here = and_(and_(s[odd].valid, or_(lost[odd], steep)), exists);
-            if (any_(here)) marked |= apart(bits_(here)) << odd;
-        }
-        marks[(y + k) * LW_REPAIR_WORDS_OF_ROW(width) + (int)get_global_id(0)] = marked;
+        marks[(y + k) * LW_REPAIR_WORDS_OF_ROW(width) + (int)get_global_id(0)] = marks_of(s, lost, steep, x, width);
 #endif
         if (rarely_(any_(or_(or_(lost[0], s[0].rejected), or_(lost[1], s[1].rejected)))))
             found += substitute(sum, lost, s, &coarse, hx, hy, k, width);
