@@ -29,6 +29,7 @@ LW_FN void store_pair(__global float* plane, int at, int hasSecond, real even, r
     if (hasSecond) store_past(zip_hi_(even, odd), plane, at + LW_WIDTH);
 }
 
+// odd: a constant.
 LW_FN lw_surface surface_of(const lw_pair* p, const lw_pair* n, int odd) {
     return odd ? make_surface(p[0].odd, p[1].odd, p[2].odd, n[0].odd, n[1].odd, n[2].odd)
                : make_surface(p[0].even, p[1].even, p[2].even, n[0].even, n[1].even, n[2].even);
@@ -99,20 +100,21 @@ typedef struct {
 
 typedef struct { real px, py, pz, nx, ny, nz, light[LW_CHANNELS]; mask valid; } lw_sample;
 
-// The samples i columns beside LW_WIDTH blocks, of row hy.
+// The samples i columns beside LW_WIDTH blocks, of row hy; those that do not exist are not valid, and dark.
 LW_FN void load_sample(lw_sample* q, const lw_coarse* coarse, int hx, int i, int hy) {
-#define LW_TAP(image, layout, a) load_shifted(image, layout.x + (a) * layout.z + hy * layout.y, hx, i, coarse->width)
+#define LW_TAP(image, layout, a) load_beside(image, layout.x + (a) * layout.z + hy * layout.y, hx, i, coarse->width)
     q->px = LW_TAP(coarse->position, coarse->positionLayout, 0);
     q->py = LW_TAP(coarse->position, coarse->positionLayout, 1);
     q->pz = LW_TAP(coarse->position, coarse->positionLayout, 2);
     q->nx = LW_TAP(coarse->normal, coarse->normalLayout, 0);  // unit or zero: down-sampling saw to it
     q->ny = LW_TAP(coarse->normal, coarse->normalLayout, 1);
     q->nz = LW_TAP(coarse->normal, coarse->normalLayout, 2);
-    LW_UNROLL for (int a = 0; a < LW_CHANNELS; ++a) q->light[a] = LW_TAP(coarse->light, coarse->lightLayout, a);
-#undef LW_TAP
-    q->valid = fma_(q->nx, q->nx, fma_(q->ny, q->ny, q->nz * q->nz)) > 0.5f;
     const lanei column = lanei_iota() + (lanei)(hx + i);
-    q->valid = and_(q->valid, and_(column >= (lanei)0, column < (lanei)coarse->width));
+    const mask exists = and_(column >= (lanei)0, column < (lanei)coarse->width);
+    q->valid = and_(exists, fma_(q->nx, q->nx, fma_(q->ny, q->ny, q->nz * q->nz)) > 0.5f);
+    LW_UNROLL for (int a = 0; a < LW_CHANNELS; ++a)
+        q->light[a] = select_((real)0.0f, LW_TAP(coarse->light, coarse->lightLayout, a), exists);
+#undef LW_TAP
 }
 
 typedef struct {
@@ -138,9 +140,17 @@ LW_FN void widen(lw_sum* sum, real w, const real* light) {
 }
 
 // Where samples on the pixel's surface differ by more than `share` of what comes of them all.
-LW_FN mask is_steep(const lw_sum sum, float share) {
-    const real whole = (sum.light[0] + sum.light[1]) + sum.light[2];
-    return (sum.greatest - sum.least) * sum.weight > share * whole;
+LW_FN mask is_steep(const lw_sum* sum, float share) {
+    const real whole = (sum->light[0] + sum->light[1]) + sum->light[2];
+    return (sum->greatest - sum->least) * sum->weight > share * whole;
+}
+
+// A word's low half with a bit's room after each bit.
+LW_FN uint apart(uint bits) {
+    bits = (bits | bits << 8) & 0x00ff00ffu;
+    bits = (bits | bits << 4) & 0x0f0f0f0fu;
+    bits = (bits | bits << 2) & 0x33333333u;
+    return (bits | bits << 1) & 0x55555555u;
 }
 #endif
 
@@ -154,144 +164,127 @@ LW_FN void expect_samples(const lw_coarse* coarse, int hx, int hy) {
         will_load(coarse->light + coarse->lightLayout.x + a * coarse->lightLayout.z + hy * coarse->lightLayout.y + hx);
 }
 
-// What a sample counts for `s`: by the edge test; or by likeness of the normals alone.
-LW_FN real sample_weight(const lw_surface s, const lw_sample* q, int byLikeness) {
-    if (byLikeness) return fmax(fma_(q->nx, s.nx, fma_(q->ny, s.ny, q->nz * s.nz)), (real)0.0f) + 1e-3f;
-    return edge_weight(edges_of(s, (real)1.0f), q->px, q->py, q->pz, q->nx, q->ny, q->nz);
-}
-
-// Adds a sample, i columns and j rows from a block, to its even (or odd) columns in two rows of pixels, by a tent over three pixels: a
-// sample stands two pixels from the next, so that an even pixel sees three of them at distances 2, 0, 2 and an odd one two at
-// distances 1, 1; rows alike, of which the second sees none above.
-LW_FN void add_sample(lw_sum* sum, const lw_surface* s, const lw_coarse* coarse, int hx, int i, int hy, int j, const int odd,
-                      int byLikeness) {
-    if (hy + j < 0 || hy + j >= coarse->height) return;
-    lw_sample q;
-    load_sample(&q, coarse, hx, i, hy + j);
-    const float columnTent = odd ? 2.0f / 3.0f : i == 0 ? 1.0f : 1.0f / 3.0f;
-    LW_UNROLL for (int k = 0; k < 2; ++k) {
-        if (k == 1 && j < 0) continue;
-        const float rowTent = 1.0f - (float)abs(2 * j - k) * (1.0f / 3.0f);
-        const real tent = select_((real)0.0f, (real)(rowTent * columnTent), q.valid);
-        const real w = tent * sample_weight(s[k], &q, byLikeness);
-        accumulate(&sum[k], w, q.light);
-#if LW_MARKS
-        if (k == 0 && !odd && !byLikeness) widen(&sum[0], w, q.light);
-#endif
+// The surfaces of 2 * LW_WIDTH pixels from column x on will be: those of the next work-item, which else waits for memory first.
+LW_FN void expect_surfaces(__global const float* position, int4 positionLayout, __global const float* normal, int4 normalLayout, int x, int y) {
+    LW_UNROLL for (int a = 0; a < 3; ++a) LW_UNROLL for (int next = 0; next < 2; ++next) {
+        will_load(position + positionLayout.x + a * positionLayout.z + y * positionLayout.y + x + next * LW_WIDTH);
+        will_load(normal + normalLayout.x + a * normalLayout.z + y * normalLayout.y + x + next * LW_WIDTH);
     }
 }
 
-LW_FN void clear_sums(lw_sum* sum) {
-    LW_UNROLL for (int k = 0; k < 2; ++k) {
-        LW_UNROLL for (int a = 0; a < LW_CHANNELS; ++a) sum[k].light[a] = (real)0.0f;
-        sum[k].weight = (real)0.0f;
+LW_FN void clear_sum(lw_sum* sum) {
+    LW_UNROLL for (int a = 0; a < LW_CHANNELS; ++a) sum->light[a] = (real)0.0f;
+    sum->weight = (real)0.0f;
 #if LW_MARKS
-        sum[k].least = (real)INFINITY;
-        sum[k].greatest = (real)0.0f;
+    sum->least = (real)INFINITY;
+    sum->greatest = (real)0.0f;
 #endif
-    }
 }
 
-// Sums of all samples around the even (or odd) columns, all of which exist: every load is a plain one. What down-sampling left empty
-// has no normal, and fails the edge test.
-LW_FN void sum_inside(lw_sum* sum, const lw_surface* s, const lw_coarse* coarse, int hx, int hy, const int odd) {
-    clear_sums(sum);
+// A tent over three pixels: a sample stands two pixels from the next, so that an even pixel sees three of them at distances 2, 0, 2 and
+// an odd one two at distances 1, 1; rows alike, of which the second of a block sees none above.
+LW_FN float column_tent(int i, int odd) { return odd ? 2.0f / 3.0f : i == 0 ? 1.0f : 1.0f / 3.0f; }
+LW_FN float row_tent(int j, int k) { return 1.0f - (float)abs(2 * j - k) * (1.0f / 3.0f); }
+
+// Sums of the samples around row k of LW_WIDTH blocks, at their even columns and at their odd ones. All samples exist: every load is a
+// plain one. What down-sampling left empty has no normal, and fails the edge test.
+LW_FN void sum_inside(lw_sum sum[2], const lw_surface s[2], const lw_coarse* coarse, int hx, int hy, int k) {
     lw_edges edges[2];
-    LW_UNROLL for (int k = 0; k < 2; ++k) edges[k] = edges_of(s[k], (real)1.0f);
+    LW_UNROLL for (int odd = 0; odd < 2; ++odd) {
+        clear_sum(&sum[odd]);
+        edges[odd] = edges_of(s[odd], (real)1.0f);
+    }
     const int pz = coarse->positionLayout.z, nz = coarse->normalLayout.z, lz = coarse->lightLayout.z;
-    LW_UNROLL for (int j = -1; j <= 1; ++j) {
-        if (hy + j < 0 || hy + j >= coarse->height) continue;
-        __global const float* p = coarse->position + (coarse->positionLayout.x + (hy + j) * coarse->positionLayout.y + hx);
-        __global const float* n = coarse->normal + (coarse->normalLayout.x + (hy + j) * coarse->normalLayout.y + hx);
-        __global const float* l = coarse->light + (coarse->lightLayout.x + (hy + j) * coarse->lightLayout.y + hx);
-        LW_UNROLL for (int i = odd ? 0 : -1; i <= 1; ++i) {
+    const int last = min(hy + 1, coarse->height - 1);
+    for (int row = max(hy - 1 + k, 0); row <= last; ++row) {
+        __global const float* p = coarse->position + (coarse->positionLayout.x + row * coarse->positionLayout.y + hx);
+        __global const float* n = coarse->normal + (coarse->normalLayout.x + row * coarse->normalLayout.y + hx);
+        __global const float* l = coarse->light + (coarse->lightLayout.x + row * coarse->lightLayout.y + hx);
+        const float tent = row_tent(row - hy, k);
+        LW_UNROLL for (int i = -1; i <= 1; ++i) {
             const real px = load_whole(p + i), py = load_whole(p + pz + i), pzz = load_whole(p + 2 * pz + i);
             const real nx = load_whole(n + i), ny = load_whole(n + nz + i), nzz = load_whole(n + 2 * nz + i);
             real light[LW_CHANNELS];
             LW_UNROLL for (int a = 0; a < LW_CHANNELS; ++a) light[a] = load_whole(l + a * lz + i);
-            const float columnTent = odd ? 2.0f / 3.0f : i == 0 ? 1.0f : 1.0f / 3.0f;
-            LW_UNROLL for (int k = 0; k < 2; ++k) {
-                if (k == 1 && j < 0) continue;
-                const float rowTent = 1.0f - (float)abs(2 * j - k) * (1.0f / 3.0f);
-                const real w = rowTent * columnTent * edge_weight(edges[k], px, py, pzz, nx, ny, nzz);
-                accumulate(&sum[k], w, light);
+            LW_UNROLL for (int odd = 0; odd < 2; ++odd) {
+                if (odd && i < 0) continue;
+                const real w = tent * column_tent(i, odd) * edge_weight_of_number(edges[odd], px, py, pzz, nx, ny, nzz);
+                accumulate(&sum[odd], w, light);
 #if LW_MARKS
-                if (k == 0 && !odd) widen(&sum[0], w, light);
+                if (!odd && k == 0) widen(&sum[0], w, light);
 #endif
             }
         }
     }
 }
 
-// The same beside borders, and by likeness: rare, so that code matters more.
-LW_FN void sum_any(lw_sum* sum, const lw_surface* s, const lw_coarse* coarse, int hx, int hy, const int odd, int byLikeness) {
-    clear_sums(sum);
-    for (int j = -1; j <= 1; ++j)
-        for (int i = odd ? 0 : -1; i <= 1; ++i) add_sample(sum, s, coarse, hx, i, hy, j, odd, byLikeness);
-}
-
+// The same beside borders, and by likeness of the normals alone: rare, so that little code matters more.
+LW_FN void sum_any(lw_sum* sum, const lw_surface s, const lw_coarse* coarse, int hx, int hy, int k, int odd, int byLikeness) {
+    clear_sum(sum);
+    const lw_edges edges = edges_of(s, (real)1.0f);
+    const int last = min(hy + 1, coarse->height - 1);
+    for (int row = max(hy - 1 + k, 0); row <= last; ++row)
+        for (int i = odd ? 0 : -1; i <= 1; ++i) {
+            lw_sample q;
+            load_sample(&q, coarse, hx, i, row);
+            const real tent = select_((real)0.0f, (real)(row_tent(row - hy, k) * column_tent(i, odd)), q.valid);
+            const real weight = byLikeness ? fmax(fma_(q.nx, s.nx, fma_(q.ny, s.ny, q.nz * s.nz)), (real)0.0f) + 1e-3f
+                                           : edge_weight(edges, q.px, q.py, q.pz, q.nx, q.ny, q.nz);
+            accumulate(sum, tent * weight, q.light);
 #if LW_MARKS
-// A word's low half with a bit's room after each bit.
-LW_FN uint apart(uint bits) {
-    bits = (bits | bits << 8) & 0x00ff00ffu;
-    bits = (bits | bits << 4) & 0x0f0f0f0fu;
-    bits = (bits | bits << 2) & 0x33333333u;
-    return (bits | bits << 1) & 0x55555555u;
-}
+            if (!odd && k == 0 && !byLikeness) widen(sum, tent * weight, q.light);
 #endif
-
-// The light of the even (or odd) columns of two rows of pixels, and how many of those that exist have no sample on their own
-// surface, or are neither surface nor background. `odd`: a constant.
-//
-// marked, with LW_MARKS: a bit for each column, in its place among the even and the odd; for pixels without such a sample, and for all of a block whose first one has samples that differ by more than
-// `share`: it sees all that the others do, if they are of its surface. `steep`: of that one; the even columns come first.
-LW_FN void light_columns(real out[2][LW_CHANNELS][2], int* lostPixels, int* badPixels, lw_pair p[2][3], lw_pair n[2][3],
-                         real surface[2][2],
-#if LW_MARKS
-                         uint marked[2], mask* steep, float share,
-#endif
-                         const lw_coarse* coarse, int hx, int hy, int width, int rows, const int odd) {
-    const mask exists = lanei_iota() * 2 + (lanei)(2 * hx + odd) < (lanei)width;
-    lw_surface s[2];
-    lw_sum sum[2];
-    mask lost[2];
-    LW_UNROLL for (int k = 0; k < 2; ++k) s[k] = surface_of(p[k], n[k], odd);
-    if (shift_inside(hx, -1, coarse->width) && shift_inside(hx, 1, coarse->width))
-        sum_inside(sum, s, coarse, hx, hy, odd);
-    else
-        sum_any(sum, s, coarse, hx, hy, odd, 0);
-    // A weight this far below a sample's own tent comes from rounding at the edge tests' borders. Such pixels, for which no
-    // sample passes the test, are lit like their neighbourhood and not black.
-    LW_UNROLL for (int k = 0; k < 2; ++k) lost[k] = and_(s[k].valid, not_(sum[k].weight > 1e-4f));
-#if LW_MARKS
-    if (!odd) *steep = is_steep(sum[0], share);
-    LW_UNROLL for (int k = 0; k < 2; ++k) {
-        const mask here = and_(and_(s[k].valid, or_(lost[k], *steep)), exists);
-        if (any_(here)) marked[k] |= apart(bits_(here)) << odd;
-    }
-#endif
-    LW_UNROLL for (int k = 0; k < 2; ++k) surface[k][odd] = ones_(s[k].valid);
-    if (any_(or_(lost[0], lost[1]))) {
-        lw_sum rest[2];
-        sum_any(rest, s, coarse, hx, hy, odd, 1);
-        LW_UNROLL for (int k = 0; k < 2; ++k) {
-            sum[k].weight = select_(sum[k].weight, rest[k].weight, lost[k]);
-            LW_UNROLL for (int a = 0; a < LW_CHANNELS; ++a) sum[k].light[a] = select_(sum[k].light[a], rest[k].light[a], lost[k]);
         }
+}
+
+// Sums around row k of LW_WIDTH blocks, and the pixels that no sample is on the surface of.
+LW_FN void sum_around(lw_sum sum[2], mask lost[2], const lw_surface s[2], const lw_coarse* coarse, int hx, int hy, int k) {
+    if (usually_(shift_inside(hx, -1, coarse->width) && shift_inside(hx, 1, coarse->width)))
+        sum_inside(sum, s, coarse, hx, hy, k);
+    else
+        LW_UNROLL for (int odd = 0; odd < 2; ++odd) sum_any(&sum[odd], s[odd], coarse, hx, hy, k, odd, 0);
+    // A weight this far below a sample's own tent comes from rounding at the edge tests' borders.
+    LW_UNROLL for (int odd = 0; odd < 2; ++odd) lost[odd] = and_(s[odd].valid, not_(sum[odd].weight > 1e-4f));
+}
+
+#if LW_MARKS
+// Bits of the pixels x + ... that exist, are surfaces, and lost or in a block where light is steep.
+LW_FN uint marks_of(const lw_surface s[2], const mask lost[2], mask steep, int x, int width) {
+    uint marked = 0;
+    LW_UNROLL for (int odd = 0; odd < 2; ++odd) {
+        const mask exists = lanei_iota() * 2 + (lanei)(x + odd) < (lanei)width;
+        const mask here = and_(and_(s[odd].valid, or_(lost[odd], steep)), exists);
+        if (any_(here)) marked |= apart(bits_(here)) << odd;
     }
-    LW_UNROLL for (int k = 0; k < 2; ++k) {
-        const real scale = 1.0f / sum[k].weight;
-        LW_UNROLL for (int a = 0; a < LW_CHANNELS; ++a) out[k][a][odd] = select_((real)0.0f, sum[k].light[a] * scale, s[k].valid);
-        const mask lostHere = and_(lost[k], exists), badHere = and_(s[k].rejected, exists);
-        if (k < rows && any_(or_(lostHere, badHere))) *lostPixels += count_(lostHere), *badPixels += count_(badHere);
+    return marked;
+}
+#endif
+
+// For pixels that have no sample on their own surface, and those that are neither surface nor background: counts those that exist (the
+// former by 1, the latter by 1 << 16), and lights the former like their neighbourhood.
+LW_FN int substitute(lw_sum sum[2], const mask lost[2], const lw_surface s[2], const lw_coarse* coarse, int hx, int hy, int k, int width) {
+    lanei found = (lanei)0;
+    LW_UNROLL for (int odd = 0; odd < 2; ++odd) {
+        const mask exists = lanei_iota() * 2 + (lanei)(2 * hx + odd) < (lanei)width;
+        found += selecti_((lanei)0, (lanei)1, and_(lost[odd], exists)) + selecti_((lanei)0, (lanei)(1 << 16), and_(s[odd].rejected, exists));
+        if (!any_(lost[odd])) continue;
+        lw_sum rest;
+        sum_any(&rest, s[odd], coarse, hx, hy, k, odd, 1);
+        sum[odd].weight = select_(sum[odd].weight, rest.weight, lost[odd]);
+        LW_UNROLL for (int a = 0; a < LW_CHANNELS; ++a) sum[odd].light[a] = select_(sum[odd].light[a], rest.light[a], lost[odd]);
     }
+    return sum_(found);
 }
 
 // One work-item = 2 * LW_WIDTH pixels of two rows: the even and the odd columns of LW_WIDTH blocks.
 // half*: 3 planes each of the half-resolution image, the light LW_CHANNELS; with 5, `fourth` and `fifth` take the
 // scalars, and any of the three may be null. counts[0]: pixels that are
 // neither surface nor background; counts[1]: pixels lit without edge test. validity, of irradiance only and unless not hasValidity: 1 on
-// surfaces, 0 elsewhere. marks, with LW_MARKS: see light_columns; a word for each work-item and row, as LW_REPAIR_BITS has them.
+// surfaces, 0 elsewhere. marks, with LW_MARKS: a word for each work-item and row, as LW_REPAIR_BITS has them, a bit for each pixel that has
+// no sample on its own surface, and for all of a block whose first one has samples that differ by more than `share`: it sees all that
+// the others do, if they are of its surface.
+//
+// One row after the other: its surfaces and sums then stay in registers.
 __kernel void joint_bilateral_upsample(__global const float* position, int4 positionLayout,
                                        __global const float* normal, int4 normalLayout, int width, int height,
                                        __global const float* halfPosition, int4 halfPositionLayout,
@@ -316,36 +309,32 @@ __kernel void joint_bilateral_upsample(__global const float* position, int4 posi
                           (width + 1) / 2, (height + 1) / 2};
 
     if (hy + 1 < coarse.height) expect_samples(&coarse, hx + 2 * LW_WIDTH, hy + 1);
-    lw_pair p[2][3], n[2][3];
-    LW_UNROLL for (int k = 0; k < 2; ++k)
-        LW_UNROLL for (int a = 0; a < 3; ++a) {
-            const int row = min(y + k, height - 1);
-            p[k][a] = load_pair(position, positionLayout.x + a * positionLayout.z + row * positionLayout.y, x, rowEnd);
-            n[k][a] = load_pair(normal, normalLayout.x + a * normalLayout.z + row * normalLayout.y, x, rowEnd);
-            // What the next work-item reads: without, it waits for memory first.
-            LW_UNROLL for (int next = 2; next < 4; ++next) {
-                will_load(position + positionLayout.x + a * positionLayout.z + row * positionLayout.y + x + next * LW_WIDTH);
-                will_load(normal + normalLayout.x + a * normalLayout.z + row * normalLayout.y + x + next * LW_WIDTH);
-            }
-        }
-
-    real out[2][LW_CHANNELS][2], surface[2][2];
-    int lost = 0, bad = 0;
+    const int hasSecond = x + LW_WIDTH < rowEnd;
+    int found = 0;
 #if LW_MARKS
-    uint marked[2] = {0, 0};
-    mask steep;
-    light_columns(out, &lost, &bad, p, n, surface, marked, &steep, share, &coarse, hx, hy, width, rows, 0);
-    light_columns(out, &lost, &bad, p, n, surface, marked, &steep, share, &coarse, hx, hy, width, rows, 1);
-#else
-    light_columns(out, &lost, &bad, p, n, surface, &coarse, hx, hy, width, rows, 0);
-    light_columns(out, &lost, &bad, p, n, surface, &coarse, hx, hy, width, rows, 1);
+    mask steep = splat_mask(0);
 #endif
-    if (lost) atomic_add(counts + 1, lost);
-    if (bad) atomic_add(counts, bad);
-
     for (int k = 0; k < rows; ++k) {
-        const int hasSecond = x + LW_WIDTH < rowEnd;
-#define LW_STORE(plane, at, a) store_pair(plane, at, hasSecond, out[k][a][0], out[k][a][1])
+        lw_pair p[3], n[3];
+        load_pairs(p, n, position, positionLayout, normal, normalLayout, x, y + k, rowEnd);
+        expect_surfaces(position, positionLayout, normal, normalLayout, x + 2 * LW_WIDTH, y + k);
+        const lw_surface s[2] = {surface_of(p, n, 0), surface_of(p, n, 1)};
+        lw_sum sum[2];
+        mask lost[2];
+        sum_around(sum, lost, s, &coarse, hx, hy, k);
+#if LW_MARKS
+        if (k == 0) steep = is_steep(&sum[0], share);
+        marks[(y + k) * LW_REPAIR_WORDS_OF_ROW(width) + (int)get_global_id(0)] = marks_of(s, lost, steep, x, width);
+#endif
+        if (rarely_(any_(or_(or_(lost[0], s[0].rejected), or_(lost[1], s[1].rejected)))))
+            found += substitute(sum, lost, s, &coarse, hx, hy, k, width);
+
+        real out[LW_CHANNELS][2];
+        LW_UNROLL for (int odd = 0; odd < 2; ++odd) {
+            const real scale = 1.0f / sum[odd].weight;
+            LW_UNROLL for (int a = 0; a < LW_CHANNELS; ++a) out[a][odd] = select_((real)0.0f, sum[odd].light[a] * scale, s[odd].valid);
+        }
+#define LW_STORE(plane, at, a) store_pair(plane, at, hasSecond, out[a][0], out[a][1])
 #if LW_CHANNELS == 5
         if (fourth) LW_STORE(fourth, fourthLayout.x + (y + k) * fourthLayout.y + x, 3);
         if (fifth) LW_STORE(fifth, fifthLayout.x + (y + k) * fifthLayout.y + x, 4);
@@ -355,10 +344,9 @@ __kernel void joint_bilateral_upsample(__global const float* position, int4 posi
                 LW_STORE(irradiance, irradianceLayout.x + a * irradianceLayout.z + (y + k) * irradianceLayout.y + x, a);
 #undef LW_STORE
 #if LW_CHANNELS == 3
-        if (hasValidity) store_pair(validity, validityLayout.x + (y + k) * validityLayout.y + x, hasSecond, surface[k][0], surface[k][1]);
-#endif
-#if LW_MARKS
-        marks[(y + k) * LW_REPAIR_WORDS_OF_ROW(width) + (int)get_global_id(0)] = marked[k];
+        if (hasValidity) store_pair(validity, validityLayout.x + (y + k) * validityLayout.y + x, hasSecond, ones_(s[0].valid), ones_(s[1].valid));
 #endif
     }
+    if (found & 0xffff) atomic_add(counts + 1, found & 0xffff);
+    if (found >> 16) atomic_add(counts, found >> 16);
 }

@@ -73,13 +73,19 @@ LW_FN float4 to_world(lw_paraboloid map, float x, float y, float z) {
     return (float4)(v.xyz, 0.0f);
 }
 
-// What the map saw in the texel of a direction of its frame, along that texel's centre ray.
-LW_FN lw_met surface_met(lw_paraboloid map, __global const float* records, __global const uint* albedo, int firstRecord,
-                         int size, float3 direction) {
+// The texel of a map that a direction of its frame falls on.
+LW_FN int texel_towards(int size, float3 direction) {
     const float step = 2.0f * LW_PARABOLOID_RIM / (float)size, scale = 1.0f / (1.0f + direction.z);
     const int x = clamp((int)((direction.x * scale + LW_PARABOLOID_RIM) / step), 0, size - 1);
     const int y = clamp((int)((direction.y * scale + LW_PARABOLOID_RIM) / step), 0, size - 1);
-    const int record = firstRecord + y * size + x;
+    return y * size + x;
+}
+
+// What the map saw in a texel, along its centre ray.
+LW_FN lw_met surface_met(lw_paraboloid map, __global const float* records, __global const uint* albedo, int firstRecord, int size,
+                         int texel) {
+    const float step = 2.0f * LW_PARABOLOID_RIM / (float)size;
+    const int y = texel / size, x = texel - y * size, record = firstRecord + texel;
     const uint normal = as_uint(records[2 * record + 1]), colour = albedo[record];
     const float u = ((float)x + 0.5f) * step - LW_PARABOLOID_RIM, v = ((float)y + 0.5f) * step - LW_PARABOLOID_RIM;
     const float unit = 1.0f / (1.0f + u * u + v * v);
@@ -106,8 +112,9 @@ LW_FN float radiosity_from(lw_cluster cluster, lw_met met, float cosine, float f
     return sum_of(met.albedo * cluster.flux) * cosine * facing * M_1_PI_F / fmax(r2, nearest);
 }
 
-// LW_WIDTH samples, and what each met: position, normal, albedo, the radiosity that its own cluster causes there, that cluster.
-typedef struct { float values[10][LW_WIDTH]; int cluster[LW_WIDTH]; float share[LW_WIDTH]; } lw_samples;
+// LW_WIDTH samples: the texels that they fall on (none: -1), the cosines there, and what each met: position, normal, albedo, the radiosity
+// that its own cluster causes there, that cluster.
+typedef struct { int texel[LW_WIDTH]; float cosine[LW_WIDTH], values[10][LW_WIDTH]; int cluster[LW_WIDTH]; float share[LW_WIDTH]; } lw_samples;
 
 LW_FN real dot3(const real* a, float4 b) { return fma_(a[0], b.x, fma_(a[1], b.y, a[2] * b.z)); }
 
@@ -143,13 +150,14 @@ LW_FN real radiosity_of_all(const lw_samples* samples, __global const lw_cluster
     return all;
 }
 
-// Sample i % perCluster of cluster i / perCluster, as lane l of `samples`; 0 where it is wasted.
-LW_FN int draw_sample(lw_samples* samples, int l, int i, __global const lw_cluster* clusters, __global const lw_paraboloid* frames,
-                      __global const float* records, __global const uint* albedo, int size, int perCluster, int directions,
-                      float2 shift) {
+// Where sample i % perCluster of cluster i / perCluster goes, as lane l of `samples`, and a hint that its texel will be loaded. Maps are
+// larger than what processors keep near, and a sample that waits for its own texel alone waits for as long as all of them together.
+LW_FN void aim_sample(lw_samples* samples, int l, int i, __global const lw_cluster* clusters, __global const float* records,
+                      __global const uint* albedo, int size, int perCluster, int directions, float2 shift) {
     const int c = i / perCluster, k = i - c * perCluster;
-    const lw_cluster cluster = clusters[c];
-    if (!(cluster.position.w > 0.0f)) return 0;
+    samples->cluster[l] = c;
+    samples->texel[l] = -1;
+    if (!(clusters[c].position.w > 0.0f)) return;
 
     // Each cluster takes the set turned by another amount: alike, clusters side by side would light alike places.
     const float turn = (float)c * 0.61803399f, turned = turn - floor(turn);
@@ -158,16 +166,27 @@ LW_FN int draw_sample(lw_samples* samples, int l, int i, __global const lw_clust
     const float2 point = (float2)(wrap_unit((float)k / (float)perCluster + middle + shift.x),
                                   wrap_unit(wrap_unit(radical_inverse((uint)k) + middle + shift.y) + turned));
     const lw_drawn drawn = draw_direction(directions, point);
-    if (!(drawn.direction.z > 0.0f)) return 0;
-    const lw_met met = surface_met(frames[c], records, albedo, c * size * size, size, drawn.direction);
+    if (!(drawn.direction.z > 0.0f)) return;
+    samples->texel[l] = texel_towards(size, drawn.direction);
+    samples->cosine[l] = drawn.direction.z;
+    samples->share[l] = drawn.direction.z * M_1_PI_F / (drawn.density * (float)perCluster);
+    const int record = c * size * size + samples->texel[l];
+    will_load(records + 2 * record);
+    will_load((__global const float*)(albedo + record));
+}
+
+// What the sample of lane l has met; 0 where it is wasted.
+LW_FN int draw_sample(lw_samples* samples, int l, __global const lw_cluster* clusters, __global const lw_paraboloid* frames,
+                      __global const float* records, __global const uint* albedo, int size) {
+    if (samples->texel[l] < 0) return 0;
+    const int c = samples->cluster[l];
+    const lw_met met = surface_met(frames[c], records, albedo, c * size * size, size, samples->texel[l]);
     if (!met.any) return 0;
     const float facing = fmax(-dot(met.normal.xyz, met.direction.xyz), LW_STEEPEST_COSINE);
     const float values[10] = {met.position.x, met.position.y, met.position.z, met.normal.x, met.normal.y, met.normal.z,
                               met.albedo.x,   met.albedo.y,   met.albedo.z,
-                              radiosity_from(cluster, met, drawn.direction.z, facing, met.distance * met.distance)};
+                              radiosity_from(clusters[c], met, samples->cosine[l], facing, met.distance * met.distance)};
     for (int a = 0; a < 10; ++a) samples->values[a][l] = values[a];
-    samples->cluster[l] = c;
-    samples->share[l] = drawn.direction.z * M_1_PI_F / (drawn.density * (float)perCluster);
     return 1;
 }
 
@@ -178,13 +197,13 @@ __kernel void second_bounce_draw(__global const lw_cluster* clusters, __global c
     const int begin = lw_list_index() * LW_WIDTH, count = min(LW_WIDTH, clusterCount * perCluster - begin);
     if (count <= 0) return;
     lw_samples samples;
+    for (int l = 0; l < count; ++l) aim_sample(&samples, l, begin + l, clusters, records, albedo, size, perCluster, directions, shift);
     uint drawn = 0;
     for (int l = 0; l < LW_WIDTH; ++l) {
         // A wasted lane lies nowhere: no cluster lights what has no albedo.
         for (int a = 0; a < 10; ++a) samples.values[a][l] = 0.0f;
-        samples.cluster[l] = -1;
-        if (l < count && draw_sample(&samples, l, begin + l, clusters, frames, records, albedo, size, perCluster, directions, shift))
-            drawn |= 1u << l;
+        if (l < count && draw_sample(&samples, l, clusters, frames, records, albedo, size)) drawn |= 1u << l;
+        else samples.cluster[l] = -1;
     }
     float all[LW_WIDTH];
     // Where every VPL is a cluster, all count as one: asking each for each would take the square of their number.

@@ -30,14 +30,30 @@ LW_FN lw_edges edges_of(const lw_surface s, real scale) {
     return e;
 }
 
-LW_FN real edge_weight(const lw_edges e, real qx, real qy, real qz, real mx, real my, real mz) {
+// What edge_weight clamps to 0 ... 1, and whether the neighbour lies near the tangent plane.
+LW_FN real edge_ramp(const lw_edges e, real mx, real my, real mz) {
+    const float least = -LW_EDGE_NORMAL_COSINE / (1.0f - LW_EDGE_NORMAL_COSINE);
+    return fma_(mx, e.tx, fma_(my, e.ty, fma_(mz, e.tz, least)));
+}
+
+LW_FN mask is_in_plane(const lw_edges e, real qx, real qy, real qz) {
     const real dx = qx - e.px, dy = qy - e.py, dz = qz - e.pz;
     const real d2 = fma_(dx, dx, fma_(dy, dy, dz * dz));
     const real off = fma_(dx, e.tx, fma_(dy, e.ty, dz * e.tz));
-    const float least = -LW_EDGE_NORMAL_COSINE / (1.0f - LW_EDGE_NORMAL_COSINE);
-    const real w = fma_(mx, e.tx, fma_(my, e.ty, fma_(mz, e.tz, least)));
+    return off * off <= e.slope2 * d2;
+}
+
+LW_FN real edge_weight(const lw_edges e, real qx, real qy, real qz, real mx, real my, real mz) {
+    const real w = edge_ramp(e, mx, my, mz);
     // NaN in a neighbour fails the comparison.
-    return select_((real)0.0f, fmin(w, (real)1.0f), and_(off * off <= e.slope2 * d2, w > 0.0f));
+    return select_((real)0.0f, fmin(w, (real)1.0f), and_(is_in_plane(e, qx, qy, qz), w > 0.0f));
+}
+
+// The same bits for a neighbour whose normal is no NaN: floats above 0 are ordered as integers are, which the processor compares beside
+// its multiplications.
+LW_FN real edge_weight_of_number(const lw_edges e, real qx, real qy, real qz, real mx, real my, real mz) {
+    const lanei w = as_lanei_(edge_ramp(e, mx, my, mz));
+    return select_((real)0.0f, as_real_(min(max(w, (lanei)0), as_lanei_((real)1.0f))), is_in_plane(e, qx, qy, qz));
 }
 
 #endif

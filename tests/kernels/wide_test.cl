@@ -76,9 +76,11 @@ __kernel void wide_lanes(__global const float* floats, __global const int* ints,
     store(zip_hi_(e, o), out + count, i + LW_WIDTH);
     store(lane_iota(), out + 2 * count, i);
     store(to_real(lanei_iota()), out + 2 * count, i + LW_WIDTH);
+    store(from_left_(a), out + 3 * count, i);
+    store(from_right_(a), out + 3 * count, i + LW_WIDTH);
     scalars[2 * group] = min_lane(a);
     scalars[2 * group + 1] = max_lane(a);
-    outInts[3 * group] = mini_lane(loadi(ints, i));
+    outInts[3 * group] = usually_(group >= 0) && !rarely_(count < 0) ? mini_lane(loadi(ints, i)) : 0;
     outInts[3 * group + 1] = maxi_lane(loadi(ints, i));
     outInts[3 * group + 2] = firsti_lane(loadi(ints, i));
 }

@@ -174,7 +174,7 @@ TEST_CASE("forms across lanes at every width", "[wide]") {
     const auto floats = randomFloats(8, -9.0f, 9.0f);
     const auto ints = randomInts(9, -99, 99);
     const std::size_t groups = kPixels / (2 * width);
-    const Guarded out = rig.make<float>(3 * kPixels), scalars = rig.make<float>(2 * groups);
+    const Guarded out = rig.make<float>(4 * kPixels), scalars = rig.make<float>(2 * groups);
     const Guarded outInts = rig.make<cl_int>(3 * groups);
     rig.run("test.lanes", rig.kernel(kProgram, "wide_lanes"), {groups, 1}, {1, 1}, rig.upload(floats),
             rig.upload(ints), cl_int(kPixels), out, scalars, outInts);
@@ -187,6 +187,11 @@ TEST_CASE("forms across lanes at every width", "[wide]") {
           }));
     CHECK(plane(values, 1) == forPixels<float>([&](std::size_t i) { return floats[i]; }));
     CHECK(plane(values, 2) == forPixels<float>([&](std::size_t i) { return i % width; }));
+    // from_left_ and from_right_, both of the first half, whose ends have no neighbour there and stay.
+    CHECK(plane(values, 3) == forPixels<float>([&](std::size_t i) {
+              const std::size_t first = i / (2 * width) * (2 * width), lane = i % width;
+              return floats[first + (i % (2 * width) < width ? std::max<std::size_t>(lane, 1) - 1 : std::min<std::size_t>(lane + 1, width - 1))];
+          }));
     for (std::size_t group = 0; group < groups; ++group) {
         CAPTURE(group);
         const auto first = std::ptrdiff_t(2 * width * group), last = first + std::ptrdiff_t(width);
