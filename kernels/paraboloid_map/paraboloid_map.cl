@@ -47,23 +47,48 @@ __kernel void paraboloid_map_clear(__global const int* states, int texels, __glo
     vstore2((uint2)(as_uint(INFINITY), 0xffffffffu), (size_t)map * texels + texel, records);
 }
 
-// One work-item = LW_WIDTH texels (x) of a map (y): marks those of stale maps beside which another met something nearer. Distances
-// are read and normals written: no item reads what another writes.
+// What a texel of a map met, in the map's frame: how far off, and where (anywhere, if at infinity).
+typedef struct {
+    real distance, x, y, z;
+} lw_met;
+
+LW_FN lw_met what_met(__global const float* records, int first, int size, lanei x, lanei y) {
+    const float step = paraboloid_step(size);
+    lw_met met;
+    met.distance = gather(records, paraboloid_record(first, size, x, y));
+    const lw_direction d = paraboloid_direction(paraboloid_uv(to_real(x), step), paraboloid_uv(to_real(y), step));
+    const real length = select_((real)0.0f, met.distance, met.distance < INFINITY);
+    met.x = d.x * length;
+    met.y = d.y * length;
+    met.z = d.z * length;
+    return met;
+}
+
+// Whether what a neighbour met clearly stands before what a texel met, a surface of normal (nx, ny, nz): nearer, and before its plane.
+// Where the texel met nothing there is no plane to stand before.
+LW_FN mask stands_before(lw_met neighbour, lw_met own, real nx, real ny, real nz) {
+    const real height = fma_(nx, neighbour.x - own.x, fma_(ny, neighbour.y - own.y, nz * (neighbour.z - own.z)));
+    const mask nearer = neighbour.distance < own.distance * (1.0f - LW_PARABOLOID_NEARER);
+    return and_(nearer, or_(height > LW_PARABOLOID_BEFORE * own.distance, own.distance >= INFINITY));
+}
+
+// One work-item = LW_WIDTH texels (x) of a map (y): LW_PARABOLOID_DOUBTFUL of stale maps. Of neighbours distances are read; normals,
+// whose signs are written, are read by their own items alone.
 __kernel void paraboloid_map_marks(__global const int* states, int size, __global float* records) {
     const int texel = (int)get_global_id(0) * LW_WIDTH, map = (int)get_global_id(1);
     if (texel >= size * size || !(states[map] & LW_MAP_STALE)) return;
+    const int first = map * size * size, y = texel / size;
     const lanei x = lanei_iota() + texel % size, last = (lanei)(size - 1);
-    const int y = texel / size, first = map * size * size;
-    const lanei at = paraboloid_record(first, size, x, (lanei)y);
-    real nearest = gather(records, at);
-    const real limit = nearest * (1.0f - 0.5f * LW_PARABOLOID_NEARER);
-    for (int dy = -1; dy <= 1; ++dy)
-        for (int dx = -1; dx <= 1; ++dx) {
-            const lanei column = clamp(x + dx, (lanei)0, last);
-            nearest = fmin(nearest, gather(records, paraboloid_record(first, size, column, (lanei)clamp(y + dy, 0, size - 1))));
-        }
-    const lanei mark = selecti_((lanei)0, (lanei)(int)LW_PARABOLOID_BESIDE_NEARER, nearest < limit);
-    scatter(as_real_(as_lanei_(gather(records, at + 1)) | mark), records, at + 1);
+    const lanei word = paraboloid_record(first, size, x, (lanei)y) + 1, bits = as_lanei_(gather(records, word));
+    const real nx = packed_normal(bits, 0), ny = packed_normal(bits, 1), nz = packed_normal(bits, 2);
+    const lw_met own = what_met(records, first, size, x, (lanei)y);
+    mask doubtful = splat_mask(0);
+    LW_UNROLL for (int side = 0; side < 4; ++side) {
+        const lanei column = clamp(x + (side == 0 ? -1 : side == 1 ? 1 : 0), (lanei)0, last);
+        const int row = clamp(y + (side == 2 ? -1 : side == 3 ? 1 : 0), 0, size - 1);
+        doubtful = or_(doubtful, stands_before(what_met(records, first, size, column, (lanei)row), own, nx, ny, nz));
+    }
+    scatter(as_real_(bits | selecti_((lanei)0, (lanei)(int)LW_PARABOLOID_DOUBTFUL, doubtful)), records, word);
 }
 
 // One work-item = LW_WIDTH texels (x) of a map (y): distance, normal in the world, albedo as planes for a debug

@@ -18,10 +18,10 @@
 // Cosine between the receiver's normal and the stored one above which it can be the same surface; lax, as
 // normals of a G-buffer are bent by normal maps. At 0 the wall behind an edge would count as the one before it.
 #define LW_PARABOLOID_AGREES 0.5f
-// What a texel beside the nearest one met makes a strict look-up doubt a receiver where it is nearer than the receiver by this
-// share of the ray's length, and stands before the receiver's plane by that share. Nearer, raised: light passes again
-// along the rims of openings; lowered: corners between walls and curved things darken. Before, raised: the same rims, where
-// normals are smoothed; lowered: mouldings and folds darken each other. Measured in docs/techniques/ssvp_visibility.md.
+// What a texel's neighbour met makes the texel doubtful where it is nearer than what the texel met by this share of the ray's length,
+// and stands before the plane of that by this share. Nearer, raised: light passes again along the rims of openings; lowered: corners
+// between walls and curved things darken. Before, raised: the same rims; lowered: mouldings and folds darken each other.
+// Measured in docs/techniques/ssvp_visibility.md.
 #define LW_PARABOLOID_NEARER 2e-2f
 #define LW_PARABOLOID_BEFORE 1e-2f
 
@@ -155,24 +155,6 @@ LW_FN mask paraboloid_texel_lit(__global const float* records, int firstRecord, 
     return record_lit(gather(records, at), gatheri((__global const int*)records, at + 1), size, x, y, r);
 }
 
-// Whether what texel (x, y) saw hides receivers that the nearest texel leaves lit, `seen`: it hides what it is clearly nearer
-// than, whose plane it stands before, and which is not on its own. One gather, and one more where it is nearer.
-LW_FN mask hidden_by_texel(__global const float* records, int firstRecord, int size, lanei x, lanei y, lw_map_receiver r, mask seen) {
-    const lanei at = paraboloid_record(firstRecord, size, x, y);
-    const real hit = gather(records, at);
-    const mask nearer = and_(seen, hit < r.distance * (1.0f - LW_PARABOLOID_NEARER));
-    if (!any_(nearer)) return nearer;
-    const float step = paraboloid_step(size);
-    const real u = paraboloid_uv(to_real(x), step), v = paraboloid_uv(to_real(y), step);
-    const real r2 = fma_(u, u, v * v), unit = r.distance * (1.0f + r2);
-    real off, agreement;
-    compare_planes(hit, gatheri((__global const int*)records, at + 1), u, v, r2, r, &off, &agreement);
-    const mask other = or_(off > LW_PARABOLOID_BIAS * unit, agreement < LW_PARABOLOID_AGREES);
-    // Over the receiver's plane, times m.
-    const real height = fma_(hit, fma_(2.0f * u, r.nx, fma_(2.0f * v, r.ny, (1.0f - r2) * r.nz)), -r.behind * (1.0f + r2));
-    return and_(and_(nearer, other), height > LW_PARABOLOID_BEFORE * unit);
-}
-
 // Rounding may leave the map by less than a texel: below, the conversion towards zero brings it back.
 LW_FN lanei nearest_texel(int size, real x) { return min(to_lanei(x + 0.5f), (lanei)(size - 1)); }
 
@@ -214,21 +196,13 @@ LW_FN real paraboloid_visibility(__global const float* records, int firstRecord,
     return select_((real)(0.0f), fma_(t.fy, lower - upper, upper), r.inside);
 }
 
-// Strict: as hard; `doubtful` where one of the three other texels around met something which clearly stands before the receiver. Light
-// that passes along the rim of what hides a lit surface is as strong as that surface is bright, and rules the error of dark rooms.
-// Two gathers, and beside something nearer, as the map's marks tell (paraboloid_map_marks), three to six more.
+// Strict: as hard; `doubtful` where the map's marks say so (paraboloid_map_marks). Light that passes along the rim of what hides a lit
+// surface is as strong as that surface is bright, and rules the error of dark rooms.
 LW_FN mask paraboloid_sees_strictly(__global const float* records, int firstRecord, int size, lw_map_receiver r, mask* doubtful) {
     const lanei x = nearest_texel(size, r.x), y = nearest_texel(size, r.y), at = paraboloid_record(firstRecord, size, x, y);
     const lanei bits = gatheri((__global const int*)records, at + 1);
     const mask seen = and_(r.inside, record_lit(gather(records, at), bits, size, x, y, r));
-    const mask asked = and_(seen, bits < 0);  // marked: LW_PARABOLOID_BESIDE_NEARER is the sign
-    *doubtful = splat_mask(0);
-    if (!any_(asked)) return seen;
-    const lw_four_texels t = texels_around(size, r);
-    const lanei otherX = selecti_(t.x1, t.x0, x > t.x0), otherY = selecti_(t.y1, t.y0, y > t.y0);
-    const mask column = hidden_by_texel(records, firstRecord, size, otherX, y, r, asked);
-    const mask row = or_(column, hidden_by_texel(records, firstRecord, size, x, otherY, r, and_(asked, not_(column))));
-    *doubtful = or_(row, hidden_by_texel(records, firstRecord, size, otherX, otherY, r, and_(asked, not_(row))));
+    *doubtful = and_(seen, bits < 0);  // LW_PARABOLOID_DOUBTFUL is the sign
     return seen;
 }
 
