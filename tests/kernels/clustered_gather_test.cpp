@@ -215,7 +215,7 @@ TEST_CASE("without visibility it is the gather of the same list", "[clustered_ga
 
 TEST_CASE("a wall's shadow as rays from the clusters cast it", "[clustered_gather]") {
     const auto width = GENERATE(1u, 16u);
-    ParaboloidRig rig(width, 256);
+    ParaboloidRig rig(width, 256, true);
     const auto size = testSize({96, 64});
     const Walled room(size.first, size.second);
     const DrawnMaps maps = rig.drawn(room.mesh, room.clusters);
@@ -266,7 +266,7 @@ TEST_CASE("widths agree, and ten runs are one", "[clustered_gather][large]") {
 
 TEST_CASE("bounces with clusters are one list with the clusters of all", "[clustered_gather][large]") {
     const auto width = GENERATE(1u, 16u);
-    ParaboloidRig rig(width, 64);
+    ParaboloidRig rig(width, 64, true);
     const auto size = testSize({96, 64});
     const Walled room(size.first, size.second);
     rig.draw(room.mesh, room.clusters);
@@ -291,6 +291,7 @@ TEST_CASE("bounces with clusters are one list with the clusters of all", "[clust
         const auto first = bounce[cluster].begin() + std::ptrdiff_t(i % parts * each);
         vpls.push_back(rig.upload(std::vector<lw_vpl>(first, first + each)));
         maps.emplace_back(rig.device(), 64).record(rig.executor(), rig.upload(std::vector<lw_cluster>{room.clusters[cluster]}), 1, rig.input);
+        maps.back().recordMarks(rig.executor());
         lists.push_back({{vpls.back(), each}, &own, 1});
         read.push_back({&maps.back().frames(), &maps.back().records(), 1});
     }

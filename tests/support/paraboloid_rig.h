@@ -86,7 +86,8 @@ struct DrawnMaps {
         std::memcpy(&d, &records[2 * texel], sizeof d);
         return d;
     }
-    bool hit(std::size_t texel) const { return records[2 * texel + 1] != 0; }
+    bool hit(std::size_t texel) const { return (records[2 * texel + 1] & LW_PARABOLOID_HIT) != 0; }
+    bool isDoubtful(std::size_t texel) const { return (records[2 * texel + 1] & LW_PARABOLOID_DOUBTFUL) != 0; }
     reference::Vec normal(std::size_t texel) const {  // in the map's frame
         const auto part = [&](int c) { return (double(records[2 * texel + 1] >> (10 * c) & 1023u) - 512.0) / 511.0; };
         return {part(0), part(1), part(2)};
@@ -99,7 +100,8 @@ struct DrawnMaps {
 
 class ParaboloidRig : public KernelRig {
 public:
-    ParaboloidRig(std::uint32_t width, std::uint32_t size) : KernelRig(width), pass(device(), size) {}
+    // marked: maps for strict look-ups.
+    ParaboloidRig(std::uint32_t width, std::uint32_t size, bool marked = false) : KernelRig(width), pass(device(), size), marks(marked) {}
 
     // Draws what is stale; the counts of the report.
     std::vector<LWCount> draw(const Mesh& mesh, std::vector<lw_cluster> clusters) {
@@ -108,6 +110,7 @@ public:
         const std::uint32_t count = std::uint32_t(clusters.size());
         clusters.resize(std::max(count, 1u));  // some memory
         pass.record(executor(), upload(clusters), count, input);
+        if (marks) pass.recordMarks(executor());
         Report report;
         pass.report(report);
         device().finish();
@@ -132,6 +135,7 @@ public:
 
     GeometryInput input;
     ParaboloidMap pass;
+    bool marks;
 };
 
 }  // namespace lightwell::test

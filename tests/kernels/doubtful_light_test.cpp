@@ -1,0 +1,187 @@
+// Light that strict look-ups doubt: what the gather leaves of it for the filter, and how much of it counts in the end.
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "passes/clustered_gather.h"
+#include "passes/interleaved_gather.h"
+#include "passes/vpl_list.h"
+#include "support/gather_rig.h"
+#include "support/paraboloid_rig.h"
+
+using namespace lightwell;
+using namespace lightwell::test;
+using reference::Image;
+using reference::Vec;
+
+namespace {
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr double kTwinTolerance = 2e-5;
+
+double channelSum(Vec v) { return v.x + v.y + v.z; }
+
+// docs/techniques/ssvp_visibility.md: S + D / (1 + (D / 2S)^2), over S + D.
+double shareBorneOut(double light, double doubt) {
+    const double sure = light - doubt;
+    if (light <= 0.0) return 1.0;
+    return sure > 0.0 ? (sure + doubt / (1.0 + 0.25 * doubt * doubt / (sure * sure))) / light : 0.0;
+}
+
+// A floor under leaves, lit by clusters of VPLs around it.
+struct Leaves {
+    static constexpr int kClusters = 5, kEach = 6;
+    Mesh mesh;
+    std::vector<lw_cluster> clusters;
+    std::vector<lw_vpl> vpls;
+    std::vector<cl_int> assignment;
+    Image position, normal;
+
+    Leaves(std::uint32_t w, std::uint32_t h) : position(w, h), normal(w, h) {
+        mesh.addQuad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 2, 2);
+        for (int i = 0; i < 6; ++i) mesh.addQuad({-0.8 + 0.25 * i, -0.5 + 0.1 * i, 0.15 + 0.03 * i}, {0.2, 0.05, 0}, {0, 0.5, 0.1});
+        for (int c = 0; c < kClusters; ++c) {
+            const Vec place{-0.9 + 0.45 * c, 0.9 - 0.4 * c, 0.7};
+            clusters.push_back(clusterAt(place, {0.2 - 0.1 * c, 0.1, -1}));
+            for (int k = 0; k < kEach; ++k) {
+                vpls.push_back(reference::makeVpl(place + Vec{0.01 * k, 0, 0}, reference::vecOf(clusters.back().normal), {1.0 + c, 2.0, 0.3 * k}, 0.01));
+                assignment.push_back(c);
+            }
+        }
+        for (std::uint32_t y = 0; y < h; ++y)
+            for (std::uint32_t x = 0; x < w; ++x) {
+                position.set(x, y, {-1.0 + 2.0 * (x + 0.5) / w, -1.0 + 2.0 * (y + 0.5) / h, 0.0});
+                normal.set(x, y, {0, 0, 1});
+            }
+        for (const std::uint32_t hole : {3u, 8u}) normal.set(hole, 2, {0, 0, 0});
+    }
+};
+
+// Of the leaves' floor: so many planes of the gather, or what each cluster is taken to see.
+struct Asked {
+    ParaboloidRig& rig;
+    const Leaves& leaves;
+    ClusteredGather pass;
+
+    Asked(ParaboloidRig& r, const Leaves& l, ClusterVisibility visibility) : rig(r), leaves(l), pass(r.device(), 1, 1, visibility) {
+        const Guarded list = rig.upload(leaves.vpls), assignment = rig.upload(leaves.assignment);
+        pass.recordOrder(rig.executor(), {{{list, std::uint32_t(leaves.vpls.size())}, &assignment, std::uint32_t(Leaves::kClusters)}});
+        rig.device().finish();
+    }
+    ClusterMaps maps() const { return {{{&rig.pass.frames(), &rig.pass.records(), rig.pass.mapCount()}}, rig.pass.size()}; }
+
+    std::vector<float> planes(std::uint32_t count) {
+        const std::uint32_t w = leaves.position.width, h = leaves.position.height;
+        const Guarded p = rig.uploadPlanes(leaves.position.planes, w, h, 3, kNaN), n = rig.uploadPlanes(leaves.normal.planes, w, h, 3, kNaN);
+        const Guarded out = rig.makePlanes(w, h, count), counts = rig.upload(std::vector<cl_int>{0, 0, 0});
+        const lw_vpl_tiles layout = VplTiles::layout(w, h, pass.order(), 1);
+        const Guarded all = rig.upload(allSlots(layout, pass.order()));
+        pass.recordGather(rig.executor(), rig.planes(p, w, h, 3), rig.planes(n, w, h, 3), all, layout, maps(), rig.planes(out, w, h, count), counts);
+        rig.device().finish();
+        return rig.downloadPlanes(rig.planes(out, w, h, count));
+    }
+    std::vector<float> seen() {
+        const std::uint32_t w = leaves.position.width, h = leaves.position.height;
+        const Guarded p = rig.uploadPlanes(leaves.position.planes, w, h, 3, kNaN), n = rig.uploadPlanes(leaves.normal.planes, w, h, 3, kNaN);
+        const std::uint32_t rows = h * Leaves::kClusters;
+        const Guarded out = rig.makePlanes(w, rows, 1);
+        pass.recordVisibility(rig.executor(), rig.planes(p, w, h, 3), rig.planes(n, w, h, 3), maps(), Leaves::kClusters, rig.planes(out, w, rows, 1));
+        rig.device().finish();
+        return rig.downloadPlanes(rig.planes(out, w, rows, 1));
+    }
+};
+
+Image filtered(KernelRig& rig, const Image& position, const Image& normal, const std::vector<float>& light, std::uint32_t count) {
+    const std::uint32_t w = position.width, h = position.height;
+    const Guarded p = rig.uploadPlanes(position.planes, w, h, 3, kNaN), n = rig.uploadPlanes(normal.planes, w, h, 3, kNaN);
+    const Guarded e = rig.uploadPlanes(light, w, h, count, kNaN), out = rig.makePlanes(w, h, 3);
+    InterleavedGather pass(rig.device(), 4, count == 4);
+    pass.recordFilter(rig.executor(), rig.planes(p, w, h, 3), rig.planes(n, w, h, 3), rig.planes(e, w, h, count), rig.planes(out, w, h, 3));
+    rig.device().finish();
+    Image result(w, h);
+    result.planes = rig.downloadPlanes(rig.planes(out, w, h, 3));
+    return result;
+}
+
+}  // namespace
+
+TEST_CASE("a strict gather is the hard one, and the light that it doubts is that of marked texels", "[clustered_gather]") {
+    const auto width = GENERATE(1u, 16u);
+    const auto size = testSize({75, 33});
+    const Leaves leaves(size.first, size.second);
+    ParaboloidRig rig(width, 64, true);
+    rig.draw(leaves.mesh, leaves.clusters);
+    Asked hard(rig, leaves, ClusterVisibility::hard), strict(rig, leaves, ClusterVisibility::strict);
+    const std::vector<float> light = hard.planes(3), kept = strict.planes(4), settled = strict.planes(3);
+    const std::vector<float> seen = hard.seen(), sure = strict.seen();
+    const std::size_t pixels = std::size_t(size.first) * size.second;
+    CHECK(bitDifference(std::vector<float>(kept.begin(), kept.begin() + std::ptrdiff_t(3 * pixels)), light) == "");
+    int doubtful = 0, wrong = 0, unsettled = 0;
+    for (std::uint32_t y = 0; y < size.second; ++y)
+        for (std::uint32_t x = 0; x < size.first; ++x) {
+            const std::size_t i = std::size_t(y) * size.first + x;
+            const reference::Surface s = reference::surfaceAt(leaves.position, leaves.normal, x, y);
+            double doubt = 0.0, all = 0.0;
+            for (std::size_t k = 0; s.valid && k < leaves.vpls.size(); ++k) {
+                const std::size_t at = std::size_t(leaves.assignment[k]) * pixels + i;
+                const double sum = channelSum(reference::vplIrradiance(leaves.vpls[k], s));
+                REQUIRE(sure[at] <= seen[at]);
+                doubt += sum * double(seen[at] - sure[at]);
+                all += sum * double(seen[at]);
+            }
+            doubtful += doubt > 0.0;
+            wrong += !(std::abs(double(kept[3 * pixels + i]) - doubt) <= kTwinTolerance * all + 1e-9);
+            for (std::size_t c = 0; c < 3; ++c) {
+                const double expected = double(light[c * pixels + i]) * shareBorneOut(all, doubt);
+                unsettled += !(std::abs(double(settled[c * pixels + i]) - expected) <= 10.0 * kTwinTolerance * all + 1e-9);
+            }
+        }
+    CAPTURE(doubtful);
+    CHECK(wrong == 0);
+    CHECK(unsettled == 0);
+    if (pixels > 2000) CHECK(doubtful > 100);
+}
+
+TEST_CASE("the filter bears doubtful light out by what surrounds it", "[clustered_gather]") {
+    const auto width = GENERATE(1u, 16u);
+    const auto size = testSize({67, 21});
+    const std::size_t pixels = std::size_t(size.first) * size.second;
+    KernelRig rig(width);
+    Image position(size.first, size.second), normal(size.first, size.second);
+    reference::fillCorner(position, normal);
+    const Image light = reference::randomImage(size.first, size.second, 4);
+    std::vector<float> four = light.planes;
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> unit(0.0f, 1.0f);
+    Image doubt(size.first, size.second);
+    for (std::size_t i = 0; i < pixels; ++i) {
+        const float share = unit(random), sum = four[i] + four[pixels + i] + four[2 * pixels + i];
+        doubt.planes[i] = sum * (share < 0.3f ? 0.0f : share > 0.7f ? 1.0f : share);
+    }
+    four.insert(four.end(), doubt.planes.begin(), doubt.planes.begin() + std::ptrdiff_t(pixels));
+
+    SECTION("as much as the mean over the window tells") {
+        const Image plain = filtered(rig, position, normal, light.planes, 3), mean = filtered(rig, position, normal, doubt.planes, 3);
+        Image expected(size.first, size.second);
+        for (std::uint32_t y = 0; y < size.second; ++y)
+            for (std::uint32_t x = 0; x < size.first; ++x)
+                expected.set(x, y, plain.get(x, y) * shareBorneOut(channelSum(plain.get(x, y)), mean.get(x, y).x));
+        CHECK(disagreement(filtered(rig, position, normal, four, 4).planes, expected.planes, kTwinTolerance) == "");
+    }
+    SECTION("nothing doubtful: the same bits as without; all doubtful: nothing") {
+        std::fill(four.begin() + std::ptrdiff_t(3 * pixels), four.end(), 0.0f);
+        CHECK(bitDifference(filtered(rig, position, normal, four, 4).planes, filtered(rig, position, normal, light.planes, 3).planes) == "");
+        for (std::size_t i = 0; i < pixels; ++i) four[3 * pixels + i] = 1.001f * (four[i] + four[pixels + i] + four[2 * pixels + i]);
+        const Image none = filtered(rig, position, normal, four, 4);
+        CHECK(std::all_of(none.planes.begin(), none.planes.end(), [](float v) { return std::abs(v) < 1e-6f; }));
+    }
+    SECTION("nothing depends on the unit of light") {
+        const Image once = filtered(rig, position, normal, four, 4);
+        for (const float unitOfLight : {0x1p-70f, 0x1p70f}) {
+            std::vector<float> scaled = four;
+            for (float& v : scaled) v *= unitOfLight;
+            Image back = filtered(rig, position, normal, scaled, 4);
+            for (float& v : back.planes) v /= unitOfLight;
+            CHECK(bitDifference(back.planes, once.planes) == "");
+        }
+    }
+}
