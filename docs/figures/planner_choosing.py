@@ -127,7 +127,7 @@ def strict_block(data):
     names = data.names()
     pairs = [(names.index(name.format("")), names.index(name.format(" visibility=strict"))) for name in STRICT]
     both = lambda a, b: f"{a:.2g} → {b:.2g}"  # noqa: E731
-    lines = [f"{data.raw['size'][0]}x{data.raw['size'][1]}, relMSE against all bounces, `hard` → `strict`, geometric mean of {data.raw['seeds']} sample sets; at the end geometric "
+    lines = [f"{data.raw['size'][0]}x{data.raw['size'][1]}, relMSE against all bounces, `hard` → `strict`, geometric mean of {data.raw['seeds']} sample sets ({max(data.raw['more_seeds'].values())} in {', '.join(data.raw['more_seeds'])}); at the end geometric "
              "means over the views, and medians of the time's ratio in frames at rest.", "",
              "| view | " + " | ".join(f"`{short(name.format(''))}`" for name in STRICT) + " |", "| --- |" + " --- |" * len(STRICT)]
     for v, view in enumerate(data.views):

@@ -16,6 +16,7 @@ SCENES = ["cornell", "basic", "rooms", "cornell_original", "sponza_crytek", "spo
           "breakfast_room", "level_zdm2", "bunny_corner"]
 SHARED = SCENES[3:]  # the large ones, of which the rival is asked first
 SEEDS = (1, 2)  # beside 0: of VPLs drawn by chance a single set tells as much of its luck as of the configuration
+UNSURE, MORE_SEEDS = ["living_room", "level_zdm2", "breakfast_room", "basic"], (3, 4)  # where single sets lie farthest apart, a factor of 1.2 to 2
 SIZES, SIZED = [(640, 360), (1920, 1080)], ["cornell", "sibenik"]
 RSM_SIZES, RSM_USUAL = [256, 1024], 512
 
@@ -137,6 +138,8 @@ def measure(program, work):
     drawn = [c for c in CANDIDATES if is_drawn(c)]
     for seed in SEEDS:
         chart(f"seeds{seed}", [f"{variant(c)},seed={seed}" for c in drawn], SIZE, 1, "--scenes", *SCENES, *truth)
+    for seed in MORE_SEEDS:
+        chart(f"seeds{seed}", [f"{variant(c)},seed={seed}" for c in drawn], SIZE, 1, "--scenes", *UNSURE, *truth)
     for size in SIZES:
         chart(f"sizes_{size[1]}", all_of, size, 11, "--scenes", *SIZED, "--cameras", "first", "--noise", "1e3")
     chart("rival", RIVALS, SIZE, 1, "--scenes", *SHARED, "--cameras", "first", *truth)
@@ -248,7 +251,7 @@ def collect(work, date):
         print(f"left out, for it is not measured in every view: {CANDIDATES[c]}")
     pick = lambda row: [row[c] for c in whole]  # noqa: E731
     result = {"date": date, "device": header["device"]["name"], "driver": header["device"]["driver"], "cpu": header["versions"]["cpu"],
-              "threads": threads, "seeds": 1 + len(SEEDS), "size": list(SIZE), "judged_block": BLOCK, "rsm_texels": RSM_USUAL ** 2,
+              "threads": threads, "seeds": 1 + len(SEEDS), "more_seeds": {scene: 1 + len(SEEDS + MORE_SEEDS) for scene in UNSURE}, "size": list(SIZE), "judged_block": BLOCK, "rsm_texels": RSM_USUAL ** 2,
               "clock_over_processor": round(beyond, 4), "rates": rate,
               "candidates": [{"technique": parted(c)[0], "settings": parted(c)[1], "launches": launched.get(c, 0)} for c in pick(CANDIDATES)],
               "views": [{**v, "noise": noise_of(charts, v)} for v in probed],
@@ -261,7 +264,7 @@ def collect(work, date):
 def further_seeds(work, index):
     """Errors of the sample sets beside the first, by view and candidate."""
     result = {}
-    for seed in SEEDS:
+    for seed in SEEDS + MORE_SEEDS:
         for p in (p for folder in sorted(work.glob(f"seeds{seed}*/results.json")) for p in read_points(folder.parent)[1]):
             for c, candidate in enumerate(CANDIDATES):
                 if is_drawn(candidate) and is_point_of(p, candidate, seed):

@@ -93,7 +93,7 @@ def fit_block(data, kept, ms, log, found, strength, sigma):
              f"all threads over their number, times {raw['clock_over_processor']:.3f}, what the clock showed beyond it where nothing else ran. "
              f"{len(data.candidates)} configurations in {len(data.views)} views of {len(set(v['scene'] for v in data.views))} scenes; {len(kept)} of them, within 5 % of a front "
              "in two scenes or more, are the table. Errors are against all bounces, at one pixel of each "
-             f"{raw['judged_block']} x {raw['judged_block']}, the geometric mean over {raw['seeds']} sample sets where VPLs are drawn; the truth's own noise ({min(v['noise'] for v in data.views):.1g} to {max(v['noise'] for v in data.views):.1g}) is taken off.", "",
+             f"{raw['judged_block']} x {raw['judged_block']}, the geometric mean over {raw['seeds']} sample sets where VPLs are drawn ({max(raw['more_seeds'].values())} in {', '.join(raw['more_seeds'])}, where they lie farthest apart); the truth's own noise ({min(v['noise'] for v in data.views):.1g} to {max(v['noise'] for v in data.views):.1g}) is taken off.", "",
              "Everything below is *leave one scene out*: each view is predicted by models that were fitted without its scene (the two Cornell "
              "boxes count as one), with the strengths of shrinking chosen within the scenes that are left. The fit to all: "
              + (f"slopes of rank {rank}, ridge {ridge:g}" if math.isfinite(ridge) else "no slopes that tell candidates apart")

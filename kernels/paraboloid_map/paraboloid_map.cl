@@ -47,21 +47,21 @@ __kernel void paraboloid_map_clear(__global const int* states, int texels, __glo
     vstore2((uint2)(as_uint(INFINITY), 0xffffffffu), (size_t)map * texels + texel, records);
 }
 
-// What a texel of a map met, in the map's frame: how far off, and where (anywhere, if at infinity).
+// What texels of a map met, in the map's frame: how far off, and where (anywhere, if at infinity).
 typedef struct {
     real distance, x, y, z;
 } lw_met;
 
-LW_FN lw_met what_met(__global const float* records, int first, int size, lanei x, lanei y) {
-    const float step = paraboloid_step(size);
-    lw_met met;
-    met.distance = gather(records, paraboloid_record(first, size, x, y));
-    const lw_direction d = paraboloid_direction(paraboloid_uv(to_real(x), step), paraboloid_uv(to_real(y), step));
-    const real length = select_((real)0.0f, met.distance, met.distance < INFINITY);
-    met.x = d.x * length;
-    met.y = d.y * length;
-    met.z = d.z * length;
+LW_FN lw_met met_at(real distance, lanei x, int y, float step) {
+    const lw_direction d = paraboloid_direction(paraboloid_uv(to_real(x), step), paraboloid_uv((real)(float)y, step));
+    const real length = select_((real)0.0f, distance, distance < INFINITY);
+    const lw_met met = {distance, d.x * length, d.y * length, d.z * length};
     return met;
+}
+
+// Distances of LW_WIDTH texels from record `at` on.
+LW_FN real distances_from(__global const float* records, int at) {
+    return even_(load_whole(records + 2 * at), load_whole(records + 2 * at + LW_WIDTH));
 }
 
 // Whether what a neighbour met clearly stands before what a texel met, a surface of normal (nx, ny, nz): nearer, and before its plane.
@@ -72,23 +72,28 @@ LW_FN mask stands_before(lw_met neighbour, lw_met own, real nx, real ny, real nz
     return and_(nearer, or_(height > LW_PARABOLOID_BEFORE * own.distance, own.distance >= INFINITY));
 }
 
-// One work-item = LW_WIDTH texels (x) of a map (y): LW_PARABOLOID_DOUBTFUL of stale maps. Of neighbours distances are read; normals,
-// whose signs are written, are read by their own items alone.
+// One work-item = LW_WIDTH texels (x) of a map (y): LW_PARABOLOID_DOUBTFUL of stale maps. Of neighbours distances are used; normals,
+// whose signs are written, by their own items alone.
 __kernel void paraboloid_map_marks(__global const int* states, int size, __global float* records) {
     const int texel = (int)get_global_id(0) * LW_WIDTH, map = (int)get_global_id(1);
     if (texel >= size * size || !(states[map] & LW_MAP_STALE)) return;
-    const int first = map * size * size, y = texel / size;
-    const lanei x = lanei_iota() + texel % size, last = (lanei)(size - 1);
-    const lanei word = paraboloid_record(first, size, x, (lanei)y) + 1, bits = as_lanei_(gather(records, word));
+    const int at = map * size * size + texel, column = texel % size, y = texel / size;
+    const float step = paraboloid_step(size);
+    const lanei x = lanei_iota() + column;
+    const real low = load_whole(records + 2 * at), high = load_whole(records + 2 * at + LW_WIDTH), distance = even_(low, high);
+    const lanei bits = as_lanei_(odd_(low, high));
     const real nx = packed_normal(bits, 0), ny = packed_normal(bits, 1), nz = packed_normal(bits, 2);
-    const lw_met own = what_met(records, first, size, x, (lanei)y);
-    mask doubtful = splat_mask(0);
-    LW_UNROLL for (int side = 0; side < 4; ++side) {
-        const lanei column = clamp(x + (side == 0 ? -1 : side == 1 ? 1 : 0), (lanei)0, last);
-        const int row = clamp(y + (side == 2 ? -1 : side == 3 ? 1 : 0), 0, size - 1);
-        doubtful = or_(doubtful, stands_before(what_met(records, first, size, column, (lanei)row), own, nx, ny, nz));
-    }
-    scatter(as_real_(bits | selecti_((lanei)0, (lanei)(int)LW_PARABOLOID_DOUBTFUL, doubtful)), records, word);
+    const lw_met own = met_at(distance, x, y, step);
+    // Beyond the map's border a texel is its own neighbour, which stands before nothing.
+    const real left = column ? distances_from(records, at - 1) : from_left_(distance);
+    const real right = column + LW_WIDTH < size ? distances_from(records, at + 1) : from_right_(distance);
+    mask doubtful = or_(stands_before(met_at(left, max(x - 1, (lanei)0), y, step), own, nx, ny, nz),
+                        stands_before(met_at(right, min(x + 1, (lanei)(size - 1)), y, step), own, nx, ny, nz));
+    if (y > 0) doubtful = or_(doubtful, stands_before(met_at(distances_from(records, at - size), x, y - 1, step), own, nx, ny, nz));
+    if (y + 1 < size) doubtful = or_(doubtful, stands_before(met_at(distances_from(records, at + size), x, y + 1, step), own, nx, ny, nz));
+    if (!any_(doubtful)) return;
+    const lanei mark = selecti_((lanei)0, (lanei)(int)LW_PARABOLOID_DOUBTFUL, doubtful);
+    scatter(as_real_(bits | mark), records, (lanei_iota() + at) * 2 + 1);
 }
 
 // One work-item = LW_WIDTH texels (x) of a map (y): distance, normal in the world, albedo as planes for a debug
