@@ -68,7 +68,7 @@ LW_FN lw_seen_light gather_subset(const lw_surface s, __global const float* vpls
 // What of the finished light r, g, b is doubtful, as its sum over the channels; unless that is to be kept, what is not borne out goes.
 LW_FN real settle_doubt(real* r, real* g, real* b, const lw_seen_light sum, int isKept) {
     const real all = sum.light.r + sum.light.g + sum.light.b, finished = *r + *g + *b;
-    if (isKept) return select_((real)0.0f, finished * fmin(sum.doubt / all, (real)1.0f), all > 0.0f);
+    if (isKept) return select_((real)0.0f, finished * fmin(sum.doubt / all, (real)1.0f), and_(all > 0.0f, all < INFINITY));
     const real share = borne_out(all, sum.doubt);
     *r *= share;
     *g *= share;

@@ -86,7 +86,6 @@ typedef struct {
     real qx, qy, qz;  // from the origin, in the map's frame
     real nx, ny, nz;  // its normal there
     real distance;    // |q|
-    real behind;      // how far the origin lies behind the receiver's plane
     real x, y;        // in texels; whole numbers are texel centres
     mask inside;      // before the rim, and not on the back of the surface that the origin stands on
 } lw_map_receiver;
@@ -109,8 +108,8 @@ LW_FN lw_map_receiver paraboloid_receiver(lw_paraboloid map, int size, real px, 
     // Behind its plane by next to nothing, the origin stands on the other side of the receiver's own sheet, a ceiling of no
     // thickness: there the horizon runs through the texel, which saw the sky.
     // Farther behind, normal maps and smooth normals on coarse facets are the usual case, and the texel is asked.
-    r.behind = fma_(r.qx, r.nx, fma_(r.qy, r.ny, r.qz * r.nz));
-    const mask faces = or_(r.behind <= 0.0f, and_(r.behind > LW_PARABOLOID_BIAS * r.distance, r.behind > 2.0f * map.axisX.w));
+    const real behind = fma_(r.qx, r.nx, fma_(r.qy, r.ny, r.qz * r.nz));  // the receiver's plane
+    const mask faces = or_(behind <= 0.0f, and_(behind > LW_PARABOLOID_BIAS * r.distance, behind > 2.0f * map.axisX.w));
     // Strict: also false at the origin, where there is no direction, and for what is not a number.
     r.inside = and_(r.qz > LW_PARABOLOID_RIM_COSINE * r.distance, faces);
     const real denominator = select_((real)(1.0f), (r.distance + r.qz) * paraboloid_step(size), r.inside);

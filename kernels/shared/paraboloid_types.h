@@ -30,7 +30,7 @@ LW_SIZE_CHECK(lw_paraboloid, 64);
 
 // A record is two 32-bit words: the distance along the texel's centre ray (float bits; infinity where it met
 // nothing), and the normal there in the map's frame, turned to the origin: 10 bits a component, n * 511 + 512,
-// and this flag; 0 where it met nothing. Map k's texel (x, y) is record (k * size + y) * size + x.
+// and this flag; 0, but for the flag below, where it met nothing. Map k's texel (x, y) is record (k * size + y) * size + x.
 #define LW_PARABOLOID_HIT 0x40000000u
 // Of maps that strict look-ups read: a texel beside this one met something that clearly stands before what this one met.
 #define LW_PARABOLOID_DOUBTFUL 0x80000000u

@@ -35,7 +35,7 @@ public:
     void recordPlaces(Executor& executor, const Buffer& clusters, std::uint32_t clusterCount, const Buffer& diagonal,
                       std::uint64_t revision);
     void noteDrawn(std::uint64_t revision);
-    // Pass "paraboloid_map.marks", after all that draws: what strict look-ups ask for (LW_PARABOLOID_BESIDE_NEARER), of the maps drawn anew.
+    // Pass "paraboloid_map.marks", after all that draws: what strict look-ups ask for (LW_PARABOLOID_DOUBTFUL), of the maps drawn anew.
     void recordMarks(Executor& executor);
     MapTexels texels() const { return {frames_, state_, records_, albedo_, size_, mapCount_}; }
     void redrawAll() { drawnCount_ = 0; }  // in the next record(), whatever moved

@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <iterator>
+#include <sstream>
 
 #include "compute/device.h"
 #include "compute/error.h"
@@ -110,13 +112,33 @@ const Prediction& mostAccurate(const Predictions& predictions, std::size_t count
     return *std::find_if(predictions.begin(), end, [&](const Prediction& one) { return one.error <= kSameError * least; });
 }
 
+// Settings that `other` has not, each after a blank; byKey: that it has not at all, whatever their value.
+std::string missingIn(const std::string& settings, const std::string& other, bool byKey) {
+    std::istringstream words(settings);
+    std::string result;
+    for (std::string word; words >> word;) {
+        const std::string wanted = " " + (byKey ? word.substr(0, word.find('=') + 1) : word + " ");
+        if ((" " + other + " ").find(wanted) == std::string::npos) result += " " + word;
+    }
+    return result;
+}
+
+// "lpv", or of the technique that is chosen how it differs, as both together are more than a sentence holds: "ssvp with clusters=32 without
+// sampling=view".
+std::string besides(const Prediction& other, const Prediction& chosen) {
+    const Candidate &a = candidates()[other.candidate], &b = candidates()[chosen.candidate];
+    if (std::strcmp(a.technique, b.technique) != 0) return nameOf(other);
+    const std::string with = missingIn(a.settings, b.settings, false), without = missingIn(b.settings, a.settings, true);
+    return std::string(a.technique) + (with.empty() ? "" : " with" + with) + (without.empty() ? "" : " without" + without);
+}
+
 // "; lpv would have 0.2 in 12 ms": what comes next, of the first `count`.
 std::string runnerUp(const Predictions& predictions, std::size_t count, const Prediction& chosen) {
     const Prediction* next = nullptr;
     for (std::size_t i = 0; i < count; ++i)
         if (predictions[i].candidate != chosen.candidate && (!next || predictions[i].error < next->error)) next = &predictions[i];
     if (!next) return {};
-    return "; " + nameOf(*next) + " would have " + number(next->error) + " in " + number(next->milliseconds) + " ms";
+    return "; " + besides(*next, chosen) + " would have " + number(next->error) + " in " + number(next->milliseconds) + " ms";
 }
 
 }  // namespace

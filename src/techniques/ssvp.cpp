@@ -293,7 +293,7 @@ std::vector<DebugView> SsvpTechnique::debugViews(const View* view) {
     state->addDebugViews(views, history(), repair_ ? &*repair_ : nullptr);
     if (compensation_) state->addCompensationView(*compensation_, views);
     if (const Planes position = state->position())
-        views.push_back({"visibility", "clusters one below the other: the share of its light that each pixel is taken to see",
+        views.push_back({"visibility", "clusters one below the other: the share of its light that each pixel is taken to see, beyond doubt",
                          ClusteredGather::visibilityShape(position, shadowingClusters()),
                          [this, position, normal = state->normal()](Executor& executor, const Planes& planes) {
                              const std::optional<VoxelSights> sights = sightsRead();

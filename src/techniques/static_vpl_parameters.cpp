@@ -94,7 +94,7 @@ const std::vector<LWParameter>& staticVplParameters() {
                   parameter(
                       "visibility",
                       "of VPLs: none, or past the frame's geometry, by a map's nearest texel, its four "
-                      "nearest, strictly, or voxels: no light through walls, time and memory",
+                      "nearest, strictly (light past rims as far as the rest bears it out), or voxels: no light through walls, time and memory",
                       LW_PARAMETER_ENUM, offsetof(Desc, visibility), 0, 4, LW_VISIBILITY_NONE),
                   kVisibilityNames),
               kVisibilitySweep),

@@ -1,5 +1,7 @@
 // Light that strict look-ups doubt: what the gather leaves of it for the filter, and how much of it counts in the end.
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <limits>
 #include <random>
 
 #include "passes/clustered_gather.h"

@@ -1,5 +1,5 @@
 // Technique ssvp through the C API: what walls block and what they don't, bounces, bad cases, and what a
-// host relies on.
+// host relies on. Some lines over 300: one rig serves all.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -118,6 +118,36 @@ TEST_CASE("an open room blocks nothing, a lid blocks all", "[ssvp]") {
     const auto dark = render(device, desc, {floor.light}, closed.describe(), scene);
     CAPTURE(desc.clusters, desc.visibility, meanOf(open), meanOf(dark));
     CHECK(meanOf(dark) < kLeak * meanOf(open));
+}
+
+TEST_CASE("strict: light past rims counts less, and no light more, than with hard maps", "[ssvp]") {
+    TestDevice device(GENERATE(1u, 16u));
+    LitFloor floor(64, tiledProfile);
+    WallAndCeiling scene(kWidth, kHeight);
+    LWSsvpDesc desc = descOf(8, GENERATE(1u, 2u));
+    desc.vpls = 64;
+    desc.occluders = GENERATE(LW_OCCLUDERS_TRIANGLES, LW_OCCLUDERS_SURFELS, LW_OCCLUDERS_SCREEN);
+    desc.interleave = GENERATE(1u, 4u);
+    Walls room = Walls::room();
+    room.add({-0.2, 0.3, 0.2}, {0.4, 0, 0}, {0, 0, 0.4});
+    const auto hard = render(device, desc, {floor.light}, room.describe(), scene);
+    desc.visibility = LW_VISIBILITY_STRICT;
+    const auto strict = render(device, desc, {floor.light}, room.describe(), scene);
+    REQUIRE(strict.size() == hard.size());
+    int less = 0, more = 0;
+    for (std::size_t i = 0; i < hard.size(); ++i) {
+        less += strict[i] < 0.99f * hard[i];
+        more += strict[i] > 1.0001f * hard[i];
+    }
+    CAPTURE(desc.bounces, int(desc.occluders), desc.interleave, less, meanOf(hard), meanOf(strict));
+    CHECK(more == 0);
+    // What RSM texels show, the floor alone, hides nothing of it.
+    if (desc.occluders == LW_OCCLUDERS_SCREEN) {
+        CHECK(meanOf(strict) == Approx(meanOf(hard)).epsilon(0.01));
+    } else {
+        CHECK(less > 50);
+        CHECK(meanOf(strict) > 0.8 * meanOf(hard));
+    }
 }
 
 TEST_CASE("the second bounce adds what a closed room reflects", "[ssvp]") {
