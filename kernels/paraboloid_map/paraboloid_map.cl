@@ -47,6 +47,13 @@ __kernel void paraboloid_map_clear(__global const int* states, int texels, __glo
     vstore2((uint2)(as_uint(INFINITY), 0xffffffffu), (size_t)map * texels + texel, records);
 }
 
+// What a texel's neighbour met makes the texel doubtful where it is nearer than what the texel met by this share of the ray's length,
+// and stands before the plane of that by this share. Nearer, raised: light passes again along the rims of openings; lowered: corners
+// between walls and curved things darken. Before, raised: the same rims; lowered: mouldings and folds darken each other.
+// Measured in docs/techniques/ssvp_visibility.md.
+#define LW_DOUBT_NEARER 2e-2f
+#define LW_DOUBT_BEFORE 1e-2f
+
 // What texels of a map met, in the map's frame: how far off, and where (anywhere, if at infinity).
 typedef struct {
     real distance, x, y, z;
@@ -68,8 +75,8 @@ LW_FN real distances_from(__global const float* records, int at) {
 // Where the texel met nothing there is no plane to stand before.
 LW_FN mask stands_before(lw_met neighbour, lw_met own, real nx, real ny, real nz) {
     const real height = fma_(nx, neighbour.x - own.x, fma_(ny, neighbour.y - own.y, nz * (neighbour.z - own.z)));
-    const mask nearer = neighbour.distance < own.distance * (1.0f - LW_PARABOLOID_NEARER);
-    return and_(nearer, or_(height > LW_PARABOLOID_BEFORE * own.distance, own.distance >= INFINITY));
+    const mask nearer = neighbour.distance < own.distance * (1.0f - LW_DOUBT_NEARER);
+    return and_(nearer, or_(height > LW_DOUBT_BEFORE * own.distance, own.distance >= INFINITY));
 }
 
 // One work-item = LW_WIDTH texels (x) of a map (y): LW_PARABOLOID_DOUBTFUL of stale maps. Of neighbours distances are used; normals,

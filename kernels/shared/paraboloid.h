@@ -18,12 +18,6 @@
 // Cosine between the receiver's normal and the stored one above which it can be the same surface; lax, as
 // normals of a G-buffer are bent by normal maps. At 0 the wall behind an edge would count as the one before it.
 #define LW_PARABOLOID_AGREES 0.5f
-// What a texel's neighbour met makes the texel doubtful where it is nearer than what the texel met by this share of the ray's length,
-// and stands before the plane of that by this share. Nearer, raised: light passes again along the rims of openings; lowered: corners
-// between walls and curved things darken. Before, raised: the same rims; lowered: mouldings and folds darken each other.
-// Measured in docs/techniques/ssvp_visibility.md.
-#define LW_PARABOLOID_NEARER 2e-2f
-#define LW_PARABOLOID_BEFORE 1e-2f
 
 // ---- texels and directions
 
