@@ -90,6 +90,17 @@ struct Asked {
         rig.device().finish();
         return rig.downloadPlanes(rig.planes(out, w, rows, 1));
     }
+    // Two bands: c0, c1.x, c1.y, c1.z one below the other, three planes.
+    std::vector<float> harmonics(ClusterVisibility visibility) {
+        const std::uint32_t w = leaves.position.width, h = leaves.position.height;
+        const Guarded p = rig.uploadPlanes(leaves.position.planes, w, h, 3, kNaN), n = rig.uploadPlanes(leaves.normal.planes, w, h, 3, kNaN);
+        const Guarded out = rig.makePlanes(w, 4 * h, 3), counts = rig.upload(std::vector<cl_int>{0, 0, 0});
+        const Planes all = rig.planes(out, w, 4 * h, 3);
+        ClusteredHarmonics bands(rig.device(), visibility);
+        bands.record(rig.executor(), rig.planes(p, w, h, 3), rig.planes(n, w, h, 3), pass, maps(), {all, cl_int(all.rowStride * h)}, counts);
+        rig.device().finish();
+        return rig.downloadPlanes(all);
+    }
 };
 
 Image filtered(KernelRig& rig, const Image& position, const Image& normal, const std::vector<float>& light, std::uint32_t count) {
@@ -141,6 +152,37 @@ TEST_CASE("a strict gather is the hard one, and the light that it doubts is that
     CHECK(wrong == 0);
     CHECK(unsettled == 0);
     if (pixels > 2000) CHECK(doubtful > 100);
+}
+
+TEST_CASE("doubtful light in two bands counts as far as light from all sides bears it out", "[clustered_gather]") {
+    const auto width = GENERATE(1u, 16u);
+    const auto size = testSize({75, 33});
+    const Leaves leaves(size.first, size.second);
+    ParaboloidRig rig(width, 64, true);
+    rig.draw(leaves.mesh, leaves.clusters);
+    Asked hard(rig, leaves, ClusterVisibility::hard), strict(rig, leaves, ClusterVisibility::strict);
+    const std::vector<float> light = hard.harmonics(ClusterVisibility::hard), kept = strict.harmonics(ClusterVisibility::strict);
+    const std::vector<float> seen = hard.seen(), sure = strict.seen();
+    const std::size_t pixels = std::size_t(size.first) * size.second;
+    int wrong = 0;
+    for (std::uint32_t y = 0; y < size.second; ++y)
+        for (std::uint32_t x = 0; x < size.first; ++x) {
+            const std::size_t i = std::size_t(y) * size.first + x;
+            const reference::Surface s = reference::surfaceAt(leaves.position, leaves.normal, x, y);
+            double doubt = 0.0, all = 0.0;
+            for (std::size_t k = 0; s.valid && k < leaves.vpls.size(); ++k) {
+                const std::size_t at = std::size_t(leaves.assignment[k]) * pixels + i;
+                const lw_vpl& vpl = leaves.vpls[k];
+                const Vec to = Vec{vpl.positionArea.s[0], vpl.positionArea.s[1], vpl.positionArea.s[2]} - s.position;
+                const double facing = channelSum(reference::vplIrradiance(vpl, {s.position, reference::unit(to), true}));
+                doubt += facing * double(seen[at] - sure[at]);
+                all += facing * double(seen[at]);
+            }
+            for (std::size_t value = i; value < light.size(); value += pixels)
+                wrong += !(std::abs(double(kept[value]) - double(light[value]) * shareBorneOut(all, doubt)) <= 10.0 * kTwinTolerance * all + 1e-9);
+        }
+    CHECK(wrong == 0);
+    if (pixels > 2000) CHECK(bitDifference(light, kept) != "");
 }
 
 TEST_CASE("the filter bears doubtful light out by what surrounds it", "[clustered_gather]") {
