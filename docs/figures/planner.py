@@ -7,17 +7,18 @@ docs/accuracy.md, their pictures, and what tests hold the C++ to.
     docs/figures/planner.py --collect --work DIR               takes what was measured below DIR
     docs/figures/planner.py --maps [--lightwell PROGRAM]       measures what maps take to draw, and nothing else
 
-The models are in planner_model.py, the measuring in planner_measure.py, the pages in planner_page.py and planner_choosing.py.
+The candidates are in planner_candidates.py, the models in planner_model.py, the measuring in planner_measure.py with its made-up scenes in planner_scenes.py,
+the pages in planner_page.py and planner_choosing.py.
 """
 import argparse
 import datetime
-import math
 import pathlib
 
 import numpy as np
 
 import planner_measure
 import planner_page
+from planner_candidates import barred
 from planner_model import BUDGETS, FLOORS, LIMIT, PROBES, Data, ErrorModel, choose, fit_costs, leave_scenes_out, predict_ms, strengths
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -46,24 +47,25 @@ def main():
     kept = rows_of_table(data)
     heldOut = leave_scenes_out(data, kept)
     everything = np.arange(len(data.views))
-    strength, ofView = strengths(data, everything, kept)
-    model, costs = ErrorModel(data, everything, *strength, ofView), fit_costs(data, everything)
+    ridges = strengths(data, everything, kept)
+    model, costs = ErrorModel(data, everything, kept, *ridges), fit_costs(data, everything)
     sigma = spread(data, heldOut[1])
     write_tables(data, kept, model, costs, sigma)
     write_values(data, kept, model, costs)
-    planner_page.write(data, kept, heldOut, (strength, ofView), sigma, model, costs)
+    planner_page.write(data, kept, heldOut, ridges, sigma, model, costs)
 
 
 def rows_of_table(data):
     """What is near the front of errors and times in some view of two scenes or more, among what asks for no more inputs: a frame without
     light maps or triangles has a front of its own. Without maps of 256 x 256: for 5 % less error at rest they are four times as dear where lights
     move, and single sample sets of theirs rule what is chosen. Nor hard maps where strict ones of the same settings are measured, which for a
-    twentieth more time err by a few per cent more where all is bright, and by half and less where light comes through openings."""
+    twentieth more time err by a few per cent more where all is bright, and by half and less where light comes through openings. Nor what is not
+    known of made-up scenes."""
     kept = set()
     needs, names = [needs_of(*c) for c in data.candidates], data.names()
-    doubted = {name.replace(" visibility=strict", "") for name in names if "visibility=strict" in name}
+    out = barred(names) | {names[c] for c in np.where(np.isnan(data.madeLog).any(axis=0))[0]}
     for have in (64 + 15, 15, 1 + 2 + 4, 9, 1, 2 + 4, 4):
-        able = [c for c in range(len(needs)) if needs[c] & ~have == 0 and "map_size=256" not in names[c] and names[c] not in doubted]
+        able = [c for c in range(len(needs)) if needs[c] & ~have == 0 and names[c] not in out]
         for c in able:
             quick = [[k for k in able if ms[k] <= ms[c] * 1.02] for ms in data.ms]
             near = [v for v in range(len(data.views)) if data.error[v, c] <= NEAR * data.error[v, quick[v]].min()]
@@ -112,7 +114,7 @@ def fit_maps(data):
 def spread(data, log):
     """Standard deviation of what predictions of unseen scenes were off by: a candidate's own, drawn half towards that of all."""
     off = (log - data.log) ** 2
-    return np.sqrt(0.5 * off.mean(axis=0) + 0.5 * off.mean())
+    return np.sqrt(0.5 * off.mean(axis=0) + 0.5 * np.nanmean(off))
 
 
 def numbers(values, digits=4):

@@ -1,7 +1,7 @@
 """Measures what docs/figures/planner.py fits, with the program `lightwell`, into planner_data.json.
 
 Below `work`: chart*/ (errors and times of all views; of times the point with more frames counts, of equals the quicker, of errors the last folder's), seeds*/ (errors of further
-sample sets), sizes_*/ (times at other sizes), rival/ (path tracing), probes.json, rsm_sizes.json, launches.json. Every command goes on where it was stopped. Over 300 lines: a quarter is the list of candidates.
+sample sets), train*/ and train_probes.json (of made-up scenes), sizes_*/ (times at other sizes), rival/ (path tracing), probes.json, rsm_sizes.json, launches.json. Every command goes on where it was stopped.
 """
 import json
 import pathlib
@@ -9,6 +9,8 @@ import re
 import statistics
 import subprocess
 
+import planner_scenes
+from planner_candidates import CANDIDATES, barred, is_drawn, parted, variant
 from planner_model import DATA, PROBES
 
 SIZE, BLOCK = (1280, 720), 10
@@ -16,109 +18,14 @@ SCENES = ["cornell", "basic", "rooms", "cornell_original", "sponza_crytek", "spo
           "breakfast_room", "level_zdm2", "bunny_corner"]
 SHARED = SCENES[3:]  # the large ones, of which the rival is asked first
 SEEDS = (1, 2)  # beside 0: of VPLs drawn by chance a single set tells as much of its luck as of the configuration
-UNSURE, MORE_SEEDS = ["living_room", "level_zdm2", "breakfast_room", "basic"], (3, 4)  # where single sets lie farthest apart, a factor of 1.2 to 2
+UNSURE, MORE_SEEDS = ["living_room", "level_zdm2", "breakfast_room", "basic"], (3, 4, 5, 6, 7, 8)  # where single sets lie farthest apart, a factor of 1.2 to 2
 SIZES, SIZED = [(640, 360), (1920, 1080)], ["cornell", "sibenik"]
 RSM_SIZES, RSM_USUAL = [256, 1024], 512
-
-# What could be on the front of error and time somewhere, from the sweeps in docs/accuracy.md and by trial. All are measured in every
-# view; the table has those that were near the front of one.
-CANDIDATES = """
-rsm vpls=64 resolution=quarter
-rsm vpls=64 resolution=half
-rsm resolution=quarter
-rsm resolution=half
-rsm
-rsm visibility=voxel resolution=quarter
-rsm visibility=voxel resolution=half
-ssvp vpls=64 clusters=2 map_size=64 bounces=1 resolution=quarter
-ssvp vpls=128 clusters=4 map_size=64 bounces=1 resolution=quarter
-ssvp clusters=4 map_size=64 resolution=quarter
-ssvp resolution=quarter
-ssvp bounces=4 resolution=quarter
-ssvp clusters=16 resolution=quarter
-ssvp clusters=16 visibility=strict resolution=quarter
-ssvp clusters=16 bounces=4 resolution=quarter
-ssvp clusters=16 visibility=strict bounces=4 resolution=quarter
-ssvp clusters=16 bounces=4 shadowed_bounces=1 resolution=quarter
-ssvp vpls=512 clusters=16 bounces=4 resolution=quarter
-ssvp vpls=512 clusters=16 visibility=strict bounces=4 resolution=quarter
-ssvp vpls=512 clusters=16 bounces=4 shadowed_bounces=3 resolution=quarter
-ssvp vpls=512 clusters=16 visibility=strict bounces=4 shadowed_bounces=3 resolution=quarter
-ssvp vpls=512 clusters=32 bounces=4 resolution=quarter
-ssvp vpls=512 clusters=32 visibility=strict bounces=4 resolution=quarter
-ssvp vpls=1024 clusters=32 bounces=4 resolution=quarter
-ssvp vpls=1024 clusters=32 visibility=strict bounces=4 resolution=quarter
-ssvp vpls=1024 clusters=64 resolution=quarter
-ssvp vpls=1024 clusters=64 visibility=strict resolution=quarter
-ssvp vpls=1024 clusters=64 bounces=4 resolution=quarter
-ssvp vpls=1024 clusters=64 visibility=strict bounces=4 resolution=quarter
-ssvp vpls=1024 clusters=64 bounces=4 shadowed_bounces=3 resolution=quarter
-ssvp vpls=1024 clusters=64 visibility=strict bounces=4 shadowed_bounces=3 resolution=quarter
-ssvp vpls=1024 clusters=64 map_size=256 bounces=4 resolution=quarter
-ssvp vpls=128 clusters=4 map_size=64 bounces=1 resolution=half
-ssvp vpls=64 clusters=4 map_size=64 second_vpls=16 resolution=half
-ssvp resolution=half
-ssvp bounces=4 resolution=half
-ssvp clusters=16 resolution=half
-ssvp clusters=16 bounces=4 resolution=half
-ssvp vpls=512 clusters=16 bounces=4 resolution=half
-ssvp vpls=512 clusters=16 visibility=strict bounces=4 resolution=half
-ssvp clusters=32 resolution=half
-ssvp clusters=32 bounces=4 resolution=half
-ssvp vpls=1024 clusters=32 bounces=4 resolution=half
-ssvp vpls=1024 clusters=32 visibility=strict bounces=4 resolution=half
-ssvp vpls=1024 clusters=32 bounces=4 interleave=8 resolution=half
-ssvp vpls=1024 clusters=64 resolution=half
-ssvp vpls=1024 clusters=64 visibility=strict resolution=half
-ssvp vpls=1024 clusters=64 bounces=4 resolution=half
-ssvp vpls=1024 clusters=64 visibility=strict bounces=4 resolution=half
-ssvp vpls=1024 clusters=64 bounces=4 interleave=8 resolution=half
-ssvp vpls=1024 clusters=64 bounces=4 shadowed_bounces=3 resolution=half
-ssvp vpls=1024 clusters=64 visibility=strict bounces=4 shadowed_bounces=3 resolution=half
-ssvp vpls=1024 clusters=64 map_size=256 bounces=4 resolution=half
-ssvp
-ssvp clusters=16 bounces=4
-ssvp vpls=1024 clusters=32 bounces=4
-ssvp vpls=1024 clusters=32 visibility=strict bounces=4
-ssvp vpls=1024 clusters=64 bounces=4
-ssvp vpls=512 sampling=view clusters=16 visibility=strict resolution=quarter
-ssvp vpls=1024 sampling=view clusters=32 visibility=strict bounces=4 resolution=quarter
-ssvp vpls=1024 sampling=view clusters=64 visibility=strict resolution=quarter
-ssvp vpls=1024 sampling=view clusters=64 visibility=strict bounces=4 resolution=quarter
-ssvp vpls=1024 sampling=view clusters=64 visibility=strict bounces=4 shadowed_bounces=3 resolution=quarter
-ssvp vpls=1024 sampling=view clusters=64 visibility=strict resolution=half
-ssvp vpls=1024 sampling=view clusters=64 visibility=strict bounces=4 shadowed_bounces=3 resolution=half
-lpv transport=sweep size=16 directions=96 resolution=half
-lpv transport=sweep size=16 directions=96 bounces=4 resolution=half
-cone_tracing size=32 cones=6 bounces=0 resolution=quarter
-cone_tracing size=32 cones=9 bounces=0 resolution=quarter
-cone_tracing size=64 cones=6 bounces=0 resolution=quarter
-screen_space samples=16
-screen_space
-horizon directions=8
-horizon
-ao samples=8 resolution=half
-fallback first=screen_space second=ssvp first.samples=16 second.clusters=16 second.bounces=4 second.resolution=half
-fallback first=horizon second=ssvp first.reach=0.25 first.directions=8 second.clusters=16 second.bounces=4 second.resolution=half
-fallback first=horizon second=ssvp first.directions=8 second.bounces=3 second.resolution=half
-fallback first=screen_space second=cone_tracing first.samples=16 second.size=32 second.cones=6 second.bounces=0 second.resolution=quarter
-fallback first=screen_space second=rsm first.samples=16 second.visibility=voxel second.resolution=half
-""".strip().splitlines()
+# Made-up scenes (planner_scenes.py) teach errors, of the techniques that the table may hold. Noisier truths do: a single error matters little there.
+TAUGHT, MADE_TRUTH = ("rsm", "ssvp", "screen_space", "horizon"), ["--noise", "1e-2", "--truth-seconds", 40]
 # Scenes of few triangles and of many, for what a map takes to draw; of how many maps.
 MAPPED, MAPS = ["rooms", "bunny_corner", "sibenik", "sponza_crytek"], 16
-# A point alone needs a parameter: one at its default.
-ALONE = {"rsm": "vpls=256", "ssvp": "vpls=256", "screen_space": "samples=64", "horizon": "steps=2"}
 RIVALS = [f"rival,bounces=2,spp={spp},resolution={resolution}" for spp in (1, 2, 4, 8) for resolution in ("full", "half", "quarter")]
-
-
-def parted(candidate):
-    technique, _, settings = candidate.partition(" ")
-    return technique, settings
-
-
-def variant(candidate):
-    technique, settings = parted(candidate)
-    return ",".join([technique, *(settings or ALONE[technique]).split()])
 
 
 def measure(program, work):
@@ -143,6 +50,12 @@ def measure(program, work):
     for size in SIZES:
         chart(f"sizes_{size[1]}", all_of, size, 11, "--scenes", *SIZED, "--cameras", "first", "--noise", "1e3")
     chart("rival", RIVALS, SIZE, 1, "--scenes", *SHARED, "--cameras", "first", *truth)
+    made = planner_scenes.write(work / "made")
+    taught = [c for c in CANDIDATES if c.split()[0] in TAUGHT and "voxel" not in c and c not in barred(CANDIDATES)]
+    chart("train0", list(map(variant, taught)), SIZE, 1, "--scenes", *made, *MADE_TRUTH)
+    for seed in SEEDS:
+        chart(f"train{seed}", [f"{variant(c)},seed={seed}" for c in taught if is_drawn(c)], SIZE, 1, "--scenes", *made, *MADE_TRUTH)
+    (work / "train_probes.json").write_text(json.dumps([probe(lightwell, {"scene": path, "camera": "camera"}) for path in made]))
     views = json.loads((work / "chart/results.json").read_text())["views"]
     (work / "probes.json").write_text(json.dumps([probe(lightwell, v) for v in views]))
     (work / "rsm_sizes.json").write_text(json.dumps([
@@ -157,7 +70,7 @@ def measure(program, work):
 def probe(lightwell, view):
     plan = json.loads(lightwell("plan", view["scene"], "--camera", view["camera"], "--budget-ms", 33, "--json"))
     named = {name: plan["probes"][re.sub("[A-Z]", lambda letter: "_" + letter.group().lower(), name)] for name in PROBES}
-    return {"scene": view["scene"], "camera": view["camera"], "probes": named, "triangles": plan["triangles"]}
+    return {"scene": pathlib.Path(view["scene"]).stem, "camera": view["camera"], "probes": named, "triangles": plan["triangles"]}
 
 
 def maps(program):
@@ -187,10 +100,6 @@ def launches(lightwell, candidate):
 
 
 # ------------------------------------------------------------------------------------- to one file
-
-def is_drawn(candidate):
-    return parted(candidate)[0] in ("rsm", "ssvp")
-
 
 def is_point_of(point, candidate, seed=0):
     technique, settings = parted(candidate)
@@ -232,7 +141,7 @@ def collect(work, date):
             for c, candidate in enumerate(CANDIDATES):
                 if is_point_of(p, candidate):
                     points.setdefault((index[p["scene"], p["camera"]], c), []).append(p)
-    further = further_seeds(work, index)
+    further = seed_errors(sorted(work.glob("seeds*/results.json")), index)
     quiet = [p["ms"]["median"] / time_of(p, threads) for some in points.values() for p in some]
     beyond = statistics.median(q for q in quiet if q < 1.15)
     errors, ms = ([[None] * len(CANDIDATES) for _ in probed] for _ in range(2))
@@ -240,8 +149,9 @@ def collect(work, date):
     for (v, c), some in points.items():
         most = max(p["frames"] for p in some)
         # Of logarithms: single sets lie up to a decade off where few pixels rule the error.
-        errors[v][c] = rounded(statistics.geometric_mean([noiseless(some[-1]["errors"]["all"]), *further.get((v, c), [])]))
+        errors[v][c] = rounded(statistics.geometric_mean([noiseless(some[-1]["errors"]["all"]), *further.get((v, c), {}).values()]))
         ms[v][c] = rounded(min(time_of(p, threads) for p in some if p["frames"] == most) * beyond * drift(v, most))
+    made = made_up(work)
     launched = json.loads((work / "launches.json").read_text()) if (work / "launches.json").exists() else {}
     rates = json.loads((work / "rates.json").read_text())
     rate = {"multiply_add_gflops": rounded(max(r["multiply_add_gflops"] for r in rates)), "bandwidth_GBps": rounded(max(r["bandwidth_GBps"] for r in rates)),
@@ -255,21 +165,30 @@ def collect(work, date):
               "clock_over_processor": round(beyond, 4), "rates": rate,
               "candidates": [{"technique": parted(c)[0], "settings": parted(c)[1], "launches": launched.get(c, 0)} for c in pick(CANDIDATES)],
               "views": [{**v, "noise": noise_of(charts, v)} for v in probed],
-              "errors": list(map(pick, errors)), "ms": list(map(pick, ms)),
+              "errors": list(map(pick, errors)), "ms": list(map(pick, ms)), "made_views": made[0], "made_errors": list(map(pick, made[1])),
               "sizes": [{**entry, "ms": pick(entry["ms"])} for entry in sizes(work, threads, beyond)], "ms_per_megatexel": per_megatexel(work), "maps": json.loads((work / "maps.json").read_text()), "rival": rivals(work, threads, beyond)}
     DATA.write_text(compact(result), encoding="utf-8")
     print(DATA)
 
 
-def further_seeds(work, index):
-    """Errors of the sample sets beside the first, by view and candidate."""
+def seed_errors(files, index):
+    """Errors of the sample sets in files below folders that are called by their number, by view and candidate; one more file of a set fills in."""
     result = {}
-    for seed in SEEDS + MORE_SEEDS:
-        for p in (p for folder in sorted(work.glob(f"seeds{seed}*/results.json")) for p in read_points(folder.parent)[1]):
+    for file in files:
+        seed = int(re.search(r"\d+", file.parent.name).group())
+        for p in read_points(file.parent)[1]:
             for c, candidate in enumerate(CANDIDATES):
-                if is_drawn(candidate) and is_point_of(p, candidate, seed):
-                    result.setdefault((index[p["scene"], p["camera"]], c), []).append(noiseless(p["errors"]["all"]))
+                if is_point_of(p, candidate, seed) and (is_drawn(candidate) or seed == 0):
+                    result.setdefault((index[pathlib.Path(p["scene"]).stem, p["camera"]], c), {})[seed] = noiseless(p["errors"]["all"])
     return result
+
+
+def made_up(work):
+    """Probes of made-up scenes, and errors of the candidates whose light they know."""
+    probed = json.loads((work / "train_probes.json").read_text())
+    known = seed_errors(sorted(work.glob("train*/results.json")), {(v["scene"], v["camera"]): i for i, v in enumerate(probed)})
+    of = lambda v, c: rounded(statistics.geometric_mean(known[v, c].values())) if (v, c) in known else None  # noqa: E731
+    return probed, [[of(v, c) for c in range(len(CANDIDATES))] for v in range(len(probed))]
 
 
 def drifts(points, threads, views):

@@ -14,10 +14,10 @@ FLOORS = np.array([1e-3, 1e-3, 1e-4, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3])
 FACING = PROBES.index("facing")
 LIMIT = 2.5  # deviations beyond which a probe counts no more
 SAME = 1.02  # as in src/planner/planner.cpp: of errors so near to each other the quickest is taken
-SAME_TIME = 1.15  # likewise: where nothing fits
+SAME_TIME = 1.05  # likewise: where nothing fits
 BUDGETS = [4, 8, 16, 33, 66]  # ms
-STRENGTHS = [(rank, ridge) for rank in (1, 2) for ridge in (3.0, 10.0, 30.0, 100.0)] + [(1, math.inf)]
-RIDGE_OF_VIEWS = [3.0, 10.0, 30.0, 100.0, math.inf]
+RIDGES = [3.0, 10.0, 30.0, 100.0, 300.0]
+MADE = 1.0  # what a made-up scene weighs in the error's fit beside a real one
 
 
 class Data:
@@ -32,6 +32,9 @@ class Data:
         self.probes = np.array([[view["probes"][name] for name in PROBES] for view in self.views])
         # A scene and its other edition hold out each other: a box seen in training is no unseen scene.
         self.scene = np.array([{"cornell_original": "cornell"}.get(v["scene"], v["scene"]) for v in self.views])
+        # Made-up scenes, of which errors alone are known, and of some candidates only: the error model learns from them, nothing is judged by them.
+        self.madeLog = np.log10(np.array([[np.nan if e is None else e for e in row] for row in raw["made_errors"]]))
+        self.madeProbes = np.array([[view["probes"][name] for name in PROBES] for view in raw["made_views"]])
         self.mega = {"pixels": raw["size"][0] * raw["size"][1] * 1e-6, "texels": raw["rsm_texels"] * 1e-6}
 
     def names(self):
@@ -135,27 +138,30 @@ def predict_ms(data, costs, rows):
 # ------------------------------------------------------------------------------------------ error
 
 class ErrorModel:
-    """log10 relMSE = mean + slopes . z. One part of the slopes is the view's, alike for all candidates (ridge `ofView`); the other tells
-    candidates from each other: ridge `ridge`, then reduced to the `rank` directions that explain most (Izenman 1975)."""
+    """log10 relMSE = mean + slopes . z, of the candidates `columns` (NaN of the others), from the views `rows` and all made-up scenes. One part
+    of the slopes is the view's, alike for all candidates; the other tells candidates from each other: two ridges (Hoerl and Kennard 1970)."""
 
-    def __init__(self, data, rows, rank, ridge, ofView):
-        raw = np.log10(np.maximum(data.probes[rows], FLOORS))
-        self.mean, self.deviation = raw.mean(axis=0), np.maximum(raw.std(axis=0), 0.05)
-        z = self.standardised(data.probes[rows])
-        log = data.log[rows]
-        weights = self.weights(data, rows)
-        self.means = weights @ log / weights.sum()
-        rest = log - self.means
-        view = rest.mean(axis=1)
-        apart = rest - view[:, None]
-        self.slopes = np.zeros((len(PROBES), log.shape[1]))
+    def __init__(self, data, rows, columns, ridge, ofView):
+        probes = np.concatenate([data.probes[rows], data.madeProbes])
+        log = np.concatenate([data.log[np.ix_(rows, columns)], data.madeLog[:, columns]])
+        weights = np.concatenate([self.weights(data, rows), np.full(len(data.madeLog), MADE)])
+        raw = np.log10(np.maximum(probes, FLOORS))
+        self.mean = np.average(raw, axis=0, weights=weights)
+        self.deviation = np.maximum(np.sqrt(np.average((raw - self.mean) ** 2, axis=0, weights=weights)), 0.05)
+        z = self.standardised(probes)
+        self.means = np.full(len(data.candidates), np.nan)
+        self.slopes = np.full((len(PROBES), len(data.candidates)), np.nan)
+        self.means[columns] = weights @ log / weights.sum()
+        rest = log - self.means[columns]
+        view = rest.mean(axis=1, keepdims=True)
         weighted = z * weights[:, None]
+
+        def shrunk(values, by):
+            return np.linalg.solve(weighted.T @ z + by * np.eye(len(PROBES)), weighted.T @ values)
+
+        self.slopes[:, columns] = shrunk(rest - view, ridge)
         if math.isfinite(ofView):
-            self.slopes += np.linalg.solve(weighted.T @ z + ofView * np.eye(len(PROBES)), weighted.T @ view)[:, None]
-        if math.isfinite(ridge):
-            slopes = np.linalg.solve(weighted.T @ z + ridge * np.eye(len(PROBES)), weighted.T @ apart)
-            directions = np.linalg.svd(z @ slopes, full_matrices=False)[2][:rank]
-            self.slopes += slopes @ directions.T @ directions
+            self.slopes[:, columns] += shrunk(view, ofView)
 
     @staticmethod
     def weights(data, rows):
@@ -191,39 +197,34 @@ def outcomes(data, ms, log, rows, allowed):
     return result
 
 
-def held_out(data, rows, strength, ofView):
-    """Predictions of every view of `rows` by models that knew none of its scene."""
-    log = np.zeros((len(rows), len(data.candidates)))
-    ms = np.zeros_like(log)
+def held_out(data, rows, columns, ridge, ofView):
+    """log10 errors of every view of `rows` by models that knew none of its scene."""
+    log = np.full((len(rows), len(data.candidates)), np.nan)
     for scene in dict.fromkeys(data.scene[rows]):
-        inside = np.array([r for r in rows if data.scene[r] != scene])
-        outside = [i for i, r in enumerate(rows) if data.scene[r] == scene]
-        log[outside] = ErrorModel(data, inside, *strength, ofView).predict(data.probes[rows[outside]])
-        ms[outside] = predict_ms(data, fit_costs(data, inside), rows[outside])
-    return ms, log
+        outside = data.scene[rows] == scene
+        log[outside] = ErrorModel(data, rows[~outside], columns, ridge, ofView).predict(data.probes[rows[outside]])
+    return log
 
 
-def strengths(data, rows, allowed):
-    """What shrinks best by leaving out one scene of `rows` after the other: `ofView` by the errors' own prediction, rank and ridge by
-    what is chosen (the mean logarithm of the ratio of errors)."""
-    def loss(strength):
-        ms, log = held_out(data, rows, strength, math.inf)
-        return float(np.mean([math.log(o[4]) for o in outcomes(data, ms, log, rows, allowed)]))
+def strengths(data, rows, columns):
+    """The two ridges that predict best what is the candidates' and what is the view's, one scene of `rows` after the other left out. Not by what
+    is chosen: that is settled by a few views and leaps with each that is added."""
+    def off(ridge, ofView):
+        return (held_out(data, rows, columns, ridge, ofView) - data.log[rows])[:, columns]
 
-    def miss(ofView):
-        log = held_out(data, rows, (1, math.inf), ofView)[1]
-        return float(np.mean((log - data.log[rows]).mean(axis=1) ** 2))
+    def misses_candidates(ridge):
+        each = off(ridge, math.inf)
+        return float(np.mean((each - each.mean(axis=1, keepdims=True)) ** 2))
 
-    return min(STRENGTHS, key=loss), min(RIDGE_OF_VIEWS, key=miss)
+    return min(RIDGES, key=misses_candidates), min(RIDGES + [math.inf], key=lambda ofView: float(np.mean(off(RIDGES[-1], ofView).mean(axis=1) ** 2)))
 
 
 def leave_scenes_out(data, allowed):
-    """Nested: the strengths of each held-out scene's models are chosen among the other scenes."""
+    """Times and errors of each view by models without its scene; nested: their ridges are chosen among the other scenes."""
     everything = np.arange(len(data.views))
-    log, ms = np.zeros((len(everything), len(data.candidates))), np.zeros((len(everything), len(data.candidates)))
+    log, ms = (np.full((len(everything), len(data.candidates)), np.nan) for _ in range(2))
     for scene in data.scenes():
         inside, outside = everything[data.scene != scene], everything[data.scene == scene]
-        strength, ofView = strengths(data, inside, allowed)
-        log[outside] = ErrorModel(data, inside, *strength, ofView).predict(data.probes[outside])
+        log[outside] = ErrorModel(data, inside, allowed, *strengths(data, inside, allowed)).predict(data.probes[outside])
         ms[outside] = predict_ms(data, fit_costs(data, inside), outside)
     return ms, log

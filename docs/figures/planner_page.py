@@ -26,7 +26,7 @@ def view_name(view):
     return f"{view['scene']}, {camera}"
 
 
-def write(data, kept, heldOut, strength, sigma, model, costs):
+def write(data, kept, heldOut, ridges, sigma, model, costs):
     from planner import needs_of
     import planner_choosing
     needs = np.array([needs_of(*c) for c in data.candidates])
@@ -35,7 +35,7 @@ def write(data, kept, heldOut, strength, sigma, model, costs):
     found = outcomes(data, ms, log, everything, kept)
     draw_predicted(data, kept, ms, log)
     planner_choosing.draw(data, needs, kept)
-    write_between(ROOT / "docs/planner.md", BEGIN, END, fit_block(data, kept, ms, log, found, strength, sigma))
+    write_between(ROOT / "docs/planner.md", BEGIN, END, fit_block(data, kept, ms, log, found, ridges, sigma))
     write_between(ROOT / "docs/choosing.md", BEGIN, END, planner_choosing.block(data, needs, kept, found))
     write_between(ROOT / "docs/choosing.md", "<!-- begin: thrift, written by docs/figures/planner.py -->", "<!-- end: thrift -->", planner_choosing.thrift_block(data))
     write_between(ROOT / "docs/techniques/ssvp_visibility.md", "<!-- begin: strict, written by docs/figures/planner.py -->", "<!-- end: strict -->",
@@ -82,22 +82,21 @@ def late_share(data, picks):
     return f"{100 * np.mean(late):.0f} %"
 
 
-def fit_block(data, kept, ms, log, found, strength, sigma):
+def fit_block(data, kept, ms, log, found, ridges, sigma):
     raw = data.raw
     off = np.abs(ms[:, kept] / data.ms[:, kept] - 1.0)
     byScene = log[:, kept] - data.log[:, kept]
     twice = np.mean(np.abs(byScene) <= math.log10(2))
     said = np.mean([math.erf(math.log10(2) / (s * math.sqrt(2))) for s in sigma[kept]])
-    (rank, ridge), ofView = strength
+    ridge, ofView = ridges
     lines = [f"Measured {raw['date']} at {raw['size'][0]}x{raw['size'][1]} on {raw['device']}, {raw['threads']} threads of one shared machine: time is processor time of "
              f"all threads over their number, times {raw['clock_over_processor']:.3f}, what the clock showed beyond it where nothing else ran. "
              f"{len(data.candidates)} configurations in {len(data.views)} views of {len(set(v['scene'] for v in data.views))} scenes; {len(kept)} of them, within 5 % of a front "
              "in two scenes or more, are the table. Errors are against all bounces, at one pixel of each "
              f"{raw['judged_block']} x {raw['judged_block']}, the geometric mean over {raw['seeds']} sample sets where VPLs are drawn ({max(raw['more_seeds'].values())} in {', '.join(raw['more_seeds'])}, where they lie farthest apart); the truth's own noise ({min(v['noise'] for v in data.views):.1g} to {max(v['noise'] for v in data.views):.1g}) is taken off.", "",
              "Everything below is *leave one scene out*: each view is predicted by models that were fitted without its scene (the two Cornell "
-             "boxes count as one), with the strengths of shrinking chosen within the scenes that are left. The fit to all: "
-             + (f"slopes of rank {rank}, ridge {ridge:g}" if math.isfinite(ridge) else "no slopes that tell candidates apart")
-             + (f", ridge {ofView:g} of what is alike for all." if math.isfinite(ofView) else ", none that is alike for all."), "",
+             f"boxes count as one), with the ridges chosen within the scenes that are left. {len(data.madeLog)} made-up scenes teach errors to all of them and are not judged. The fit to all: "
+             f"ridge {ridge:g} of what tells candidates apart, " + (f"{ofView:g} of what is alike for all." if math.isfinite(ofView) else "nothing that is alike for all."), "",
              "![Predicted against measured, scenes left out](images/planner_predicted.png)", "",
              f"**Time**: off by {100 * np.median(off):.1f} % at the median, {100 * np.quantile(off, 0.9):.0f} % at the ninth decile (wanted: 15 % at the median). "
              f"**Error**: within a factor of two in {100 * twice:.0f} % of all predictions (the confidences say {100 * said:.0f} %). Most of what is off is alike for all "
