@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Fits the planner to planner_data.json: writes src/planner/plan_tables.h, the marked blocks of docs/planner.md, docs/choosing.md and
-docs/accuracy.md, their pictures, and what tests hold the C++ to.
+"""Fits the planner to planner_data.json: writes src/planner/plan_tables.h, the marked blocks of docs/planner.md, docs/choosing.md,
+docs/techniques/ssvp_visibility.md and docs/accuracy.md, their pictures, and what tests hold the C++ to.
 
-    docs/figures/planner.py                                    from planner_data.json alone: a minute
+    docs/figures/planner.py                                    from planner_data.json alone: seconds
     docs/figures/planner.py --measure [--lightwell PROGRAM]    measures first: hours where truths are not cached
     docs/figures/planner.py --collect --work DIR               takes what was measured below DIR
     docs/figures/planner.py --maps [--lightwell PROGRAM]       measures what maps take to draw, and nothing else
@@ -56,22 +56,31 @@ def main():
 
 
 def rows_of_table(data):
-    """What is near the front of errors and times in some view of two scenes or more, among what asks for no more inputs: a frame without
-    light maps or triangles has a front of its own. Without maps of 256 x 256: for 5 % less error at rest they are four times as dear where lights
+    """What is near the front in two scenes or more. Without maps of 256 x 256: for 5 % less error at rest they are four times as dear where lights
     move, and single sample sets of theirs rule what is chosen. Nor hard maps where strict ones of the same settings are measured, which for a
-    twentieth more time err by a few per cent more where all is bright, and by half and less where light comes through openings. Nor what is not
+    twentieth more time err by up to a fifth more where all is bright, and by half and less where light comes through openings. Nor what is not
     known of made-up scenes."""
-    kept = set()
-    needs, names = [needs_of(*c) for c in data.candidates], data.names()
-    out = barred(names) | {names[c] for c in np.where(np.isnan(data.madeLog).any(axis=0))[0]}
+    names = data.names()
+    able = [c for c in range(len(names)) if names[c] not in barred(names)]
+    known = [c for c in able if np.isfinite(data.madeLog[:, c]).all()]
+    for c in sorted(near_front(data, able, SCENES) - set(known)):
+        print(f"not in the table, as made-up scenes lack it: {names[c]}")
+    return np.array(sorted(near_front(data, known, SCENES)))
+
+
+def near_front(data, able, scenes):
+    """Those of `able` that are near the front of errors and times in some view of so many scenes, among what asks for no more inputs: a frame without
+    light maps or triangles has a front of its own."""
+    near = set()
+    needs = [needs_of(*c) for c in data.candidates]
     for have in (64 + 15, 15, 1 + 2 + 4, 9, 1, 2 + 4, 4):
-        able = [c for c in range(len(needs)) if needs[c] & ~have == 0 and names[c] not in out]
-        for c in able:
-            quick = [[k for k in able if ms[k] <= ms[c] * 1.02] for ms in data.ms]
-            near = [v for v in range(len(data.views)) if data.error[v, c] <= NEAR * data.error[v, quick[v]].min()]
-            if len(set(data.scene[near])) >= SCENES:
-                kept.add(c)
-    return np.array(sorted(kept))
+        some = [c for c in able if needs[c] & ~have == 0]
+        for c in some:
+            quick = [[k for k in some if ms[k] <= ms[c] * 1.02] for ms in data.ms]
+            views = [v for v in range(len(data.views)) if data.error[v, c] <= NEAR * data.error[v, quick[v]].min()]
+            if len(set(data.scene[views])) >= scenes:
+                near.add(c)
+    return near
 
 
 def needs_of(technique, settings):

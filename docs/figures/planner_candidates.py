@@ -1,7 +1,7 @@
 """What the planner chooses among (planner_measure.py measures it, planner.py makes the table)."""
 
 # What could be on the front of error and time somewhere, from the sweeps in docs/accuracy.md and by trial. All are measured in every
-# view; the table has those that were near the front of one.
+# view; planner.py says which of them are the table.
 CANDIDATES = """
 rsm vpls=64 resolution=quarter
 rsm vpls=64 resolution=half

@@ -1,7 +1,7 @@
 """Measures what docs/figures/planner.py fits, with the program `lightwell`, into planner_data.json.
 
 Below `work`: chart*/ (errors and times of all views; of times the point with more frames counts, of equals the quicker, of errors the last folder's), seeds*/ (errors of further
-sample sets), train*/ and train_probes.json (of made-up scenes), sizes_*/ (times at other sizes), rival/ (path tracing), probes.json, rsm_sizes.json, launches.json. Every command goes on where it was stopped.
+sample sets), train*/ and train_probes.json (of made-up scenes), sizes_*/ (times at other sizes), rival/ (path tracing), probes.json, rsm_sizes.json, launches.json, maps.json, rates.json; made/ has the made-up scenes themselves. Every command goes on where it was stopped.
 """
 import json
 import pathlib
@@ -141,7 +141,7 @@ def collect(work, date):
             for c, candidate in enumerate(CANDIDATES):
                 if is_point_of(p, candidate):
                     points.setdefault((index[p["scene"], p["camera"]], c), []).append(p)
-    further = seed_errors(sorted(work.glob("seeds*/results.json")), index)
+    further = seed_errors(sorted(work.glob("seeds[0-9]*/results.json")), index)
     quiet = [p["ms"]["median"] / time_of(p, threads) for some in points.values() for p in some]
     beyond = statistics.median(q for q in quiet if q < 1.15)
     errors, ms = ([[None] * len(CANDIDATES) for _ in probed] for _ in range(2))
@@ -152,7 +152,9 @@ def collect(work, date):
         errors[v][c] = rounded(statistics.geometric_mean([noiseless(some[-1]["errors"]["all"]), *further.get((v, c), {}).values()]))
         ms[v][c] = rounded(min(time_of(p, threads) for p in some if p["frames"] == most) * beyond * drift(v, most))
     made = made_up(work)
-    launched = json.loads((work / "launches.json").read_text()) if (work / "launches.json").exists() else {}
+    launched = json.loads((work / "launches.json").read_text())
+    sets = {scene: 1 + max(len(of) for (v, _), of in further.items() if probed[v]["scene"] == scene) for scene in SCENES}
+    usual = min(sets.values())
     rates = json.loads((work / "rates.json").read_text())
     rate = {"multiply_add_gflops": rounded(max(r["multiply_add_gflops"] for r in rates)), "bandwidth_GBps": rounded(max(r["bandwidth_GBps"] for r in rates)),
             "launch_us": rounded(statistics.median(r["launch_us"] for r in rates), 3)}
@@ -161,9 +163,9 @@ def collect(work, date):
         print(f"left out, for it is not measured in every view: {CANDIDATES[c]}")
     pick = lambda row: [row[c] for c in whole]  # noqa: E731
     result = {"date": date, "device": header["device"]["name"], "driver": header["device"]["driver"], "cpu": header["versions"]["cpu"],
-              "threads": threads, "seeds": 1 + len(SEEDS), "more_seeds": {scene: 1 + len(SEEDS + MORE_SEEDS) for scene in UNSURE}, "size": list(SIZE), "judged_block": BLOCK, "rsm_texels": RSM_USUAL ** 2,
+              "threads": threads, "seeds": usual, "more_seeds": {scene: n for scene, n in sets.items() if n > usual}, "size": list(SIZE), "judged_block": BLOCK, "rsm_texels": RSM_USUAL ** 2,
               "clock_over_processor": round(beyond, 4), "rates": rate,
-              "candidates": [{"technique": parted(c)[0], "settings": parted(c)[1], "launches": launched.get(c, 0)} for c in pick(CANDIDATES)],
+              "candidates": [{"technique": parted(c)[0], "settings": parted(c)[1], "launches": launched[c]} for c in pick(CANDIDATES)],
               "views": [{**v, "noise": noise_of(charts, v)} for v in probed],
               "errors": list(map(pick, errors)), "ms": list(map(pick, ms)), "made_views": made[0], "made_errors": list(map(pick, made[1])),
               "sizes": [{**entry, "ms": pick(entry["ms"])} for entry in sizes(work, threads, beyond)], "ms_per_megatexel": per_megatexel(work), "maps": json.loads((work / "maps.json").read_text()), "rival": rivals(work, threads, beyond)}
@@ -172,7 +174,7 @@ def collect(work, date):
 
 
 def seed_errors(files, index):
-    """Errors of the sample sets in files below folders that are called by their number, by view and candidate; one more file of a set fills in."""
+    """Errors of the sample sets in files in folders that are called by a set's number, by view and candidate. Of a point in two files the last counts."""
     result = {}
     for file in files:
         seed = int(re.search(r"\d+", file.parent.name).group())
@@ -186,7 +188,7 @@ def seed_errors(files, index):
 def made_up(work):
     """Probes of made-up scenes, and errors of the candidates whose light they know."""
     probed = json.loads((work / "train_probes.json").read_text())
-    known = seed_errors(sorted(work.glob("train*/results.json")), {(v["scene"], v["camera"]): i for i, v in enumerate(probed)})
+    known = seed_errors(sorted(work.glob("train[0-9]*/results.json")), {(v["scene"], v["camera"]): i for i, v in enumerate(probed)})
     of = lambda v, c: rounded(statistics.geometric_mean(known[v, c].values())) if (v, c) in known else None  # noqa: E731
     return probed, [[of(v, c) for c in range(len(CANDIDATES))] for v in range(len(probed))]
 

@@ -167,7 +167,7 @@ class ErrorModel:
     def weights(data, rows):
         """Scenes count alike, however many cameras they have."""
         scenes = data.scene[rows]
-        return np.array([1.0 / math.sqrt((scenes == s).sum()) for s in scenes])
+        return np.array([1.0 / (scenes == s).sum() for s in scenes])
 
     def standardised(self, probes):
         z = (np.log10(np.maximum(probes, FLOORS)) - self.mean) / self.deviation

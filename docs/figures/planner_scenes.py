@@ -1,5 +1,5 @@
 """Made-up buildings that the planner's error model learns from, beside the scenes that it is judged by (planner_measure.py): rooms behind windows
-and doors, passages beside courts, blinds, blocks under the sun. Written as scene JSON (docs/scenes.md); the same on every run.
+and doors, passages beside courts, blinds, blocks under the sun, rooms with a lamp of their own. Written as scene JSON (docs/scenes.md); the same on every run.
 
 What light does in a building is a matter of its openings: how large, how many, how far from the view, and whether a sun or a lamp stands
 behind. The real scenes have a handful of each; here they are drawn at random.
@@ -56,7 +56,8 @@ class Building:
         piece(here, along[1], 0, height)
 
     def room(self, x, z, height, holes):
-        """Walls, floor and ceiling around x[0]..x[1], z[0]..z[1]; holes by side: "west", "east", "south", "north"."""
+        """Walls, floor and ceiling around x[0]..x[1], z[0]..z[1]; holes by side: "west", "east", "south", "north"; no wall on a side that is
+        not named."""
         paint = self.material(0.45, 0.8, 0.15)
         outer = (x[0] - THICK / 2, x[1] + THICK / 2)
         for side, axis, at, along in (("west", 0, x[0], z), ("east", 0, x[1], z), ("south", 2, z[0], outer), ("north", 2, z[1], outer)):
@@ -79,21 +80,21 @@ class Building:
             else:
                 self.box((cx - w / 2, 0, cz - d / 2), (cx + w / 2, h, cz + d / 2), self.material(colour=0.6))
 
-    def ground(self, beyond=5.0):
-        """As far around all boxes: farther would only thin out the light's texels."""
+    def ground(self):
+        """Not far around all boxes: that would only thin out the light's texels."""
         boxes = [mesh["box"] for mesh in self.meshes if "box" in mesh]
-        x, z = ((min(b["lower"][axis] for b in boxes) - beyond, max(b["upper"][axis] for b in boxes) + beyond) for axis in (0, 2))
+        x, z = ((min(b["lower"][axis] for b in boxes) - 5, max(b["upper"][axis] for b in boxes) + 5) for axis in (0, 2))
         self.box((x[0], -1, z[0]), (x[1], 0, z[1]), self.material(0.2, 0.5))
 
-    def scene(self, position, target, light, degrees=None):
+    def scene(self, position, target, light):
         self.ground()
         camera = {"name": "camera", "position": [round(v, 3) for v in position], "target": [round(v, 3) for v in target],
-                  "vertical_fov_degrees": round(degrees or self.rng.uniform(45, 62), 1)}
+                  "vertical_fov_degrees": round(self.rng.uniform(45, 62), 1)}
         return {"description": self.description, "materials": self.materials, "meshes": self.meshes, "cameras": [camera], "lights": [light]}
 
 
 def sun(rng, towards):
-    """Travels the way `towards` (x, z), from 25 to 55 degrees above the horizon."""
+    """Travels roughly the way `towards` (x, z): a sun of 19 to 67 degrees above the horizon, a higher one where `towards` is short."""
     steep = rng.uniform(0.5, 1.4)
     return {"name": "sun", "kind": "sun", "direction": [round(towards[0] + rng.uniform(-0.4, 0.4), 3), -round(steep, 3), round(towards[1] + rng.uniform(-0.4, 0.4), 3)],
             "irradiance": 10.0}
@@ -104,7 +105,7 @@ def windows(rng, along, height, number, share):
     length, holes = along[1] - along[0], []
     for i in range(number):
         centre = along[0] + length * (i + 0.5 + rng.uniform(-0.15, 0.15)) / number
-        half = length * share / number / 2
+        half = length * min(share, 0.7) / number / 2  # within its part of the wall, wherever its centre is
         sill = rng.uniform(0.5, 1.1)
         holes.append((centre - half, centre + half, sill, rng.uniform(max(sill + 0.4, 1.5), height - 0.2)))
     return holes
@@ -140,7 +141,7 @@ def door(rng):
 
 
 def passage(rng):
-    """A court in the sun, and a passage along it behind pillars or openings, perhaps with an upper floor."""
+    """A court in the sun, and a passage along it behind pillars or openings, under a wall as high as the court's."""
     b = Building(rng, "A passage beside a sunlit court")
     length, deep, height = rng.uniform(12, 24), rng.uniform(2.5, 4), rng.uniform(2.8, 4.5)
     court, top = rng.uniform(5, 10), rng.uniform(6, 12)

@@ -19,7 +19,7 @@ namespace {
 
 // Errors so near to each other are the same to a viewer: of those the quickest is taken.
 constexpr double kSameError = 1.02;
-// Where no time is short enough, so much longer than the shortest costs less than what it saves in error.
+// Where no time is short enough: of those so much longer than the shortest the most accurate is taken (docs/planner.md).
 constexpr double kSameTime = 1.05;
 const double kTwice = std::log10(2.0);
 
