@@ -1,8 +1,11 @@
+#!/usr/bin/env python3
 """Made-up buildings that the planner's error model learns from, beside the scenes that it is judged by (planner_measure.py): rooms behind windows
 and doors, passages beside courts, blinds, blocks under the sun, rooms with a lamp of their own. Written as scene JSON (docs/scenes.md); the same on every run.
 
 What light does in a building is a matter of its openings: how large, how many, how far from the view, and whether a sun or a lamp stands
 behind. The real scenes have a handful of each; here they are drawn at random.
+
+    docs/figures/planner_scenes.py [--lightwell PROGRAM]    docs/images/planner_made.jpg: all of them, in a minute
 """
 import json
 import random
@@ -204,3 +207,26 @@ def lamp(rng):
     half = rng.uniform(25, 60)
     return b.scene(eye, (x[1], rng.uniform(0.6, 1.2), z[1]), {"name": "lamp", "kind": "spot", "position": [round(v, 2) for v in place], "target": [round(v, 2) for v in target],
                                                               "intensity": 60.0, "inner_cone_degrees": round(half * 0.8, 1), "outer_cone_degrees": round(half, 1)})
+
+
+def draw():
+    """All scenes side by side, lit by one configuration of the planner's table."""
+    import matplotlib.pyplot as plt
+    import numpy as np
+
+    import program
+    options = program.read_options(__doc__, [], 0)
+    call = program.caller(options.lightwell)
+    pictures = []
+    for path in write(options.work / "made"):
+        picture = path.with_suffix(".png")
+        call("render", path, "--technique", "ssvp", "--set", "vpls=1024", "clusters=64", "visibility=strict", "bounces=4", "resolution=half", "--size", "200x112", "--frames", 1, "--out", picture)
+        pictures.append(plt.imread(picture)[:, :, :3])
+    rows = [np.concatenate(pictures[i:i + 6], axis=1) for i in range(0, len(pictures), 6)]
+    out = program.ROOT / "docs/images/planner_made.jpg"
+    plt.imsave(out, np.ascontiguousarray(np.concatenate(rows)), pil_kwargs={"quality": 88})
+    print(out)
+
+
+if __name__ == "__main__":
+    draw()
