@@ -1,7 +1,7 @@
 """Measures what docs/figures/planner.py fits, with the program `lightwell`, into planner_data.json.
 
 Below `work`: chart*/ (errors and times of all views; of times the point with more frames counts, of equals the quicker, of errors the last folder's), seeds*/ (errors of further
-sample sets), train*/ and train_probes.json (of made-up scenes), sizes_*/ (times at other sizes), rival/ (path tracing), probes.json, rsm_sizes.json, launches.json, maps.json, rates.json; made/ has the made-up scenes themselves. Every command goes on where it was stopped.
+sample sets), train*/ and train_probes.json (of made-up scenes), sizes_*/ (times at other sizes), rival*/ (path tracing, a folder for each sample set), probes.json, rsm_sizes.json, launches.json, maps.json, rates.json; made/ has the made-up scenes themselves. Every command goes on where it was stopped.
 """
 import json
 import pathlib
@@ -25,6 +25,7 @@ RSM_SIZES, RSM_USUAL = [256, 1024], 512
 TAUGHT, MADE_TRUTH = ("rsm", "ssvp", "screen_space", "horizon"), ["--noise", "1e-2", "--truth-seconds", 40]
 # Scenes of few triangles and of many, for what a map takes to draw; of how many maps.
 MAPPED, MAPS = ["rooms", "bunny_corner", "sibenik", "sponza_crytek"], 16
+# By chance as the VPLs are, and judged alike: the mean of as many sets. A single set's line would be that of its luckiest points.
 RIVALS = [f"rival,bounces=2,spp={spp},resolution={resolution}" for spp in (1, 2, 4, 8) for resolution in ("full", "half", "quarter")]
 
 
@@ -49,7 +50,8 @@ def measure(program, work):
         chart(f"seeds{seed}", [f"{variant(c)},seed={seed}" for c in drawn], SIZE, 1, "--scenes", *UNSURE, *truth)
     for size in SIZES:
         chart(f"sizes_{size[1]}", all_of, size, 11, "--scenes", *SIZED, "--cameras", "first", "--noise", "1e3")
-    chart("rival", RIVALS, SIZE, 1, "--scenes", *SHARED, "--cameras", "first", *truth)
+    for seed in (0, *SEEDS):
+        chart(f"rival{seed}", [f"{r},seed={seed}" for r in RIVALS], SIZE, 1, "--scenes", *SHARED, "--cameras", "first", *truth)
     made = planner_scenes.write(work / "made")
     taught = [c for c in CANDIDATES if c.split()[0] in TAUGHT and "voxel" not in c and c not in barred(CANDIDATES)]
     chart("train0", list(map(variant, taught)), SIZE, 1, "--scenes", *made, *MADE_TRUTH)
@@ -237,9 +239,15 @@ def per_megatexel(work):
 
 
 def rivals(work, threads, beyond):
-    return [{"scene": p["scene"], "camera": p["camera"], "bounces": p["parameters"]["bounces"], "spp": p["parameters"]["spp"],
-             "resolution": p["parameters"]["resolution"], "ms": rounded(time_of(p, threads) * beyond), "all": rounded(noiseless(p["errors"]["all"]))}
-            for folder in sorted(work.glob("rival*/results.json")) for p in read_points(folder.parent)[1]]
+    """Of all sample sets: medians of the times, geometric means of the errors."""
+    sets = {}
+    for file in sorted(work.glob("rival[0-9]*/results.json")):
+        for p in read_points(file.parent)[1]:
+            sets.setdefault((p["scene"], p["camera"], *(p["parameters"][key] for key in ("bounces", "spp", "resolution"))), []).append(p)
+    return [{"scene": scene, "camera": camera, "bounces": bounces, "spp": spp, "resolution": resolution, "sets": len(of),
+             "ms": rounded(statistics.median(time_of(p, threads) for p in of) * beyond),
+             "all": rounded(statistics.geometric_mean(noiseless(p["errors"]["all"]) for p in of))}
+            for (scene, camera, bounces, spp, resolution), of in sets.items()]
 
 
 def compact(result):

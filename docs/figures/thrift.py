@@ -21,12 +21,16 @@ BEGIN, END = "<!-- begin: written by docs/figures/thrift.py -->", "<!-- end -->"
 SCENES = ["cornell", "basic", "rooms", "sibenik", "sponza_dabrovic", "sponza_crytek", "living_room", "wooden_staircase"]
 # technique, fixed setting, thrifty setting; the first of each technique is its documented default. What is written in a chart's own words:
 # only what differs from the defaults, in the order of the parameters.
-PAIRS = [("rsm", "", "auto_resolution=0.5"),
+PAIRS = [("rsm", "", "auto_resolution=1 rsm_versions=on"),
+         ("rsm", "", "auto_resolution=1"),
+         ("rsm", "", "rsm_versions=on"),
          ("rsm", "", "resolution=half"),
          ("ssvp", "", "auto_resolution=2"),
+         ("ssvp", "", "auto_resolution=2 rsm_versions=on"),
          ("ssvp", "", "auto_error=0.1"),
          ("screen_space", "", "auto_error=0.2"),
          ("lpv", "", "rests=on"),
+         ("lpv", "", "rests=on rsm_versions=on"),
          ("lpv", "transport=sweep", "transport=sweep rests=on"),
          ("lpv", "transport=sweep", "transport=sweep resolution=half rests=on")]
 EQUAL = 1.02  # an error of so much of the fixed setting's is equal

@@ -300,6 +300,9 @@ typedef struct LWRsm {
     LWImage flux;      /**< reflected flux of the texel, W, 0 .. 1e30: texels outside count as rejected and
                             carry nothing, as do texels whose area the camera makes infinite */
     LWCamera camera;   /**< orthographic for a directional light, perspective otherwise */
+    uint64_t version;  /**< 0: read in every frame. Else raise it when pixels change; a worldOrigin that moved counts as that.
+                            A map that has the version, camera and memory of the one at its place in the technique's last frame
+                            (that light's map of that number) is not read again: what was made of it then stays */
 } LWRsm;
 
 /** A light, and the surfaces it lights as RSMs: none (analytic only), one, six faces of a point light,

@@ -187,7 +187,7 @@ LW_FN float column_tent(int i, int odd) { return odd ? 2.0f / 3.0f : i == 0 ? 1.
 LW_FN float row_tent(int j, int k) { return 1.0f - (float)abs(2 * j - k) * (1.0f / 3.0f); }
 
 // Sums of the samples around row k of LW_WIDTH blocks, at their even columns and at their odd ones. All samples exist: every load is a
-// plain one. What down-sampling left empty has no normal, and fails the edge test.
+// plain one. What down-sampling left empty has no normal, and fails the edge test. With LW_MARKS, k is a constant where it is called.
 LW_FN void sum_inside(lw_sum sum[2], const lw_surface s[2], const lw_coarse* coarse, int hx, int hy, int k) {
     lw_edges edges[2];
     LW_UNROLL for (int odd = 0; odd < 2; ++odd) {
@@ -239,8 +239,15 @@ LW_FN void sum_any(lw_sum* sum, const lw_surface s, const lw_coarse* coarse, int
 
 // Sums around row k of LW_WIDTH blocks, and the pixels that no sample is on the surface of.
 LW_FN void sum_around(lw_sum sum[2], mask lost[2], const lw_surface s[2], const lw_coarse* coarse, int hx, int hy, int k) {
-    if (usually_(shift_inside(hx, -1, coarse->width) && shift_inside(hx, 1, coarse->width)))
+    if (rarely_(!any_(or_(s[0].valid, s[1].valid))))  // sky
+        LW_UNROLL for (int odd = 0; odd < 2; ++odd) clear_sum(&sum[odd]);
+    else if (usually_(shift_inside(hx, -1, coarse->width) && shift_inside(hx, 1, coarse->width)))
+#if LW_MARKS
+        if (k == 0) sum_inside(sum, s, coarse, hx, hy, 0);
+        else sum_inside(sum, s, coarse, hx, hy, 1);
+#else
         sum_inside(sum, s, coarse, hx, hy, k);
+#endif
     else
         LW_UNROLL for (int odd = 0; odd < 2; ++odd) sum_any(&sum[odd], s[odd], coarse, hx, hy, k, odd, 0);
     // A weight this far below a sample's own tent comes from rounding at the edge tests' borders.

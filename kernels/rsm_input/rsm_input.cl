@@ -6,7 +6,7 @@
 #include "shared/wide.h"
 
 // One work-item = one row of one map: its entry (first texel, width, map, 0) in the table of rows,
-// four ints. The first map's launch also clears the counters.
+// four ints. Clears the map's counters.
 __kernel void rsm_input_rows(__global int* rows, __global uint* counters, const LwRsmSpan span) {
     const int y = (int)get_global_id(0);
     if (y >= span.height) return;
@@ -16,9 +16,8 @@ __kernel void rsm_input_rows(__global int* rows, __global uint* counters, const 
     row[1] = span.width;
     row[2] = span.index;
     row[3] = 0;
-    if (span.index == 0 && y < LW_RSM_COUNTERS) counters[y] = 0;
-    if (span.index == 0 && y == 0)
-        for (int c = span.height; c < LW_RSM_COUNTERS; ++c) counters[c] = 0;
+    if (y == 0)
+        for (int c = 0; c < LW_RSM_COUNTERS; ++c) counters[span.index * LW_RSM_COUNTERS + c] = 0;
 }
 
 LW_FN mask lw_usable_flux(real flux) { return and_(flux >= 0.0f, flux <= LW_LARGEST_FLUX); }
@@ -101,6 +100,7 @@ __kernel void rsm_input_unpack(__global const uchar* placeSource, const LwPixels
     store_past(select_(none, area, surface), at, 9 * stride);
 
     // Whole-number counts: the order of the additions does not show.
+    counters += span.index * LW_RSM_COUNTERS;
     if (any_(rejected)) atomic_add(counters + LW_RSM_REJECTED, (uint)count_(rejected));
     if (any_(covered)) atomic_add(counters + LW_RSM_COVERED, (uint)count_(covered));
 }

@@ -22,10 +22,10 @@
 #define LW_RSM_AREA 9
 #define LW_RSM_PLANES 10
 
-// The texels that have no flux for a reason worth counting.
+// The texels of a map that have no flux for a reason worth counting.
 #define LW_RSM_REJECTED 0
 #define LW_RSM_COVERED 1
-#define LW_RSM_COUNTERS 4
+#define LW_RSM_COUNTERS 2  // for each map
 
 typedef struct LwRsmSpan {
     // Perspective: the ray through a texel's centre, of length 1 along the camera's axis; coefficients

@@ -46,6 +46,7 @@ LibraryRenderer::LibraryRenderer(const lightwell::Device& device, const Paramete
     : device_(device),
       view_(device, std::uint32_t(inputs.gbuffer().width), std::uint32_t(inputs.gbuffer().height)),
       descriptor_(device, parameters),
+      tellsRsmVersions_(parameters.tellsRsmVersions()),
       technique_(device, parameters.technique().c_str(), descriptor_.get()),
       quantity_(quantity),
       vpls_(!parameters.takesVpls()         ? FrameVpls()
@@ -121,7 +122,7 @@ FrameSample LibraryRenderer::renderFrame(const RenderInputs& inputs, bool reset)
     LWFrame frame = lightwell::make<LWFrame>();
     frame.reset = reset || frameIndex_ == 0 ? 1 : 0;
     frame.frameIndex = frameIndex_++;
-    frame.lights = inputs.lights().data();
+    frame.lights = (tellsRsmVersions_ ? inputs.versionedLights() : inputs.lights()).data();
     frame.lightCount = std::uint32_t(inputs.lights().size());
     frame.sourceViews = sources.data();
     frame.sourceViewCount = std::uint32_t(sources.size());

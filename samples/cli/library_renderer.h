@@ -40,6 +40,7 @@ private:
     lightwell::View view_;
     std::vector<lightwell::View> sources_;  // of the further source views
     Descriptor descriptor_;
+    bool tellsRsmVersions_;
     lightwell::Technique technique_;
     Quantity quantity_;
     FrameVpls vpls_;

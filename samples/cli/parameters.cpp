@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 
@@ -23,10 +24,18 @@ std::vector<std::string> choicesOf(const LWParameter& parameter) {
     return names;
 }
 
+constexpr const char* kSwitchValues = "on, off, true, false, 1, 0";
+
+std::optional<bool> switchOf(const std::string& text) {
+    if (text == "on" || text == "true" || text == "1") return true;
+    if (text == "off" || text == "false" || text == "0") return false;
+    return std::nullopt;
+}
+
 std::string validValues(const LWParameter& parameter) {
     if (parameter.kind == LW_PARAMETER_ENUM || parameter.kind == LW_PARAMETER_TECHNIQUE)
         return fmt::format("{}", fmt::join(choicesOf(parameter), ", "));
-    if (parameter.kind == LW_PARAMETER_BOOL) return "on, off, true, false, 1, 0";
+    if (parameter.kind == LW_PARAMETER_BOOL) return kSwitchValues;
     if (parameter.allowedCount > 0)
         return fmt::format(
             "{}", fmt::join(parameter.allowed, parameter.allowed + parameter.allowedCount, ", "));
@@ -54,8 +63,8 @@ double parseValue(const LWParameter& parameter, const std::string& text) {
         return name == names.end() ? refuse() : double(name - names.begin());
     }
     if (parameter.kind == LW_PARAMETER_BOOL) {
-        if (text == "on" || text == "true" || text == "1") return 1.0;
-        return text == "off" || text == "false" || text == "0" ? 0.0 : refuse();
+        const std::optional<bool> value = switchOf(text);
+        return value ? double(*value) : refuse();
     }
     const std::string option = fmt::format("--set {}", parameter.name);
     const double value = parameter.kind == LW_PARAMETER_UINT ? double(parseUnsigned(option, text))
@@ -63,8 +72,8 @@ double parseValue(const LWParameter& parameter, const std::string& text) {
     return isValid(parameter, value) ? value : refuse();
 }
 
-// What the library has no parameter for: arrays of a frame, which the host loads.
-constexpr const char *kVplsFile = "vpls_file", *kVplsCap = "vpls_cap";
+// What the library has no parameter for: what a frame holds, which is the host's.
+constexpr const char *kVplsFile = "vpls_file", *kVplsCap = "vpls_cap", *kRsmVersions = "rsm_versions";
 bool takesVpls(const std::string& technique) { return technique == "static_vpl"; }
 
 std::string defaultText(const LWParameter& parameter) {
@@ -78,6 +87,10 @@ std::string defaultText(const LWParameter& parameter) {
 
 bool Parameters::takesVpls() const {
     return cli::takesVpls(technique_) || std::any_of(parts_.begin(), parts_.end(), [](const auto& part) { return part.second.takesVpls(); });
+}
+
+bool Parameters::tellsRsmVersions() const {
+    return tellsRsmVersions_ || std::any_of(parts_.begin(), parts_.end(), [](const auto& part) { return part.second.tellsRsmVersions(); });
 }
 
 std::string Parameters::vplsFile() const {
@@ -109,7 +122,10 @@ std::vector<std::string> techniqueNames() {
 }
 
 std::string describeParameters() {
-    std::string text = "Techniques and what --set takes (key=default: valid values; meaning):\n";
+    std::string text = fmt::format("Techniques and what --set takes (key=default: valid values; meaning):\n"
+                                   "  each of the library's techniques:\n"
+                                   "    {}=off: {}; RSMs' versions are told, so that a still light's are read once\n",
+                                   kRsmVersions, kSwitchValues);
     for (const LWTechniqueInfo& info : describeTechniques()) {
         text += fmt::format("  {}: {}\n", info.name, info.summary);
         if (takesVpls(info.name))
@@ -160,6 +176,7 @@ void Parameters::set(const std::string& assignment) {
     if (parameter == nullptr) {
         std::vector<std::string> names;
         if (cli::takesVpls(technique_)) names = {kVplsFile, kVplsCap};
+        if (needsDevice()) names.emplace_back(kRsmVersions);
         for (std::uint32_t i = 0; i < info_.parameterCount; ++i)
             names.emplace_back(info_.parameters[i].name);
         for (const auto& [part, parameters] : parts_) names.push_back(part + ".KEY");
@@ -169,6 +186,12 @@ void Parameters::set(const std::string& assignment) {
 }
 
 bool Parameters::setOwn(const std::string& name, const std::string& value) {
+    if (name == kRsmVersions && needsDevice()) {
+        const std::optional<bool> tells = switchOf(value);
+        if (!tells) throw UsageError(fmt::format("--set {}: '{}' is not valid; expected {}", name, value, kSwitchValues));
+        tellsRsmVersions_ = *tells;
+        return true;
+    }
     if (!cli::takesVpls(technique_) || (name != kVplsFile && name != kVplsCap)) return false;
     if (name == kVplsFile ? vplsCap_ != 0 : !vplsFile_.empty())
         throw UsageError(
@@ -252,6 +275,7 @@ std::vector<std::pair<std::string, ParameterValue>> Parameters::resolved() const
     }
     if (!vplsFile_.empty()) values.emplace_back(kVplsFile, vplsFile_);
     if (vplsCap_ != 0) values.emplace_back(kVplsCap, std::uint64_t(vplsCap_));
+    if (tellsRsmVersions_) values.emplace_back(kRsmVersions, true);
     return values;
 }
 

@@ -43,6 +43,9 @@ public:
     // static_vpl: how many VPLs are placed at most where there is no file (--set vpls_cap=N), found as
     // the file; 0: as many as place-vpls does by default.
     std::uint32_t vplsCap() const;
+    // A technique of the library: its RSMs' versions are told (--set rsm_versions=on), as by a host that draws a still light's map once.
+    // Its own key or a part's, as all parts get the same frame.
+    bool tellsRsmVersions() const;
     // Every parameter as it stands, in the table's order; those of a technique that is a parameter behind it.
     std::vector<std::pair<std::string, ParameterValue>> resolved() const;
     // By the parameter's name.
@@ -64,6 +67,7 @@ private:
                 const std::string& value);  // false: no key of the command line's own
     std::string vplsFile_;                  // keys of the command line's own
     std::uint32_t vplsCap_ = 0;
+    bool tellsRsmVersions_ = false;
 };
 
 // "ssvp", or "ssvp,warm_start=off,clusters=16". UsageError as of Parameters.

@@ -1,5 +1,7 @@
 #include "render_inputs.h"
 
+#include <atomic>
+
 #include "describe_triangles.h"
 #include "lightwell/lightwell.hpp"
 
@@ -105,15 +107,20 @@ RenderInputs::RenderInputs(const studio::RayScene& scene, const studio::Camera& 
     for (const studio::GBuffer& source : sources_) lwSources_.push_back(describeGBuffer(source));
     studio::RsmOptions rsmOptions = options.rsm;
     rsmOptions.view = &gbuffer_;
+    static std::atomic<std::uint64_t> lastVersion{0};
+    const std::uint64_t version = ++lastVersion;
     for (std::size_t i = 0; i < scene.scene().lights.size(); ++i) {
         const studio::Light light = scene.scene().lightAt(int(i), options.time);
         rsmOptions.cascades = light.kind == studio::LightKind::Sun ? options.rsm.cascades : 1;
         rsms_.push_back(studio::renderRsms(scene, light, rsmOptions));
         std::vector<LWRsm> described;
         for (const studio::Rsm& rsm : rsms_.back()) described.push_back(describeRsm(rsm));
+        versionedRsms_.push_back(described);
+        for (LWRsm& rsm : versionedRsms_.back()) rsm.version = version;
         lwRsms_.push_back(std::move(described));
-        lights_.push_back(
-            describeLight(light, lwRsms_.back()));  // a moved vector keeps its data's address
+        // A moved vector keeps its data's address.
+        lights_.push_back(describeLight(light, lwRsms_.back()));
+        versionedLights_.push_back(describeLight(light, versionedRsms_.back()));
     }
     copyVector(scene.scene().sky, environment_);
     const bool isPoint = options.focus.kind == FrameFocus::Kind::Point;

@@ -42,6 +42,8 @@ public:
     // Of the further source views, in their order.
     const std::vector<LWGBuffer>& lwSources() const { return lwSources_; }
     const std::vector<LWLight>& lights() const { return lights_; }
+    // The same, whose RSMs tell their version: one that no other inputs have, as these never change.
+    const std::vector<LWLight>& versionedLights() const { return versionedLights_; }
     const LWGeometry& geometry() const { return lwGeometry_; }
     const float* environment() const { return environment_; }
     const float* focus() const { return hasFocus_ ? focus_ : nullptr; }
@@ -52,8 +54,8 @@ private:
     float time_, scale_;
     studio::GBuffer gbuffer_;
     std::vector<std::vector<studio::Rsm>> rsms_;  // of each light
-    std::vector<std::vector<LWRsm>> lwRsms_;
-    std::vector<LWLight> lights_;
+    std::vector<std::vector<LWRsm>> lwRsms_, versionedRsms_;
+    std::vector<LWLight> lights_, versionedLights_;
     LWGBuffer lwGBuffer_{};
     std::vector<studio::GBuffer> sources_;
     std::vector<LWGBuffer> lwSources_;

@@ -20,6 +20,8 @@ template <class T>
 constexpr std::uint32_t kFirstSize = sizeof(T);
 template <>
 inline constexpr std::uint32_t kFirstSize<LWFrame> = offsetof(LWFrame, worldOrigin);
+template <>
+inline constexpr std::uint32_t kFirstSize<LWRsm> = 392;
 
 template <class T>
 std::uint32_t checkedStructSize(const T* from, const std::string& name) {

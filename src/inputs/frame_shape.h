@@ -12,6 +12,7 @@ struct FrameShape {
     std::uint64_t texels = 0;        // of all RSMs
     std::uint64_t paddedTexels = 0;  // the same with rows rounded up to 16
     std::uint64_t rows = 0;          // of all RSMs
+    std::uint64_t maps = 0;          // RSMs
     std::uint64_t largestMap = 0;    // texels of the largest RSM
     std::uint32_t vplCount = 0;      // the host's own VPLs
     std::uint32_t staticVplCount = 0, lightCount = 0, blockerCount = 0;
@@ -28,6 +29,7 @@ struct FrameShape {
         texels += width * height;
         paddedTexels += (width + 15) / 16 * 16 * height;
         rows += height;
+        ++maps;
         if (width * height > largestMap) largestMap = width * height;
     }
 };

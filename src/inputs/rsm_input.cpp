@@ -4,164 +4,64 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <atomic>
+#include <cstring>
 #include <optional>
 #include <set>
-#include <string>
+#include <tuple>
 
 #include "compute/device.h"
-#include "compute/error.h"
-#include "compute/raw_enum.h"
-#include "inputs/camera.h"
 #include "inputs/image_access.h"
-#include "shared/rsm_types.h"
+#include "inputs/rsm_check.h"
 
 namespace lightwell {
 namespace {
 
 constexpr char kProgram[] = "rsm_input/rsm_input";
-constexpr std::uint32_t kMaxSide = 16384;
-// Indices of floats in the texels' planes are 32-bit in kernels.
-constexpr std::uint64_t kMaxTexels = 0x7fffffff / LW_RSM_PLANES / 16 * 16;
-// Sine of the angle by which the axes of one directional light may differ: rounding of float matrices,
-// no more. Beyond it areas and the cascades' footprints no longer belong to one light.
-constexpr double kMaxAxisSine = 1e-2;
-constexpr std::uint32_t kPointFaces = 6;
 
 static_assert(RsmInput::kPositionX == LW_RSM_POSITION && RsmInput::kNormalX == LW_RSM_NORMAL &&
                   RsmInput::kFluxR == LW_RSM_FLUX && RsmInput::kArea == LW_RSM_AREA &&
                   RsmInput::kPlaneCount == LW_RSM_PLANES,
               "kernels/shared/rsm_types.h differs from RsmInput::Plane");
 
-struct CheckedRsm {
-    std::optional<CheckedImage> position, depth;
-    CheckedImage normal, flux;
-    Camera camera;
-    LwUnprojection unprojection{};
-    LwRsmSpan span{};
+// No two inputs have one in common, so that what is kept of one is never taken for another's.
+std::uint64_t nextGeneration() {
+    static std::atomic<std::uint64_t> last{0};
+    return ++last;
+}
+
+// What texels were made of.
+struct ReadRsm {
+    std::uint64_t version;
+    bool fromDepth;
+    std::array<LWImage, 3> images;
+    LwUnprojection unprojection;
+    LwRsmSpan span;
+
+    explicit ReadRsm(const CheckedRsm& rsm)
+        : version(rsm.version),
+          fromDepth(rsm.depth.has_value()),
+          images{rsm.place().image, rsm.normal.image, rsm.flux.image},
+          unprojection(rsm.unprojection),
+          span(rsm.span) {}
+
+    bool isAtSamePlace(const ReadRsm& other) const {
+        const auto place = [](const LwRsmSpan& s) { return std::tie(s.firstTexel, s.firstRow, s.width, s.height); };
+        return place(span) == place(other.span);
+    }
+    // Of maps at the same place: whether reading `other` would make the same texels.
+    bool isSame(const ReadRsm& other) const {
+        const auto sameMemory = [](const LWImage& a, const LWImage& b) {
+            const auto fields = [](const LWImage& i) {
+                return std::tie(i.host, i.clMem, i.format, i.byteOffset, i.bytePixelStride, i.byteRowStride, i.bytePlaneStride);
+            };
+            return fields(a) == fields(b);
+        };
+        return version != 0 && version == other.version && fromDepth == other.fromDepth &&
+               std::equal(images.begin(), images.end(), other.images.begin(), sameMemory) &&
+               std::memcmp(&unprojection, &other.unprojection, sizeof unprojection) == 0 && std::memcmp(&span, &other.span, sizeof span) == 0;
+    }
 };
-
-CheckedRsm checkRsm(Device& device, const LWRsm& rsm, bool perspective, const std::string& name) {
-    const bool fromDepth = !imageAbsent(rsm.depth);
-    if (fromDepth == !imageAbsent(rsm.position))
-        fail(LW_ERROR_INVALID_ARGUMENT, name, ": expected position or depth, got ",
-             fromDepth ? "both" : "neither");
-    const LWImage& first = fromDepth ? rsm.depth : rsm.position;
-    const std::uint32_t width = first.width, height = first.height;
-    if (width == 0 || height == 0 || width > kMaxSide || height > kMaxSide)
-        fail(LW_ERROR_INVALID_ARGUMENT, name, fromDepth ? ".depth" : ".position", ": expected 1 .. ",
-             kMaxSide, " pixels a side, got ", width, " x ", height);
-    const auto kind = rawEnum(rsm.depthKind);
-    if (fromDepth && kind > LW_DEPTH_RADIAL)
-        fail(LW_ERROR_INVALID_ARGUMENT, name, ".depthKind: expected an LWDepthKind (0 .. 3), got ",
-             kind);
-    CheckedRsm checked{std::nullopt, std::nullopt,
-                       checkImage(device, rsm.normal, kNormalRole, width, height, name + ".normal"),
-                       checkImage(device, rsm.flux, kRadianceRole, width, height, name + ".flux"),
-                       Camera(rsm.camera, width, height, name + ".camera")};
-    if (checked.camera.perspective() != perspective)
-        fail(LW_ERROR_INVALID_ARGUMENT, name, ".camera.projection: expected ",
-             perspective ? "perspective for a point or spot light, got orthographic"
-                         : "orthographic for a directional light, got perspective");
-    if (fromDepth) {
-        checked.depth = checkImage(device, rsm.depth, kDepthRole, width, height, name + ".depth");
-        checked.unprojection = checked.camera.unprojection(rsm.depthKind);
-    } else {
-        checked.position =
-            checkImage(device, rsm.position, kPositionRole, width, height, name + ".position");
-    }
-    LwRsmSpan& span = checked.span;
-    span.width = std::int32_t(width);
-    span.height = std::int32_t(height);
-    span.perspective = perspective ? 1 : 0;
-    span.texelArea = float(checked.camera.pixelArea());
-    const auto& rays = checked.camera.rays();
-    span.rayX = float4(rays.perI.x, rays.perJ.x, 0.0, rays.constant.x);
-    span.rayY = float4(rays.perI.y, rays.perJ.y, 0.0, rays.constant.y);
-    span.rayZ = float4(rays.perI.z, rays.perJ.z, 0.0, rays.constant.z);
-    const glm::dvec3 light = perspective ? checked.camera.eye() : checked.camera.axis();
-    span.light = float4(light.x, light.y, light.z, 0.0);
-    return checked;
-}
-
-void checkTexels(std::uint64_t padded, const char* name) {
-    if (padded > kMaxTexels)
-        fail(LW_ERROR_INVALID_ARGUMENT, name, ": expected RSMs of at most ", kMaxTexels,
-             " texels in all (rows count as multiples of 16), got more");
-}
-
-}  // namespace
-
-void checkLightKind(const LWLight& light, const std::string& name) {
-    const auto kind = rawEnum(light.kind);
-    if (kind > LW_LIGHT_SPOT)
-        fail(LW_ERROR_INVALID_ARGUMENT, name, ".kind: expected an LWLightKind (0 .. 2), got ", kind);
-    const std::uint32_t most = light.kind == LW_LIGHT_DIRECTIONAL ? LW_MAX_CASCADES
-                               : light.kind == LW_LIGHT_POINT     ? kPointFaces
-                                                                  : 1;
-    if (light.rsmCount > most)
-        fail(LW_ERROR_INVALID_ARGUMENT, name, ".rsmCount: expected at most ", most,
-             " for this kind of light, got ", light.rsmCount);
-}
-
-namespace {
-
-// The cascades of one directional light: parallel, finest first; each learns where the finer ones lie.
-void nestCascades(const LWLight& light, std::vector<CheckedRsm>& rsms, std::size_t first,
-                  const std::string& name) {
-    glm::dvec3 direction(light.direction[0], light.direction[1], light.direction[2]);
-    const double length = glm::length(direction);
-    for (std::size_t k = first; k < rsms.size(); ++k) {
-        const Camera& camera = rsms[k].camera;
-        const std::string rsmName = name + ".rsms[" + std::to_string(k - first) + "]";
-        if (length > 0.0 &&
-            !(glm::length(glm::cross(direction / length, camera.axis())) <= kMaxAxisSine))
-            fail(LW_ERROR_INVALID_ARGUMENT, rsmName, ".camera.view: expected a camera that looks along ",
-                 name, ".direction, got one at an angle to it");
-        for (std::size_t finer = first; finer < k; ++finer) {
-            if (!(glm::length(glm::cross(rsms[finer].camera.axis(), camera.axis())) <= kMaxAxisSine))
-                fail(LW_ERROR_INVALID_ARGUMENT, rsmName,
-                     ".camera.view: expected the axis of the light's other cascades, got another");
-            if (rsms[finer].span.texelArea > rsms[k].span.texelArea * 1.0001f)
-                fail(LW_ERROR_INVALID_ARGUMENT, name,
-                     ".rsms: expected the finest cascade first, got texels of ",
-                     rsms[finer].span.texelArea, " before ", rsms[k].span.texelArea, " square units");
-            ImageLinear<double> x, y;
-            rsms[finer].camera.clipOf(camera, x, y);
-            LwRsmSpan& span = rsms[k].span;
-            span.finer[2 * span.finerCount] = float4(x.perI, x.perJ, 0.0, x.constant);
-            span.finer[2 * span.finerCount + 1] = float4(y.perI, y.perJ, 0.0, y.constant);
-            ++span.finerCount;
-        }
-    }
-}
-
-std::vector<CheckedRsm> checkLights(Device& device, const LWFrame& frame, std::vector<RsmSpan>& spans) {
-    std::vector<CheckedRsm> rsms;
-    std::uint64_t texels = 0, rows = 0;
-    for (std::uint32_t l = 0; l < frame.lightCount; ++l) {
-        const LWLight& light = frame.lights[l];
-        const std::string name = "frame.lights[" + std::to_string(l) + "]";
-        checkLightKind(light, name);
-        const std::size_t first = rsms.size();
-        const bool perspective = light.kind != LW_LIGHT_DIRECTIONAL;
-        for (std::uint32_t r = 0; r < light.rsmCount; ++r) {
-            rsms.push_back(
-                checkRsm(device, light.rsms[r], perspective, name + ".rsms[" + std::to_string(r) + "]"));
-            LwRsmSpan& span = rsms.back().span;
-            span.firstTexel = std::int32_t(texels);
-            span.firstRow = std::int32_t(rows);
-            span.index = std::int32_t(spans.size());
-            spans.push_back({l, std::uint32_t(texels), std::uint32_t(rows), std::uint32_t(span.width),
-                             std::uint32_t(span.height)});
-            texels += std::uint64_t(paddedWidth(std::uint32_t(span.width))) * std::uint32_t(span.height);
-            rows += std::uint32_t(span.height);
-            checkTexels(texels, "frame.lights");
-        }
-        if (!perspective) nestCascades(light, rsms, first, name);
-    }
-    return rsms;
-}
 
 }  // namespace
 
@@ -171,6 +71,36 @@ struct RsmInput::Impl {
     std::array<Buffer, 3> staging;  // uploads of position or depth, normal, flux: one map after the other
     std::vector<DeviceImage> opened;
     std::set<std::pair<const char*, const char*>> choices;  // of all maps, each once; literals
+    std::vector<ReadRsm> read;                              // of each map, what its texels were made of; none: half made
+    WorldOrigin origin{};                                   // what they are relative to: LWFrame::worldOrigin
+    std::uint64_t failures = 0;                             // that the device had seen when they were made
+    std::size_t keptCount = 0;                              // maps that the last import() did not read
+
+    // Of each map, whether the texels made of it before are what it would make. By place among the texels: where one map has another
+    // size all are read.
+    std::vector<bool> findKept(const std::vector<ReadRsm>& now, Executor& executor) const {
+        std::vector<bool> kept(now.size(), false);
+        const Device& current = executor.device();
+        const bool isLost = device != &current || failures != current.failures();
+        if (isLost || !(origin == executor.worldOrigin()) || !std::equal(now.begin(), now.end(), read.begin(), read.end(),
+                                  [](const ReadRsm& a, const ReadRsm& b) { return a.isAtSamePlace(b); }))
+            return kept;
+        for (std::size_t i = 0; i < now.size(); ++i) kept[i] = now[i].isSame(read[i]);
+        return kept;
+    }
+
+    void reserve(Device& current, const std::vector<CheckedRsm>& rsms, std::uint64_t total) {
+        texelMemory.reserve(current, std::size_t(total) * kPlaneCount * sizeof(float), "RSM texels");
+        counters.reserve(current, rsms.size() * LW_RSM_COUNTERS * sizeof(std::uint32_t), "RSM counters");
+        // For the largest map at once, so that no map of the frame replaces what an earlier one still needs.
+        std::array<std::size_t, 3> bytes{};
+        for (const CheckedRsm& rsm : rsms) {
+            const CheckedImage* images[3] = {&rsm.place(), &rsm.normal, &rsm.flux};
+            for (std::size_t i = 0; i < 3; ++i) bytes[i] = std::max(bytes[i], stagingBytes(current, *images[i]));
+        }
+        for (std::size_t i = 0; i < 3; ++i)
+            if (bytes[i]) staging[i].reserve(current, bytes[i], "an RSM's copy on the device");
+    }
 
     // The host's maps into the texels.
     void unpackRsm(Executor& executor, const CheckedRsm& rsm, const Planes& all) {
@@ -205,7 +135,13 @@ void RsmInput::import(Executor& executor, const LWFrame& frame) {
     Device& device = executor.device();
     std::vector<RsmSpan> newSpans;
     const std::vector<CheckedRsm> rsms = checkLights(device, frame, newSpans);
+    std::vector<ReadRsm> now(rsms.begin(), rsms.end());
+    const std::vector<bool> kept = impl_->findKept(now, executor);
+    impl_->keptCount = std::size_t(std::count(kept.begin(), kept.end(), true));
+    impl_->read.clear();  // until all commands are on their way
     impl_->device = &device;
+    impl_->failures = device.failures();
+    impl_->origin = executor.worldOrigin();
     std::uint64_t total = 0;
     std::uint32_t newRows = 0, newTexels = 0;
     for (const RsmSpan& span : newSpans) {
@@ -214,27 +150,18 @@ void RsmInput::import(Executor& executor, const LWFrame& frame) {
         newTexels += span.width * span.height;
     }
     if (total > 0) {
-        impl_->texelMemory.reserve(device, std::size_t(total) * kPlaneCount * sizeof(float),
-                                   "RSM texels");
         rows.reserve(device, std::size_t(newRows) * 4 * sizeof(std::int32_t), "RSM rows");
-        impl_->counters.reserve(device, LW_RSM_COUNTERS * sizeof(std::uint32_t), "RSM counters");
-        // For the largest map at once, so that no map of the frame replaces what an earlier one still needs.
-        std::array<std::size_t, 3> bytes{};
-        for (const CheckedRsm& rsm : rsms) {
-            const CheckedImage* images[3] = {rsm.depth ? &*rsm.depth : &*rsm.position, &rsm.normal, &rsm.flux};
-            for (std::size_t i = 0; i < 3; ++i) bytes[i] = std::max(bytes[i], stagingBytes(device, *images[i]));
-        }
-        for (std::size_t i = 0; i < 3; ++i)
-            if (bytes[i]) impl_->staging[i].reserve(device, bytes[i], "an RSM's copy on the device");
+        impl_->reserve(device, rsms, total);
     }
     impl_->opened.clear();
-    impl_->choices.clear();
+    if (impl_->keptCount == 0) impl_->choices.clear();
     spans = std::move(newSpans);
     shapes.clear();
     for (const CheckedRsm& rsm : rsms) shapes.push_back(rsm.span);
     rowCount = newRows;
     texelCount = newTexels;
     texels = Planes{};
+    if (impl_->keptCount < rsms.size() || rsms.empty()) generation = nextGeneration();
     if (total == 0) return;
     texels.memory = impl_->texelMemory.get();
     texels.rowStride = texels.planeStride = std::int64_t(total);
@@ -243,22 +170,28 @@ void RsmInput::import(Executor& executor, const LWFrame& frame) {
     texels.count = kPlaneCount;
 
     Kernel& rowsKernel = device.programs().kernel(kProgram, "rsm_input_rows");
-    for (const CheckedRsm& rsm : rsms) {
-        executor.run("rsm_input.rows", rowsKernel, {std::uint32_t(rsm.span.height), 1}, rowGroup(device), rows, impl_->counters,
-                     rsm.span);
-        impl_->unpackRsm(executor, rsm, texels);
+    for (std::size_t i = 0; i < rsms.size(); ++i) {
+        if (kept[i]) continue;
+        executor.run("rsm_input.rows", rowsKernel, {std::uint32_t(rsms[i].span.height), 1}, rowGroup(device), rows, impl_->counters,
+                     rsms[i].span);
+        impl_->unpackRsm(executor, rsms[i], texels);
     }
+    impl_->read = std::move(now);
 }
 
 void RsmInput::report(Report& report) const {
     report.counts.push_back({"rsm_texels", texelCount});
     report.counts.push_back({"rejected_texels", 0});
     report.counts.push_back({"covered_texels", 0});
-    if (!spans.empty()) {
-        report.read(*impl_->device, "rejected_texels", impl_->counters, LW_RSM_REJECTED * sizeof(cl_uint));
-        report.read(*impl_->device, "covered_texels", impl_->counters, LW_RSM_COVERED * sizeof(cl_uint));
+    for (std::size_t i = 0; i < spans.size(); ++i) {
+        const std::size_t first = i * LW_RSM_COUNTERS;
+        report.read(*impl_->device, "rejected_texels", impl_->counters, (first + LW_RSM_REJECTED) * sizeof(cl_uint));
+        report.read(*impl_->device, "covered_texels", impl_->counters, (first + LW_RSM_COVERED) * sizeof(cl_uint));
     }
     for (const auto& choice : impl_->choices) report.choose(choice.first, choice.second);
+    if (impl_->keptCount)
+        report.choose("rsms", impl_->keptCount < spans.size() ? "some not read again: their versions are those of the frame before"
+                                                              : "not read again: their versions are those of the frame before");
 }
 
 std::uint64_t RsmInput::bytes() const {
@@ -268,12 +201,12 @@ std::uint64_t RsmInput::bytes() const {
 }
 
 std::uint64_t RsmInput::estimateBytes(const FrameShape& shape) {
-    checkTexels(shape.paddedTexels, "rsmTexels, frame.lights");
+    checkRsmTexels(shape.paddedTexels, "rsmTexels, frame.lights");
     if (shape.texels == 0) return 0;
     const std::uint64_t packed =
         largestPixelBytes(kPositionRole) + largestPixelBytes(kNormalRole) + largestPixelBytes(kRadianceRole);
     return shape.paddedTexels * kPlaneCount * sizeof(float) + shape.rows * 4 * sizeof(std::int32_t) +
-           LW_RSM_COUNTERS * sizeof(std::uint32_t) + (shape.uploads ? packed * shape.largestMap : 0);
+           shape.maps * LW_RSM_COUNTERS * sizeof(std::uint32_t) + (shape.uploads ? packed * shape.largestMap : 0);
 }
 
 }  // namespace lightwell

@@ -51,12 +51,14 @@ public:
     static void check(Device& device, const LWFrame& frame);
     // Records the unpacking of every RSM (passes "rsm_input.*"): flux 0 and normal 0 where the host gave
     // none, gave something not finite, negative or beyond LW_LARGEST_FLUX (counted as rejected), or where
-    // a finer cascade of the same directional light covers the texel; area A_p as lightwell.h's lights define it.
+    // a finer cascade of the same directional light covers the texel; area A_p as lightwell.h's lights define it. Of maps that
+    // LWRsm::version says have not changed since the last import() the texels stay.
     void import(Executor& executor, const LWFrame& frame);
 
     Planes texels;  // kPlaneCount planes, height 1, width = all texels with padding
     Buffer rows;    // int4 per row: first texel, width, span index, 0
     std::uint32_t rowCount = 0;
+    std::uint64_t generation = 0;  // of the texels: another number after an import() that may have changed some; 0: not known
     std::uint32_t texelCount = 0;  // valid texels, padding left out (covered cascade texels included)
     std::vector<RsmSpan> spans;
     std::vector<LwRsmSpan> shapes;  // of each span, as kernels take it

@@ -65,6 +65,16 @@ void VplSampling::record(Executor& executor, const RsmInput& rsms, const LWVpl* 
     draw(executor, rsms, vplCount() - authoredCount, plan);
 }
 
+// Of texels that are the last frame's, so are their sums.
+void VplSampling::sumUp(Executor& executor, const RsmInput& rsms) {
+    if (rsms.generation != 0 && summed_ == rsms.generation) return;
+    const cl_int rowCount = cl_int(rsms.rowCount);
+    executor.run("vpl_sampling.row_sums", rowSums_, gridOver(rsms.rowCount), {4, 1}, rsms.texels, rsms.rows, rowCount,
+                 cl_int(options_.uniform ? 1 : 0), texelSums_, rowTotals_);
+    executor.run("vpl_sampling.total", total_, {1, 1}, {1, 1}, rowTotals_, rowCount, rowSumsBuffer_);
+    summed_ = rsms.generation;
+}
+
 void VplSampling::draw(Executor& executor, const RsmInput& rsms, std::uint32_t sampleCount,
                        const VplPlan* plan) {
     const Range slots = gridOver(std::size_t(order_.subsets) * std::size_t(order_.capacity));
@@ -76,9 +86,7 @@ void VplSampling::draw(Executor& executor, const RsmInput& rsms, std::uint32_t s
         return;
     }
     const cl_int rowCount = cl_int(rsms.rowCount), uniform = options_.uniform ? 1 : 0;
-    executor.run("vpl_sampling.row_sums", rowSums_, gridOver(rsms.rowCount), {4, 1}, rsms.texels, rsms.rows, rowCount,
-                 uniform, texelSums_, rowTotals_);
-    executor.run("vpl_sampling.total", total_, {1, 1}, {1, 1}, rowTotals_, rowCount, rowSumsBuffer_);
+    sumUp(executor, rsms);
     if (views_) return choose(executor, rsms, sampleCount);
     if (plan) {
         plan->choose(texelSums_, rowTotals_);

@@ -61,6 +61,7 @@ public:
 
 private:
     void reserve(const RsmInput& rsms, std::uint32_t authoredCount);
+    void sumUp(Executor& executor, const RsmInput& rsms);
     void draw(Executor& executor, const RsmInput& rsms, std::uint32_t sampleCount, const VplPlan* plan);
     void choose(Executor& executor, const RsmInput& rsms, std::uint32_t sampleCount);
 
@@ -68,6 +69,7 @@ private:
     VplSamplingOptions options_;
     std::uint32_t turns_ = 0;
     Kernel &rowSums_, &total_, &draw_, &drawLive_, &all_, &planes_;
+    std::uint64_t summed_ = 0;  // the generation of the texels whose sums these are
     Buffer texelSums_, rowTotals_, rowSumsBuffer_, authored_, vpls_, candidates_;
     std::optional<VplViewSampling> views_;  // with options.view only
     lw_subset_order order_{};

@@ -301,6 +301,24 @@ class Render(CommandLine):
                            "cornell")
         self.assertEqual((report["scene"], report["parameters"]["vpls"]), ("cornell", 32))
 
+    def test_versions_of_maps(self):
+        """Told, a still light's maps are read in the first frame alone; the picture is the same."""
+        base = ["render", "cornell", *SIZE, "--warmup", "1", "--frames", "1", "--json", "--technique"]
+
+        def reads(report):
+            return [p["name"] for p in report["passes"] if p["name"] == "rsm_input.unpack"]
+
+        plain, told = (self.json(*base, "rsm", "--set", "vpls=64", *more) for more in ([], ["rsm_versions=on"]))
+        self.assertEqual(plain["hash"], told["hash"])
+        self.assertTrue(reads(plain))
+        self.assertFalse(reads(told))
+        self.assertNotIn("rsm_versions", plain["parameters"])
+        self.assertIs(told["parameters"]["rsm_versions"], True)
+        part = self.json(*base, "fallback", "--set", "second=rsm", "second.rsm_versions=on")
+        self.assertFalse(reads(part) or [p for p in part["passes"] if p["name"].endswith("rsm_input.unpack")])
+        self.refused([*base, "rsm", "--set", "rsm_versions=3"], "rsm_versions", "'3'", "on, off")
+        self.refused([*base, "rival", "--set", "rsm_versions=on"], "rsm_versions", "bounces")
+
     def test_another_unit_of_length(self):
         plain, scaled = self.path("plain.exr"), self.path("scaled.exr")
         self.render("--out", plain)

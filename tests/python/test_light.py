@@ -83,6 +83,21 @@ class Light(unittest.TestCase):
             pictures.append(technique.render(self.device.view(scenes.N, scenes.N), scenes.floor()).irradiance.tobytes())
         self.assertEqual(pictures[0], pictures[1])
 
+    def test_a_map_that_says_that_it_has_not_changed(self):
+        # Believed while its version stays, 0 and another number have it read.
+        technique, gbuffer, rsm = all_texels(self.device), scenes.floor(), scenes.wall()
+        view, means = self.device.view(scenes.N, scenes.N), []
+        for version, flux in ((7, 1.0), (7, 2.0), (8, 2.0), (0, 3.0), (0, 4.0), (2**64 - 1, 4.0)):
+            rsm.version = version
+            rsm.flux[...] = scenes.wall().flux * np.float32(flux)
+            technique.update(lw.Frame(lights=[scenes.sun([rsm])]))
+            means.append(float(technique.render(view, gbuffer).irradiance.mean(dtype=np.float64)))
+        np.testing.assert_allclose(np.divide(means, means[0]), (1, 1, 2, 3, 4, 4), rtol=1e-6)
+        for version in (-1, 2**64, 1.5):
+            rsm.version = version
+            with self.assertRaisesRegex(lw.InvalidArgumentError, r"frame\.lights\[0\]\.rsms\[0\]\.version"):
+                technique.update(lw.Frame(lights=[scenes.sun([rsm])]))
+
     def test_points_and_harmonics(self):
         technique = all_texels(self.device)
         technique.update(lw.Frame(lights=[scenes.texel(2.0, 1e-3)]))

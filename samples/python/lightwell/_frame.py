@@ -46,7 +46,8 @@ class GBuffer:
 
 @dataclasses.dataclass(eq=False)
 class Rsm:
-    """One reflective shadow map; `flux` in W for each texel, `camera` orthographic for a directional light."""
+    """One reflective shadow map; `flux` in W for each texel, `camera` orthographic for a directional light. `version` above 0, raised
+    when pixels change: the same arrays are then not read again while it stays."""
 
     position: Optional[ImageLike] = None
     depth: Optional[ImageLike] = None
@@ -54,6 +55,7 @@ class Rsm:
     flux: Optional[ImageLike] = None
     camera: Optional[Camera] = None
     depth_kind: DepthKind = DepthKind.ZERO_TO_ONE
+    version: int = 0
 
 
 @dataclasses.dataclass(eq=False)
@@ -195,6 +197,7 @@ def _fill_light(target: Any, light: Light, name: str, kept: Kept) -> None:
     for index, rsm in enumerate(light.rsms):
         instance(rsm, Rsm, f"{name}.rsms[{index}]")
         rsms[index].structSize = ffi.sizeof("LWRsm")
+        rsms[index].version = whole(rsm.version, f"{name}.rsms[{index}].version", high=2**64 - 1)
         _fill_pictures(rsms[index], rsm, f"{name}.rsms[{index}]", kept)
     target.rsms, target.rsmCount = rsms, len(light.rsms)
 
