@@ -132,12 +132,12 @@ def numbers(values, digits=4):
 
 def write_tables(data, kept, model, costs, sigma):
     rates = data.raw["rates"]
-    facing = data.probes[:, PROBES.index("facing")].mean()
+    facing, coverage = data.probes[:, PROBES.index("facing")].mean(), data.coverage.mean()
     order = sorted(kept, key=lambda c: np.median(data.ms[:, c]))
     lines = ["// Written by docs/figures/planner.py; see plan_row.h for what it means.", "#pragma once", "", '#include "planner/plan_row.h"', "",
              "namespace lightwell {", "",
              f'constexpr PlanReference kPlanReference = {{"{data.raw["device"]}", {rates["multiply_add_gflops"]:.4g}, {rates["bandwidth_GBps"]:.4g}, '
-             f'{rates["launch_us"]:.3g}, {facing:.3g}}};', "",
+             f'{rates["launch_us"]:.3g}, {facing:.3g}, {coverage:.3g}}};', "",
              f"constexpr PlanMaps kPlanMaps = {{{numbers(fit_maps(data))}}};", "", "constexpr PlanProbeScale kPlanScales[kPlanProbes] = {"]
     for k, name in enumerate(PROBES):
         lines.append(f'    {{"{name}", {FLOORS[k]:g}, {model.mean[k]:.4f}, {model.deviation[k]:.4f}, {-LIMIT}, {LIMIT}}},')
@@ -157,7 +157,7 @@ def write_values(data, kept, model, costs):
     """Predictions and choices for views as measured, by this script's arithmetic: tests/unit/planner_values_test.cpp."""
     names = data.names()
     lines = ["// Written by docs/figures/planner.py: what its own arithmetic predicts and chooses, from the unrounded fit.", "#pragma once", "",
-             "struct PlannerValue {", "    float probes[8];", "    double triangles;", "    const char* row;  // technique and settings",
+             "struct PlannerValue {", "    float probes[8], coverage;", "    double triangles;", "    const char* row;  // technique and settings",
              "    double milliseconds, error;", "    const char* chosen[5];  // of budgets of 4, 8, 16, 33, 66 ms", "};", "",
              "constexpr PlannerValue kPlannerValues[] = {"]
     for v in range(0, len(data.views), 3):
@@ -167,7 +167,7 @@ def write_values(data, kept, model, costs):
         at = list(kept).index(some)
         chosen = ", ".join(f'"{names[kept[choose(ms, log, budget)]]}"' for budget in BUDGETS)
         probes = ", ".join(f"{p:.9g}f" if "." in f"{p:.9g}" or "e" in f"{p:.9g}" else f"{p:.1f}f" for p in data.probes[v])
-        lines.append(f'    {{{{{probes}}}, {data.views[v]["triangles"]}.0, "{names[some]}", {ms[at]:.6g}, {10 ** log[at]:.6g},\n     {{{chosen}}}}},')
+        lines.append(f'    {{{{{probes}}}, {data.coverage[v]:.6f}f, {data.views[v]["triangles"]}.0, "{names[some]}", {ms[at]:.6g}, {10 ** log[at]:.6g},\n     {{{chosen}}}}},')
     lines += ["};", ""]
     path = ROOT / "tests/reference/planner_values.h"
     path.write_text("\n".join(lines), encoding="utf-8")

@@ -11,7 +11,7 @@ import subprocess
 
 import planner_scenes
 from planner_candidates import CANDIDATES, barred, is_drawn, parted, variant
-from planner_model import DATA, PROBES
+from planner_model import COVERAGE, DATA, PROBES
 
 SIZE, BLOCK = (1280, 720), 10
 SCENES = ["cornell", "basic", "rooms", "cornell_original", "sponza_crytek", "sponza_dabrovic", "sibenik", "living_room", "wooden_staircase",
@@ -71,7 +71,7 @@ def measure(program, work):
 
 def probe(lightwell, view):
     plan = json.loads(lightwell("plan", view["scene"], "--camera", view["camera"], "--budget-ms", 33, "--json"))
-    named = {name: plan["probes"][re.sub("[A-Z]", lambda letter: "_" + letter.group().lower(), name)] for name in PROBES}
+    named = {name: plan["probes"][re.sub("[A-Z]", lambda letter: "_" + letter.group().lower(), name)] for name in (*PROBES, COVERAGE)}
     return {"scene": pathlib.Path(view["scene"]).stem, "camera": view["camera"], "probes": named, "triangles": plan["triangles"]}
 
 
@@ -239,13 +239,13 @@ def per_megatexel(work):
 
 
 def rivals(work, threads, beyond):
-    """Of all sample sets: medians of the times, geometric means of the errors."""
+    """Of all sample sets: the least times, as of the techniques, and geometric means of the errors."""
     sets = {}
     for file in sorted(work.glob("rival[0-9]*/results.json")):
         for p in read_points(file.parent)[1]:
             sets.setdefault((p["scene"], p["camera"], *(p["parameters"][key] for key in ("bounces", "spp", "resolution"))), []).append(p)
     return [{"scene": scene, "camera": camera, "bounces": bounces, "spp": spp, "resolution": resolution, "sets": len(of),
-             "ms": rounded(statistics.median(time_of(p, threads) for p in of) * beyond),
+             "ms": rounded(min(time_of(p, threads) for p in of) * beyond),
              "all": rounded(statistics.geometric_mean(noiseless(p["errors"]["all"]) for p in of))}
             for (scene, camera, bounces, spp, resolution), of in sets.items()]
 

@@ -12,6 +12,7 @@ DATA = pathlib.Path(__file__).with_name("planner_data.json")
 PROBES = ["indirectShare", "fluxOnScreen", "fluxConcentration", "depthComplexity", "extent", "albedo", "facing", "hidden"]
 FLOORS = np.array([1e-3, 1e-3, 1e-4, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3])
 FACING = PROBES.index("facing")
+COVERAGE = "coverage"  # the probe that tells times alone
 LIMIT = 2.5  # deviations beyond which a probe counts no more
 SAME = 1.02  # as in src/planner/planner.cpp: of errors so near to each other the quickest is taken
 SAME_TIME = 1.05  # likewise: where nothing fits
@@ -30,6 +31,7 @@ class Data:
         self.ms = np.array([[np.nan if t is None else t for t in row] for row in raw["ms"]])
         self.log = np.log10(self.error)
         self.probes = np.array([[view["probes"][name] for name in PROBES] for view in self.views])
+        self.coverage = np.array([view["probes"][COVERAGE] for view in self.views])
         # A scene and its other edition hold out each other: a box seen in training is no unseen scene.
         self.scene = np.array([{"cornell_original": "cornell"}.get(v["scene"], v["scene"]) for v in self.views])
         # Made-up scenes, of which errors alone are known, and of some candidates only: the error model learns from them, nothing is judged by them.
@@ -61,15 +63,15 @@ def non_negative(matrix, values):
 
 
 def cost_columns(pixels, triangles, texels, facing):
-    """Fixed, pixels, triangles, texels of RSMs, and pixels times the share of pairs that face each other; millions."""
+    """Fixed, pixels with a surface, triangles, texels of RSMs, and such pixels times the share of pairs that face each other; millions."""
     ones = np.ones_like(facing)
-    return np.stack([ones, pixels * ones, triangles, texels * ones, pixels * facing], axis=1)
+    return np.stack([ones, pixels, triangles, texels * ones, pixels * facing], axis=1)
 
 
 def fit_costs(data, rows):
     """cost[5] of every candidate, from the views `rows`. What is fixed and what grows with pixels is parted by the candidates that were
     measured at other sizes (the nearest in time of the same technique stands for the others); texels by the ones at other RSM sizes."""
-    facing = data.probes[rows, FACING]
+    facing, coverage = data.probes[rows, FACING], data.coverage[rows]
     triangles = np.array([data.views[v]["triangles"] * 1e-6 for v in rows])
     fixed = fixed_shares(data)
     texel = data.raw["ms_per_megatexel"]
@@ -81,8 +83,9 @@ def fit_costs(data, rows):
         perTexel = texel if needs_light(technique, data.candidates[c][1]) else 0.0
         rest = data.ms[rows, c][known] - perTexel * data.mega["texels"]
         share = fixed[c]
-        # One column for what is the same in all views: parted afterwards by `share`.
-        matrix = np.stack([np.ones(known.sum()), triangles[known] * draws_geometry(technique, data.candidates[c][1]), facing[known]], axis=1)
+        # One column for what is fixed and what every pixel with a surface takes, parted by `share`.
+        matrix = np.stack([share + (1.0 - share) * coverage[known], triangles[known] * draws_geometry(technique, data.candidates[c][1]),
+                           facing[known] * coverage[known]], axis=1)
         same, byTriangle, byFacing = robust(matrix, rest)
         pixels = data.mega["pixels"]
         costs[c] = [share * same, (1.0 - share) * same / pixels, byTriangle, perTexel, byFacing / pixels]
@@ -100,19 +103,23 @@ def robust(matrix, values):
 
 
 def fixed_shares(data):
-    """Of each candidate's time at the usual size what does not grow with the pixels."""
+    """Of what each candidate takes in a view of the usual size that is all surfaces what does not grow with the pixels."""
     measured = {}
     for entry in data.raw["sizes"]:
-        scale = entry["size"][0] * entry["size"][1] * 1e-6
+        scale = entry["size"][0] * entry["size"][1] * 1e-6 / data.mega["pixels"]
         view = next(v for v, w in enumerate(data.views) if (w["scene"], w["camera"]) == (entry["scene"], entry["camera"]))
         for c, ms in enumerate(entry["ms"]):
             if ms is not None:
                 measured.setdefault(c, []).append((view, scale, ms))
     shares = {}
+    tried = np.linspace(0.0, 0.9, 181)[:, None]
     for c, points in measured.items():
-        # ms / ms(usual size) = speed (share + (1 - share) pixels / usual pixels); speed: of the machine at that hour
-        slope, intercept = np.polyfit([p[1] / data.mega["pixels"] for p in points], [p[2] / data.ms[p[0], c] for p in points], 1)
-        shares[c] = float(np.clip(intercept / (intercept + slope), 0.0, 0.9))
+        # ms / ms(usual size) = speed (share + (1 - share) coverage scale) / (share + (1 - share) coverage); speed: of the machine at that hour
+        coverage, scale = data.coverage[[p[0] for p in points]], np.array([p[1] for p in points])
+        ratio = np.array([p[2] / data.ms[p[0], c] for p in points])
+        shape = (tried + (1.0 - tried) * coverage * scale) / (tried + (1.0 - tried) * coverage)
+        speed = (shape @ ratio / (shape ** 2).sum(axis=1))[:, None]
+        shares[c] = float(tried[np.argmin(((speed * shape - ratio) ** 2).sum(axis=1)), 0])
     usual = np.nanmedian(data.ms, axis=0)
     result = np.zeros(len(data.candidates))
     for c, (technique, _) in enumerate(data.candidates):
@@ -130,9 +137,8 @@ def draws_geometry(technique, settings):
 
 
 def predict_ms(data, costs, rows):
-    facing = data.probes[rows, FACING]
     triangles = np.array([data.views[v]["triangles"] * 1e-6 for v in rows])
-    return cost_columns(data.mega["pixels"], triangles, data.mega["texels"], facing) @ costs.T
+    return cost_columns(data.mega["pixels"] * data.coverage[rows], triangles, data.mega["texels"], data.probes[rows, FACING]) @ costs.T
 
 
 # ------------------------------------------------------------------------------------------ error

@@ -993,6 +993,7 @@ typedef struct LWPlan {
     char parameters[256];        /**< for lwCreateTechniqueFromText */
     char reason[256];            /**< one sentence */
     LWPlanProbes probes;
+    float coverage;              /**< share of the view's pixels that show a surface, measured with the probes: what takes time */
 } LWPlan;
 
 /** Picks technique and parameters for what this frame brings and what may be spent: what is possible by the inputs given; how long it

@@ -25,10 +25,12 @@ struct PlanOptions {
 };
 
 // A probe as JSON has it: no number is null.
-nlohmann::ordered_json probesJson(const LWPlanProbes& probes) {
+nlohmann::ordered_json probesJson(const LWPlan& plan) {
+    const LWPlanProbes& probes = plan.probes;
     return {{"indirect_share", probes.indirectShare}, {"flux_on_screen", probes.fluxOnScreen},
             {"flux_concentration", probes.fluxConcentration}, {"depth_complexity", probes.depthComplexity},
-            {"extent", probes.extent}, {"albedo", probes.albedo}, {"facing", probes.facing}, {"hidden", probes.hidden}};
+            {"extent", probes.extent}, {"albedo", probes.albedo}, {"facing", probes.facing}, {"hidden", probes.hidden},
+            {"coverage", plan.coverage}};
 }
 
 nlohmann::ordered_json planJson(const LWPlan& plan) {
@@ -99,7 +101,7 @@ void print(const PlanOptions& options, const std::string& scene, const std::stri
     document["size"] = {size.width, size.height};
     document["budget_ms"] = options.hasBudget() ? nlohmann::ordered_json(desc.budgetMs) : nlohmann::ordered_json();
     document["error_target"] = options.hasError() ? nlohmann::ordered_json(desc.errorTarget) : nlohmann::ordered_json();
-    document["probes"] = probesJson(plan.probes);
+    document["probes"] = probesJson(plan);
     document["triangles"] = frame.geometry ? frame.geometry->triangleCount : 0;
     document["device"] = deviceJson(device.info());
     if (!isChoice || options.listsAll) {

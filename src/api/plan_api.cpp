@@ -36,7 +36,7 @@ void copyText(char (&to)[size], const std::string& text) {
 }
 
 // Waits with the device's lock open.
-LWPlanProbes probe(Call& call, const View& view, const LWFrame& frame, const LWGBuffer& gbuffer, const LWSync* sync) {
+FrameFigures probe(Call& call, const View& view, const LWFrame& frame, const LWGBuffer& gbuffer, const LWSync* sync) {
     Device& device = call.owner()->device;
     FrameProbing probing(device);
     FrameRecord record(device);
@@ -51,7 +51,7 @@ LWPlanProbes probe(Call& call, const View& view, const LWFrame& frame, const LWG
         clFinish(device.queue());  // what is still being read must not outlive its memory
         throw;
     }
-    const LWPlanProbes* probes = probing.take();
+    const FrameFigures* probes = probing.take();
     if (!probes) fail(LW_ERROR_DEVICE, "the frame's probes: expected their read to end, got none");
     return *probes;
 }
@@ -59,7 +59,7 @@ LWPlanProbes probe(Call& call, const View& view, const LWFrame& frame, const LWG
 // What lwPlan and lwListPlans share: their arguments, checked, and the predictions for them.
 struct Planning {
     LWPlanDesc desc{};
-    LWPlanProbes probes{};
+    FrameFigures probes;
     std::string missing;  // for techniques that are not possible
     std::vector<Prediction> predictions;
 };
@@ -83,7 +83,7 @@ Planning planFor(Call& call, const View& view, const LWFrame* frame, const LWGBu
     return planning;
 }
 
-LWPlan planOf(const Choice& choice, const LWPlanProbes& probes) {
+LWPlan planOf(const Choice& choice, const FrameFigures& probes) {
     const Prediction& prediction = choice.prediction;
     const Candidate& candidate = candidates()[prediction.candidate];
     LWPlan plan{};
@@ -96,6 +96,7 @@ LWPlan planOf(const Choice& choice, const LWPlanProbes& probes) {
     copyText(plan.parameters, candidate.settings);
     copyText(plan.reason, choice.reason);
     plan.probes = probes;
+    plan.coverage = probes.coverage;
     return plan;
 }
 

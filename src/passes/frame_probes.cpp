@@ -39,11 +39,11 @@ double radiusOf(const LwProbeChunk& places) {
 
 }  // namespace
 
-LWPlanProbes probesOf(const LwFrameProbes& sums, std::uint32_t has) {
+FrameFigures probesOf(const LwFrameProbes& sums, std::uint32_t has) {
     const bool camera = has & LW_PROBE_HAS_CAMERA, albedo = has & LW_PROBE_HAS_ALBEDO, radiance = has & LW_PROBE_HAS_RADIANCE;
     const bool lit = sums.emitters > 0.0f && sums.texels.weight > 0.0f && std::isfinite(sums.texels.weight);
     const double pixels = double(sums.sums[LW_PROBE_VALID]), indirect = double(sums.sums[LW_PROBE_INDIRECT]);
-    LWPlanProbes probes{};
+    FrameFigures probes;
     probes.indirectShare = ratio(indirect, indirect + double(sums.sums[LW_PROBE_DIRECT]), lit && albedo && radiance);
     probes.fluxOnScreen = ratio(double(sums.texels.shown), double(sums.texels.weight), lit && camera);
     probes.fluxConcentration = ratio(double(sums.texels.squares), 1.0, lit);
@@ -52,6 +52,7 @@ LWPlanProbes probesOf(const LwFrameProbes& sums, std::uint32_t has) {
     probes.albedo = ratio(double(sums.sums[LW_PROBE_ALBEDO]), pixels, albedo);
     probes.facing = ratio(double(sums.sums[LW_PROBE_FACING]), pixels * double(sums.emitters), lit);
     probes.hidden = ratio(double(sums.sums[LW_PROBE_HIDDEN]), double(sums.sums[LW_PROBE_TESTED]), lit && camera);
+    probes.coverage = ratio(pixels, LW_PROBE_PIXELS);
     return probes;
 }
 
@@ -116,7 +117,7 @@ void FrameProbes::readLate(Executor& executor) {
     lateHas_ = has_;
 }
 
-const LWPlanProbes* FrameProbes::take() {
+const FrameFigures* FrameProbes::take() {
     const LwFrameProbes* sums = late_.take();
     if (!sums) return nullptr;
     taken_ = probesOf(*sums, lateHas_);

@@ -10,6 +10,7 @@
 #include "compute/late_read.h"
 #include "inputs/rsm_input.h"
 #include "lightwell/lightwell.h"
+#include "passes/frame_figures.h"
 #include "shared/frame_probes_types.h"
 #include "shared/screen_types.h"
 
@@ -34,7 +35,7 @@ public:
     void readLate(Executor& executor);
     bool isReading() const { return late_.isPending(); }
     // What has come since the last call; null where nothing has, or commands failed.
-    const LWPlanProbes* take();
+    const FrameFigures* take();
 
     const Buffer& sums() const { return probes_; }        // LwFrameProbes
     const Buffer& emitters() const { return emitters_; }  // lw_vpl, LW_PROBE_EMITTERS of them
@@ -52,10 +53,10 @@ private:
     // What is being read, and what it was made of.
     LateRead<LwFrameProbes> late_;
     std::uint32_t lateHas_ = 0;
-    LWPlanProbes taken_{};
+    FrameFigures taken_;
 };
 
 // Ratios of the sums; NaN where `has` (LW_PROBE_HAS_*) or the frame leaves nothing to measure a figure by.
-LWPlanProbes probesOf(const LwFrameProbes& sums, std::uint32_t has);
+FrameFigures probesOf(const LwFrameProbes& sums, std::uint32_t has);
 
 }  // namespace lightwell

@@ -26,7 +26,7 @@ public:
     void recordView(Executor& executor, const View& view, const LWGBuffer& gbuffer);
     bool isReading() const { return probes_.isReading(); }
     // What has come since the last call; null where nothing has, or commands failed. Waits for nothing.
-    const LWPlanProbes* take() { return probes_.take(); }
+    const FrameFigures* take() { return probes_.take(); }
     // The most that bytes() becomes.
     static std::uint64_t estimateBytes(const LWViewDesc& view, const FrameShape& shape);
     std::uint64_t bytes() const { return gbuffer_.bytes() + rsms_.bytes() + probes_.bytes(); }

@@ -21,14 +21,15 @@ constexpr std::size_t kPlanProbes = 8;  // in the order of LWPlanProbes' fields
 
 // A technique with settings that were measured.
 //
-//     ms = launches * (here) + computeScale * (cost[0] - launches * (there) + (cost[1] + cost[4] * facing) * views * Mpixels
+//     ms = launches * (here) + computeScale * (cost[0] - launches * (there) + (cost[1] + cost[4] * facing) * coverage * views * Mpixels
 //                                              + cost[2] * Mtriangles)
 //          + memoryScale * cost[3] * Mtexels
 //
 // and, in a frame whose lights or geometry moved, computeScale * maps * (fixed + perMtriangles * Mtriangles) of kPlanMaps.
 //
 // with (here) and (there) the milliseconds of a launch on this device and on the one that was measured, scales of 1 there;
-// triangles: and surfels, texels: of all RSMs, facing: the probe, of pairs that a gather has work with. All of `cost` are 0 or more.
+// triangles: and surfels, texels: of all RSMs; the probes facing, of pairs that a gather has work with, and coverage, of pixels that show a
+// surface. All of `cost` are 0 or more.
 //
 //     log10 relMSE = errorMean + sum over probes of errorSlopes * z,   with a standard deviation of errorSigma
 struct PlanRow {
@@ -37,7 +38,7 @@ struct PlanRow {
     std::uint32_t needs;
     double launches;  // of kernels in a frame; 0: not known
     double maps;      // of 128 x 128 texels that it draws where lights or geometry moved, and keeps where not
-    double cost[5];   // ms, ms per million pixels, per million triangles, per million texels, per million pixels with facing = 1
+    double cost[5];   // ms, ms per million pixels with a surface, per million triangles, per million texels, per million such pixels with facing = 1
     double errorMean;
     double errorSlopes[kPlanProbes];
     double errorSigma;
@@ -54,11 +55,11 @@ struct PlanMaps {
     double fixed, perMtriangles;
 };
 
-// Of the device that the costs were measured on, as `lightwell devices --probe` has them; and the probe `facing` of a frame that does
-// not tell it: the mean of the views that were measured.
+// Of the device that the costs were measured on, as `lightwell devices --probe` has them; and the probes `facing` and `coverage` of a frame
+// that does not tell them: the means of the views that were measured.
 struct PlanReference {
     const char* device;
-    double multiplyAddGflops, bandwidthGBps, launchMicroseconds, usualFacing;
+    double multiplyAddGflops, bandwidthGBps, launchMicroseconds, usualFacing, usualCoverage;
 };
 
 }  // namespace lightwell

@@ -45,14 +45,20 @@ bool allows(std::uint32_t brought, const PlanRow& row) {
     return (row.needs & ~brought) == 0;
 }
 
-double millisecondsOf(const PlanRow& row, const Calibration& calibration, const FrameTraits& traits, double facing) {
+// A probe that is a share, or what is usual where it is not known.
+double shareOf(float probe, double usual) {
+    return std::isnan(probe) ? usual : std::clamp(double(probe), 0.0, 1.0);
+}
+
+double millisecondsOf(const PlanRow& row, const Calibration& calibration, const FrameTraits& traits, const FrameFigures& probes) {
+    const double facing = shareOf(probes.facing, kPlanReference.usualFacing);
+    const double lit = traits.pixels * traits.views * shareOf(probes.coverage, kPlanReference.usualCoverage);
     const double million = 1e-6;
     // What a launch takes is part of what was measured as fixed, but grows by its own rate.
     const double launching = std::min(row.launches * kPlanReference.launchMicroseconds * 1e-3, row.cost[0]);
     const double shapes = (traits.triangles + traits.surfels) * million;
     const double drawn = traits.hasMoved ? row.maps * (kPlanMaps.fixed + kPlanMaps.perMtriangles * shapes) : 0.0;
-    const double computed = row.cost[0] - launching + (row.cost[1] + row.cost[4] * facing) * traits.pixels * traits.views * million +
-                            row.cost[2] * shapes + drawn;
+    const double computed = row.cost[0] - launching + (row.cost[1] + row.cost[4] * facing) * lit * million + row.cost[2] * shapes + drawn;
     return calibration.launchScale * launching + calibration.computeScale * computed +
            calibration.memoryScale * row.cost[3] * traits.rsmTexels * million;
 }
@@ -189,16 +195,15 @@ const std::vector<Candidate>& candidates() {
     return all;
 }
 
-std::vector<Prediction> predict(const Calibration& calibration, const FrameTraits& traits, const LWPlanProbes& probes) {
+std::vector<Prediction> predict(const Calibration& calibration, const FrameTraits& traits, const FrameFigures& probes) {
     const std::uint32_t brought = broughtBy(traits);
     const std::array<double, kPlanProbes> z = standardised(probes);
-    const double facing = std::isnan(probes.facing) ? kPlanReference.usualFacing : std::clamp(double(probes.facing), 0.0, 1.0);
     Predictions predictions;
     for (std::size_t i = 0; i < std::size(kPlanRows); ++i) {
         if (!allows(brought, kPlanRows[i])) continue;
         Prediction prediction;
         prediction.candidate = i;
-        prediction.milliseconds = millisecondsOf(kPlanRows[i], calibration, traits, facing);
+        prediction.milliseconds = millisecondsOf(kPlanRows[i], calibration, traits, probes);
         predictError(kPlanRows[i], z, prediction);
         predictions.push_back(prediction);
     }

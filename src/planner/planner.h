@@ -1,7 +1,7 @@
 // The planner: which technique, with which parameters, for what a frame brings and what may be spent.
 //
 //     const FrameTraits traits = traitsOf(frame, gbuffer, pixels, views);     // what is possible, and how large
-//     const LWPlanProbes probes = ...;                                        // frame_probing.h
+//     const FrameFigures probes = ...;                                        // frame_probing.h
 //     const Choice choice = choose(predict(calibrationOf(device), traits, probes), budget, target);
 //
 // Pure arithmetic but for probes and calibration; docs/planner.md derives it. The tables stand in plan_tables.h, written by
@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "lightwell/lightwell.h"
+#include "passes/frame_figures.h"
 
 namespace lightwell {
 
@@ -54,7 +55,7 @@ struct Prediction {
     double confidence = 0.0;    // that the true error is within a factor of two
 };
 // Of all candidates that the frame allows, quickest first; none where it allows none.
-std::vector<Prediction> predict(const Calibration& calibration, const FrameTraits& traits, const LWPlanProbes& probes);
+std::vector<Prediction> predict(const Calibration& calibration, const FrameTraits& traits, const FrameFigures& probes);
 // What the frame lacks for the others: "RSMs, static VPLs"; "" where it allows all.
 std::string missingFor(const FrameTraits& traits);
 

@@ -20,9 +20,9 @@ constexpr double kBudgetsWarmed = 2.0;
 // Less: what turns out to be the best is left out.
 constexpr double kErrorsWarmed = 1.25;
 
-LWPlanProbes unknownProbes() {
+FrameFigures unknownProbes() {
     constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
-    return {kNone, kNone, kNone, kNone, kNone, kNone, kNone, kNone};
+    return LWPlanProbes{kNone, kNone, kNone, kNone, kNone, kNone, kNone, kNone};
 }
 
 // Candidates of a technique are a group.
@@ -38,7 +38,7 @@ SteeringOptions steeringOptions(const LWAutoDesc& desc, const std::vector<Candid
 
 AutoPlanner realPlanner(Device& device) {
     const Calibration calibration = calibrationOf(device);
-    return {candidates(), [calibration](const FrameTraits& traits, const LWPlanProbes& probes) { return predict(calibration, traits, probes); }, true};
+    return {candidates(), [calibration](const FrameTraits& traits, const FrameFigures& probes) { return predict(calibration, traits, probes); }, true};
 }
 
 std::uint64_t estimateText(const TechniqueText& text, const LWViewDesc& view, const FrameShape& shape) {
@@ -135,7 +135,7 @@ void Auto::prewarmAround(Executor& executor) {
     made.hasRsms = made.hasDirectRadiance = made.hasCamera = true;
     for (const Prediction& simple : planner_.predict(made, probes_)) {
         AutoPlanner one = planner_;
-        one.predict = [simple](const FrameTraits&, const LWPlanProbes&) { return std::vector<Prediction>{simple}; };
+        one.predict = [simple](const FrameTraits&, const FrameFigures&) { return std::vector<Prediction>{simple}; };
         Auto twin(device_, desc_, std::move(one));
         try {
             return exerciseTechnique(executor, twin);

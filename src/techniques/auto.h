@@ -18,7 +18,7 @@ const TechniqueEntry& autoEntry();
 struct AutoPlanner {
     std::vector<Candidate> candidates;
     // Indices are those of `candidates`; quickest first, none where the frame allows none.
-    std::function<std::vector<Prediction>(const FrameTraits& traits, const LWPlanProbes& probes)> predict;
+    std::function<std::vector<Prediction>(const FrameTraits& traits, const FrameFigures& probes)> predict;
     bool usesProbes = true;
 };
 std::unique_ptr<Technique> makeAuto(Device& device, const LWAutoDesc& desc, AutoPlanner planner);

@@ -72,7 +72,7 @@ void Auto::learn() {
         }
         steering_.ran(frame->candidate, frame->predicted, frame->part, frame->whole);
     }
-    if (const LWPlanProbes* probes = probing_.take()) {
+    if (const FrameFigures* probes = probing_.take()) {
         if (!hasProbes_) steering_.forgetChoice();  // what runs was chosen without them
         probes_ = *probes;
         hasProbes_ = true;

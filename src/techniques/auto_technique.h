@@ -94,7 +94,7 @@ private:
     FrameTraits brought_;        // by the last frame
     std::vector<float> placed_;  // where the last frame's lights stood, and its geometry's version
     double pixels_ = kAutoPixels;
-    LWPlanProbes probes_;
+    FrameFigures probes_;
 
     // Of the frame at hand.
     bool isWhole_ = false, keeps_ = false, wantsProbes_ = false;

@@ -46,6 +46,14 @@ struct Whole : ApiScene {
         vpl.flux[0] = 0.1f;
         frame.vpls = &vpl;
         frame.vplCount = 1;
+        rsm.version = 1;
+    }
+    // In the map's own memory.
+    void scaleFlux(double factor) {
+        for (std::uint32_t y = 0; y < rsmFlux.height(); ++y)
+            for (std::uint32_t x = 0; x < rsmFlux.width(); ++x)
+                rsmFlux.set(x, y, factor * rsmFlux.value(x, y, 0), factor * rsmFlux.value(x, y, 1), factor * rsmFlux.value(x, y, 2));
+        ++rsm.version;
     }
     LWVpl vpl{};
 };
@@ -68,7 +76,11 @@ TEST_CASE("whichever OpenCL call of a frame fails, it is told, and the next fram
     for (int call = 0; call < kMostCalls; ++call) {
         REQUIRE(lwCreateRsm(rig.device, &desc, &rig.technique) == LW_SUCCESS);
         const bool again = call % 2 == 0;  // the fault in the second frame, or in the first
-        if (again) rig.frame(scene);
+        if (again) {
+            scene.scaleFlux(0.5);  // so that texels that stay where they should not are seen
+            rig.frame(scene);
+            scene.scaleFlux(2.0);
+        }
         LWStats stats{};
         stats.structSize = sizeof stats;
         std::vector<float> list(1 << 14);

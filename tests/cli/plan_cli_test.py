@@ -13,7 +13,7 @@ import planner_scenes  # noqa: E402
 
 VIEW = ["cornell", *SIZE, "--rsm-size", "64"]
 CHOICE = ["technique", "parameters", "predicted_ms", "predicted_error", "confidence", "within_budget", "reaches_error"]
-PROBES = {"indirect_share", "flux_on_screen", "flux_concentration", "depth_complexity", "extent", "albedo", "facing", "hidden"}
+PROBES = {"indirect_share", "flux_on_screen", "flux_concentration", "depth_complexity", "extent", "albedo", "facing", "hidden", "coverage"}
 
 
 class Plan(CommandLine):

@@ -173,6 +173,12 @@ TEST_CASE("probes of figures known by construction", "[frame_probes][large]") {
         for (ProbedTexel& t : above.texels) t.normal = -t.normal;  // its upper side
         CHECK(probing.run(picture, {above}, &camera).fluxOnScreen == 0.0f);
     }
+    SECTION("half of the picture is sky") {
+        CHECK(probing.run(picture, {map}, &camera).coverage == 1.0f);
+        for (std::uint32_t y = 0; y < 32; ++y)
+            for (std::uint32_t x = 0; x < 64; ++x) picture.pixels[y * 64 + x].normal = glm::dvec3(0.0);
+        CHECK(probing.run(picture, {map}, nullptr).coverage == 0.5f);
+    }
     SECTION("steps between neighbours") {
         // Stripes of the picture at two depths: every eighth pair across differs, none along.
         for (std::uint32_t y = 0; y < 64; ++y)
@@ -231,7 +237,8 @@ TEST_CASE("probes are NaN where nothing is given to measure them by", "[frame_pr
     SECTION("no surface, no flux") {
         ProbedPicture empty = drawPicture(setup);
         for (ProbeSurface& s : empty.pixels) s.normal = glm::dvec3(0.0), s.position = glm::dvec3(double(NAN));
-        LWPlanProbes probes = probing.run(empty, {drawMap(setup)}, &camera);
+        FrameFigures probes = probing.run(empty, {drawMap(setup)}, &camera);
+        CHECK(probes.coverage == 0.0f);
         for (const float each : {probes.indirectShare, probes.depthComplexity, probes.extent, probes.facing, probes.hidden, probes.albedo})
             CHECK(std::isnan(each));
         CHECK(probes.fluxOnScreen == 0.0f);

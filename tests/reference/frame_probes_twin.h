@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "lightwell/lightwell.h"
+#include "passes/frame_figures.h"
 #include "shared/frame_probes_types.h"
 
 namespace lightwell::test {
@@ -62,7 +62,7 @@ public:
         draw();
     }
 
-    LWPlanProbes probes() const {
+    FrameFigures probes() const {
         constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
         const bool lit = total_ > 0.0;
         Sums sums;
@@ -73,7 +73,7 @@ public:
             shown += s.isShown ? s.weight : 0.0;
             squares += s.weight * s.weight;
         }
-        LWPlanProbes probes{};
+        FrameFigures probes;
         const auto ratio = [&](double part, double whole, bool has) { return float(has && whole > 0.0 ? part / whole : kNone); };
         probes.indirectShare = ratio(sums.indirect, sums.indirect + sums.direct, lit && !picture_.albedo.empty() && !picture_.radiance.empty());
         probes.fluxOnScreen = ratio(shown, total_, lit && picture_.hasCamera);
@@ -87,6 +87,7 @@ public:
         probes.albedo = ratio(sums.albedo, double(sums.places.size()), !picture_.albedo.empty());
         probes.facing = ratio(sums.facing, double(sums.places.size() * emitters_.size()), lit);
         probes.hidden = ratio(sums.hidden, sums.tested, lit && picture_.hasCamera);
+        probes.coverage = ratio(double(sums.places.size()), LW_PROBE_COLUMNS * LW_PROBE_ROWS, true);
         return probes;
     }
 

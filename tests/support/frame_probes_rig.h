@@ -109,7 +109,7 @@ class Probing {
 public:
     explicit Probing(std::uint32_t width) : rig(width), pass(rig.device()) {}
 
-    LWPlanProbes run(const ProbedPicture& picture, const std::vector<ProbedMap>& maps, const LWCamera* camera,
+    FrameFigures run(const ProbedPicture& picture, const std::vector<ProbedMap>& maps, const LWCamera* camera,
                      const std::vector<LWVpl>& vpls = {}) {
         std::vector<float> position, normal, albedo, radiance;
         const auto planes = [&](auto value) {
@@ -133,7 +133,7 @@ public:
         pass.record(rig.executor(), view, input, vpls.data(), std::uint32_t(vpls.size()));
         pass.readLate(rig.executor());
         rig.device().finish();
-        const LWPlanProbes* probes = pass.take();
+        const FrameFigures* probes = pass.take();
         REQUIRE(probes != nullptr);
         CHECK(pass.take() == nullptr);
         pass.sums().download(0, sizeof sums, &sums);
@@ -175,12 +175,12 @@ private:
     std::vector<std::unique_ptr<Guarded>> held;
 };
 
-inline LWPlanProbes probe(Probing& probing, const ProbedSetup& setup) {
+inline FrameFigures probe(Probing& probing, const ProbedSetup& setup) {
     const LWCamera camera = scaled(setup.camera, setup.length).matrices();
     return probing.run(drawPicture(setup), {drawMap(setup)}, &camera);
 }
 
-inline void checkNear(const LWPlanProbes& got, const LWPlanProbes& expected, double relative, double absolute) {
+inline void checkNear(const FrameFigures& got, const FrameFigures& expected, double relative, double absolute) {
     const auto near = [&](float a, float b, const char* name) {
         INFO(name << ": " << a << ", expected " << b);
         CHECK(std::isnan(a) == std::isnan(b));
@@ -194,6 +194,7 @@ inline void checkNear(const LWPlanProbes& got, const LWPlanProbes& expected, dou
     near(got.albedo, expected.albedo, "albedo");
     near(got.facing, expected.facing, "facing");
     near(got.hidden, expected.hidden, "hidden");
+    near(got.coverage, expected.coverage, "coverage");
 }
 
 }  // namespace lightwell::test

@@ -97,6 +97,7 @@ TEST_CASE("the planner's table holds techniques that can be made, each once, and
     CHECK(kPlanReference.bandwidthGBps > 0.0);
     CHECK(kPlanReference.launchMicroseconds > 0.0);
     CHECK((kPlanReference.usualFacing > 0.0 && kPlanReference.usualFacing <= 1.0));
+    CHECK((kPlanReference.usualCoverage > 0.0 && kPlanReference.usualCoverage <= 1.0));
 }
 
 TEST_CASE("a frame allows what it brings the inputs for", "[planner]") {
@@ -139,8 +140,9 @@ TEST_CASE("predicted times follow the frame's sizes and the device's rates", "[p
     for (const Prediction& each : plain) {
         const PlanRow& row = kPlanRows[each.candidate];
         INFO(row.technique << " " << row.settings);
-        const double pixels = traits.pixels * 1e-6, texels = traits.rsmTexels * 1e-6, triangles = traits.triangles * 1e-6;
-        // Not told how many pairs face each other, as many as usual.
+        const double whole = traits.pixels * 1e-6, texels = traits.rsmTexels * 1e-6, triangles = traits.triangles * 1e-6;
+        // Not told how many pixels show a surface, nor how many pairs face each other: as many as usual.
+        const double pixels = whole * kPlanReference.usualCoverage;
         const double perPixel = row.cost[1] + row.cost[4] * kPlanReference.usualFacing;
         CHECK(each.milliseconds == Approx(row.cost[0] + perPixel * pixels + row.cost[2] * triangles + row.cost[3] * texels));
         LWPlanProbes all = kNoProbes;
@@ -148,6 +150,14 @@ TEST_CASE("predicted times follow the frame's sizes and the device's rates", "[p
         const auto faced = predict({}, traits, all);
         CHECK(find(faced, each.candidate)->milliseconds - each.milliseconds ==
               Approx(row.cost[4] * (1.0 - kPlanReference.usualFacing) * pixels).margin(1e-9));
+        // Of a picture that is half sky half as much, of one that is all sky what is fixed.
+        FrameFigures half = all, sky = all;
+        half.coverage = 0.5f;
+        sky.coverage = 0.0f;
+        CHECK(find(predict({}, traits, half), each.candidate)->milliseconds - find(predict({}, traits, sky), each.candidate)->milliseconds ==
+              Approx(0.5 * (row.cost[1] + row.cost[4]) * whole).margin(1e-9));
+        CHECK(find(predict({}, traits, sky), each.candidate)->milliseconds ==
+              Approx(row.cost[0] + row.cost[2] * triangles + row.cost[3] * texels));
         hasMaps = hasMaps || row.maps > 0.0;
         CHECK(find(predict({}, moved, kNoProbes), each.candidate)->milliseconds - each.milliseconds ==
               Approx(row.maps * (kPlanMaps.fixed + kPlanMaps.perMtriangles * triangles)).margin(1e-9));

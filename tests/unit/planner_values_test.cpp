@@ -23,9 +23,11 @@ FrameTraits frameOf(const PlannerValue& value) {
     return traits;
 }
 
-LWPlanProbes probesOf(const PlannerValue& value) {
+FrameFigures probesOf(const PlannerValue& value) {
     const float* p = value.probes;
-    return {p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7]};
+    FrameFigures figures(LWPlanProbes{p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7]});
+    figures.coverage = value.coverage;
+    return figures;
 }
 
 std::string nameOf(std::size_t candidate) {

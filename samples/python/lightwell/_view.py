@@ -44,6 +44,7 @@ class Plan:
     within_budget: bool
     reaches_error: bool
     probes: Probes
+    coverage: float
 
 
 @dataclasses.dataclass(frozen=True)
@@ -66,7 +67,7 @@ def _plan(struct: Any) -> Plan:
     p = struct.probes
     probes = Probes(p.indirectShare, p.fluxOnScreen, p.fluxConcentration, p.depthComplexity, p.extent, p.albedo, p.facing, p.hidden)
     return Plan(text(struct.technique), text(struct.parameters), text(struct.reason), struct.predictedMs, struct.predictedError,
-                struct.confidence, bool(struct.withinBudget), bool(struct.reachesError), probes)
+                struct.confidence, bool(struct.withinBudget), bool(struct.reachesError), probes, struct.coverage)
 
 
 def _finding(struct: Any) -> Finding:
