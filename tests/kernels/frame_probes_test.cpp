@@ -49,7 +49,7 @@ TEST_CASE("probes are those of the serial twin", "[frame_probes]") {
         const ProbedPicture picture = drawPicture(setup);
         const std::vector<ProbedMap> maps{drawMap(setup)};
         const LWCamera camera = setup.camera.matrices();
-        const LWPlanProbes expected = FrameProbesTwin(picture, maps).probes();
+        const FrameFigures expected = FrameProbesTwin(picture, maps).probes();
         checkNear(probing.run(picture, maps, &camera), expected, kRounding, kDecisions);
         // The scene has all that the probes look for.
         CHECK(expected.indirectShare > 0.05f);
@@ -81,7 +81,7 @@ TEST_CASE("probes are those of the serial twin", "[frame_probes]") {
 TEST_CASE("probes depend on no unit, no strength of light and no resolution", "[frame_probes][large]") {
     Probing probing(16);
     const ProbedSetup plain;
-    const LWPlanProbes probes = probe(probing, plain);
+    const FrameFigures probes = probe(probing, plain);
     ProbedSetup long_ = plain, bright = plain, coarse = plain, fine = plain;
     long_.length = 10.0;
     bright.light = 100.0;
@@ -133,7 +133,7 @@ TEST_CASE("probes of figures known by construction", "[frame_probes][large]") {
     ProbedMap map = floorMap(64);
 
     SECTION("an even floor under a ceiling") {
-        const LWPlanProbes probes = probing.run(picture, {map}, &camera);
+        const FrameFigures probes = probing.run(picture, {map}, &camera);
         CHECK(double(probes.fluxConcentration) == Approx(1.0 / LW_PROBE_TEXELS).epsilon(1e-5));
         CHECK(double(probes.albedo) == Approx(0.25));
         CHECK(probes.facing == 1.0f);
@@ -154,7 +154,7 @@ TEST_CASE("probes of figures known by construction", "[frame_probes][large]") {
             const double squared = glm::dot(d, d), cosine = d.y / std::sqrt(squared);
             picture.radiance[i] = glm::dvec3(0.25 / kPi * 3.0 / kPi * cosine * cosine / squared);
         }
-        const LWPlanProbes probes = probing.run(picture, {map}, &camera);
+        const FrameFigures probes = probing.run(picture, {map}, &camera);
         CHECK(double(probes.indirectShare) == Approx(0.5).epsilon(1e-4));
         CHECK(std::isnan(probes.extent));
         CHECK(double(probes.fluxConcentration) == Approx(1.0 / LW_PROBE_TEXELS).epsilon(1e-5));  // cells of one texel share it
@@ -166,7 +166,7 @@ TEST_CASE("probes of figures known by construction", "[frame_probes][large]") {
     }
     SECTION("the view shows half of the flux, where it is what lights") {
         ProbedMap above = floorMap(64, 2.0, -1.0);  // the ceiling's own texels, of which the view shows 1.5 m x 1.5 m of 2 m x 2 m
-        const LWPlanProbes probes = probing.run(picture, {above}, &camera);
+        const FrameFigures probes = probing.run(picture, {above}, &camera);
         CHECK(double(probes.fluxOnScreen) == Approx(0.5625).epsilon(0.01));
         CHECK(probes.facing == 0.0f);
         CHECK(std::isnan(probes.hidden));  // no pair to look between
@@ -198,9 +198,9 @@ TEST_CASE("a screen between floor and ceiling hides them from each other, as far
     setup.camera = lookAt({0, 2, 8}, {0, 2, 0}, 0.5, 1.0);
     setup.width = setup.height = 128;
     setup.lamp = lookAt({0, 8, -1}, {0, 0, -1.001}, 0.4, 1.0);
-    const LWPlanProbes open = probe(probing, setup);
+    const FrameFigures open = probe(probing, setup);
     setup.scene.quad({-4, 0, -1}, {8, 0, 0}, {0, 1.5, 0}, 0.0);  // before the wall, in front of most of the floor that is lit
-    const LWPlanProbes hidden = probe(probing, setup);
+    const FrameFigures hidden = probe(probing, setup);
     CHECK(open.hidden < 0.01f);
     CHECK(hidden.hidden > 0.2f);
     CHECK(hidden.fluxOnScreen < open.fluxOnScreen);
@@ -212,20 +212,20 @@ TEST_CASE("probes are NaN where nothing is given to measure them by", "[frame_pr
     setup.width = 32, setup.height = 18;
     const LWCamera camera = setup.camera.matrices();
     SECTION("no light") {
-        const LWPlanProbes probes = probing.run(drawPicture(setup), {}, &camera);
+        const FrameFigures probes = probing.run(drawPicture(setup), {}, &camera);
         for (const float each : {probes.indirectShare, probes.fluxOnScreen, probes.fluxConcentration, probes.extent, probes.facing, probes.hidden})
             CHECK(std::isnan(each));
         CHECK(probes.albedo > 0.0f);
         CHECK(probes.depthComplexity > 0.0f);
     }
     SECTION("no camera") {
-        const LWPlanProbes probes = probing.run(drawPicture(setup), {drawMap(setup)}, nullptr);
+        const FrameFigures probes = probing.run(drawPicture(setup), {drawMap(setup)}, nullptr);
         for (const float each : {probes.fluxOnScreen, probes.depthComplexity, probes.hidden}) CHECK(std::isnan(each));
         for (const float each : {probes.indirectShare, probes.fluxConcentration, probes.extent, probes.facing, probes.albedo}) CHECK(each > 0.0f);
     }
     SECTION("no albedo, no radiance") {
         setup.hasAlbedo = false;
-        LWPlanProbes probes = probing.run(drawPicture(setup), {drawMap(setup)}, &camera);
+        FrameFigures probes = probing.run(drawPicture(setup), {drawMap(setup)}, &camera);
         CHECK(std::isnan(probes.indirectShare));
         CHECK(std::isnan(probes.albedo));
         CHECK(probes.facing > 0.0f);
@@ -255,7 +255,7 @@ TEST_CASE("probes are NaN where nothing is given to measure them by", "[frame_pr
             picture.albedo[i] = glm::dvec3(double(NAN), -1.0, 0.0);
             picture.radiance[i] = glm::dvec3(double(INFINITY), double(NAN), -3.0);
         }
-        const LWPlanProbes probes = probing.run(picture, {drawMap(setup)}, &camera);
+        const FrameFigures probes = probing.run(picture, {drawMap(setup)}, &camera);
         CHECK(probes.albedo == 0.0f);
         CHECK(probes.indirectShare == 0.0f);
     }
@@ -270,7 +270,7 @@ TEST_CASE("the host's own VPLs are emitters like texels", "[frame_probes]") {
     vpl.position[1] = 1.0f;
     vpl.normal[1] = -1.0f;
     for (float& part : vpl.flux) part = 2.0f;
-    const LWPlanProbes probes = probing.run(drawPicture(setup), {}, &camera, {vpl});
+    const FrameFigures probes = probing.run(drawPicture(setup), {}, &camera, {vpl});
     CHECK(probes.fluxConcentration == 1.0f);
     CHECK(probes.facing > 0.1f);
     CHECK(probes.indirectShare > 0.0f);
