@@ -158,7 +158,7 @@ def rival_lines(data, found):
         return []
     names, reached = data.names(), []
     lines = ["**Against path tracing.** The [rival](techniques/rival.md) with two bounces, all that it has, 1 to 8 paths a pixel, filtered, traced at full, half and quarter "
-             "resolution: its line is the least error in no more time. Both it and the planner's choices are judged against all bounces. How many times longer the rival takes for the "
+             "resolution: its line is the least error in no more time, of the means of three sample sets. Both it and the planner's choices are judged against all bounces. How many times longer the rival takes for the "
              "same error, at the budget where that is most (>: no point of the rival's line is as accurate; then its longest time); `full`: its line without coarse resolution.", "",
              "| scene | rival: errors of its line, paths a pixel | chosen | ms | relMSE | rival's ms (full) | times (full) |", "| --- | --- | --- | ---: | ---: | ---: | ---: |"]
     for view in dict.fromkeys((r["scene"], r["camera"]) for r in rivals):

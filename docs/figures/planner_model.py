@@ -17,6 +17,7 @@ LIMIT = 2.5  # deviations beyond which a probe counts no more
 SAME = 1.02  # as in src/planner/planner.cpp: of errors so near to each other the quickest is taken
 SAME_TIME = 1.05  # likewise: where nothing fits
 BUDGETS = [4, 8, 16, 33, 66]  # ms
+SKIES = np.linspace(0.0, 1.0, 5)  # what a pixel without a surface may take, of what one with takes
 RIDGES = [3.0, 10.0, 30.0, 100.0, 300.0]
 MADE = 1.0  # what a made-up scene weighs in the error's fit beside a real one
 
@@ -62,20 +63,24 @@ def non_negative(matrix, values):
     return result
 
 
-def cost_columns(pixels, triangles, texels, facing):
-    """Fixed, pixels with a surface, triangles, texels of RSMs, and such pixels times the share of pairs that face each other; millions."""
-    ones = np.ones_like(facing)
-    return np.stack([ones, pixels, triangles, texels * ones, pixels * facing], axis=1)
-
-
 def fit_costs(data, rows):
-    """cost[5] of every candidate, from the views `rows`. What is fixed and what grows with pixels is parted by the candidates that were
+    """cost[6] of every candidate, from the views `rows`: fixed, by pixel with a surface, by triangle, by texel of RSMs, by such pixel where all
+    pairs face each other, all by million; and what a pixel of sky takes, as a share, alike for all of a technique. What is fixed and what grows with pixels is parted by the candidates that were
     measured at other sizes (the nearest in time of the same technique stands for the others); texels by the ones at other RSM sizes."""
-    facing, coverage = data.probes[rows, FACING], data.coverage[rows]
+    fits = np.array([fit_with_sky(data, rows, sky, fixed_shares(data, sky)) for sky in SKIES])
+    off = np.array([np.log(predict_ms(data, fit, rows) / data.ms[rows]) ** 2 for fit in fits])
+    result = np.zeros_like(fits[0])
+    for technique in dict.fromkeys(t for t, _ in data.candidates):
+        of = [c for c, (t, _) in enumerate(data.candidates) if t == technique]
+        result[of] = fits[np.argmin(np.nanmedian(off[:, :, of].mean(axis=1), axis=1)), of]
+    return result
+
+
+def fit_with_sky(data, rows, sky, fixed):
+    facing, lit = data.probes[rows, FACING], sky + (1.0 - sky) * data.coverage[rows]
     triangles = np.array([data.views[v]["triangles"] * 1e-6 for v in rows])
-    fixed = fixed_shares(data)
     texel = data.raw["ms_per_megatexel"]
-    costs = np.zeros((len(data.candidates), 5))
+    costs = np.zeros((len(data.candidates), 6))
     for c, (technique, _) in enumerate(data.candidates):
         known = ~np.isnan(data.ms[rows, c])
         if known.sum() < 3:
@@ -83,12 +88,12 @@ def fit_costs(data, rows):
         perTexel = texel if needs_light(technique, data.candidates[c][1]) else 0.0
         rest = data.ms[rows, c][known] - perTexel * data.mega["texels"]
         share = fixed[c]
-        # One column for what is fixed and what every pixel with a surface takes, parted by `share`.
-        matrix = np.stack([share + (1.0 - share) * coverage[known], triangles[known] * draws_geometry(technique, data.candidates[c][1]),
-                           facing[known] * coverage[known]], axis=1)
+        # One column for what is fixed and what every pixel takes, parted by `share`.
+        matrix = np.stack([share + (1.0 - share) * lit[known], triangles[known] * draws_geometry(technique, data.candidates[c][1]),
+                           facing[known] * lit[known]], axis=1)
         same, byTriangle, byFacing = robust(matrix, rest)
         pixels = data.mega["pixels"]
-        costs[c] = [share * same, (1.0 - share) * same / pixels, byTriangle, perTexel, byFacing / pixels]
+        costs[c] = [share * same, (1.0 - share) * same / pixels, byTriangle, perTexel, byFacing / pixels, sky]
     return costs
 
 
@@ -102,7 +107,7 @@ def robust(matrix, values):
     return solution
 
 
-def fixed_shares(data):
+def fixed_shares(data, sky):
     """Of what each candidate takes in a view of the usual size that is all surfaces what does not grow with the pixels."""
     measured = {}
     for entry in data.raw["sizes"]:
@@ -114,10 +119,10 @@ def fixed_shares(data):
     shares = {}
     tried = np.linspace(0.0, 0.9, 181)[:, None]
     for c, points in measured.items():
-        # ms / ms(usual size) = speed (share + (1 - share) coverage scale) / (share + (1 - share) coverage); speed: of the machine at that hour
-        coverage, scale = data.coverage[[p[0] for p in points]], np.array([p[1] for p in points])
+        # ms / ms(usual size) = speed (share + (1 - share) lit scale) / (share + (1 - share) lit); speed: of the machine at that hour
+        lit, scale = sky + (1.0 - sky) * data.coverage[[p[0] for p in points]], np.array([p[1] for p in points])
         ratio = np.array([p[2] / data.ms[p[0], c] for p in points])
-        shape = (tried + (1.0 - tried) * coverage * scale) / (tried + (1.0 - tried) * coverage)
+        shape = (tried + (1.0 - tried) * lit * scale) / (tried + (1.0 - tried) * lit)
         speed = (shape @ ratio / (shape ** 2).sum(axis=1))[:, None]
         shares[c] = float(tried[np.argmin(((speed * shape - ratio) ** 2).sum(axis=1)), 0])
     usual = np.nanmedian(data.ms, axis=0)
@@ -137,8 +142,10 @@ def draws_geometry(technique, settings):
 
 
 def predict_ms(data, costs, rows):
-    triangles = np.array([data.views[v]["triangles"] * 1e-6 for v in rows])
-    return cost_columns(data.mega["pixels"] * data.coverage[rows], triangles, data.mega["texels"], data.probes[rows, FACING]) @ costs.T
+    triangles = np.array([data.views[v]["triangles"] * 1e-6 for v in rows])[:, None]
+    fixed, byPixel, byTriangle, byTexel, byFacing, sky = costs.T
+    lit = data.mega["pixels"] * (sky + (1.0 - sky) * data.coverage[rows][:, None])
+    return fixed + (byPixel + byFacing * data.probes[rows, FACING][:, None]) * lit + byTriangle * triangles + byTexel * data.mega["texels"]
 
 
 # ------------------------------------------------------------------------------------------ error

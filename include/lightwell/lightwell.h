@@ -300,9 +300,10 @@ typedef struct LWRsm {
     LWImage flux;      /**< reflected flux of the texel, W, 0 .. 1e30: texels outside count as rejected and
                             carry nothing, as do texels whose area the camera makes infinite */
     LWCamera camera;   /**< orthographic for a directional light, perspective otherwise */
-    uint64_t version;  /**< 0: read in every frame. Else raise it when pixels change; a worldOrigin that moved counts as that.
-                            A map that has the version, camera and memory of the one at its place in the technique's last frame
-                            (that light's map of that number) is not read again: what was made of it then stays */
+    uint64_t version;  /**< 0: read in every frame. Else a number that stands for these pixels alone: another one when they change,
+                            and never the same for another map that may come to lie at the same address (one counter for all maps
+                            does). A map that has version, camera and memory of the one at its place in the technique's last frame
+                            is not read again, unless worldOrigin moved or a map came, went or changed its size */
 } LWRsm;
 
 /** A light, and the surfaces it lights as RSMs: none (analytic only), one, six faces of a point light,
@@ -993,7 +994,7 @@ typedef struct LWPlan {
     char parameters[256];        /**< for lwCreateTechniqueFromText */
     char reason[256];            /**< one sentence */
     LWPlanProbes probes;
-    float coverage;              /**< share of the view's pixels that show a surface, measured with the probes: what takes time */
+    float coverage;              /**< share of the view's pixels that show a surface, measured with the probes: sky takes little time */
 } LWPlan;
 
 /** Picks technique and parameters for what this frame brings and what may be spent: what is possible by the inputs given; how long it

@@ -54,6 +54,11 @@ void keepFigures(const FrameSample& sample, RenderReport& report) {
     figures.choices = sample.choices;
 }
 
+void refuseVersions(const Parameters& parameters) {
+    if (parameters.tellsRsmVersions())
+        throw UsageError("--set rsm_versions: expected where maps stay from frame to frame, in render, chart, stability and probes; this is one frame");
+}
+
 }  // namespace
 
 void requireFrameTechnique(const Parameters& parameters) {
@@ -64,6 +69,7 @@ void requireFrameTechnique(const Parameters& parameters) {
         throw UsageError(fmt::format("technique {}: expected one that needs no static VPLs, which stand for places of a scene; `lightwell render` "
                                      "has one",
                                      parameters.technique()));
+    refuseVersions(parameters);
 }
 
 GiLight renderGi(const HostFrame& host, const Parameters& parameters, const DeviceOptions& options, int frames, RenderReport& report,

@@ -1,3 +1,4 @@
+// Over 300 lines: values as text, of the library's tables and of the command line's own keys, belong side by side.
 #include "parameters.h"
 
 #include <fmt/format.h>

@@ -70,7 +70,7 @@ ProbeTimes lightProbes(const lightwell::Device& device, const Parameters& parame
     technique.prewarm(view);
     const LWSourceView source{view.get(), &inputs.lwGBuffer()};
     LWFrame frame = lightwell::make<LWFrame>();
-    frame.lights = inputs.lights().data();
+    frame.lights = (parameters.tellsRsmVersions() ? inputs.versionedLights() : inputs.lights()).data();
     frame.lightCount = std::uint32_t(inputs.lights().size());
     frame.sourceViews = &source;
     frame.sourceViewCount = 1;

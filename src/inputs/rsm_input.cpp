@@ -70,7 +70,8 @@ struct RsmInput::Impl {
     Buffer texelMemory, counters;
     std::array<Buffer, 3> staging;  // uploads of position or depth, normal, flux: one map after the other
     std::vector<DeviceImage> opened;
-    std::set<std::pair<const char*, const char*>> choices;  // of all maps, each once; literals
+    using Choices = std::set<std::pair<const char*, const char*>>;  // literals
+    std::vector<Choices> choices;  // of each map, when it was read
     std::vector<ReadRsm> read;                              // of each map, what its texels were made of; none: half made
     WorldOrigin origin{};                                   // what they are relative to: LWFrame::worldOrigin
     std::uint64_t failures = 0;                             // that the device had seen when they were made
@@ -103,12 +104,11 @@ struct RsmInput::Impl {
     }
 
     // The host's maps into the texels.
-    void unpackRsm(Executor& executor, const CheckedRsm& rsm, const Planes& all) {
+    void unpackRsm(Executor& executor, const CheckedRsm& rsm, const Planes& all, Choices& made) {
         const auto open = [&](const CheckedImage& image, const ImageRole& role, std::size_t slot,
                               const char* what) -> DeviceImage& {
             opened.push_back(openForReading(executor, image, role, "rsm_input.upload", staging[slot]));
-            choices.emplace(
-                what, opened.back().planes ? "planar, copied among the texels" : opened.back().choice);
+            made.emplace(what, opened.back().planes ? "planar, copied among the texels" : opened.back().choice);
             return opened.back();
         };
         opened.reserve(opened.size() + 3);  // references stay valid
@@ -154,7 +154,7 @@ void RsmInput::import(Executor& executor, const LWFrame& frame) {
         impl_->reserve(device, rsms, total);
     }
     impl_->opened.clear();
-    if (impl_->keptCount == 0) impl_->choices.clear();
+    impl_->choices.resize(rsms.size());
     spans = std::move(newSpans);
     shapes.clear();
     for (const CheckedRsm& rsm : rsms) shapes.push_back(rsm.span);
@@ -174,7 +174,8 @@ void RsmInput::import(Executor& executor, const LWFrame& frame) {
         if (kept[i]) continue;
         executor.run("rsm_input.rows", rowsKernel, {std::uint32_t(rsms[i].span.height), 1}, rowGroup(device), rows, impl_->counters,
                      rsms[i].span);
-        impl_->unpackRsm(executor, rsms[i], texels);
+        impl_->choices[i].clear();
+        impl_->unpackRsm(executor, rsms[i], texels, impl_->choices[i]);
     }
     impl_->read = std::move(now);
 }
@@ -188,7 +189,8 @@ void RsmInput::report(Report& report) const {
         report.read(*impl_->device, "rejected_texels", impl_->counters, (first + LW_RSM_REJECTED) * sizeof(cl_uint));
         report.read(*impl_->device, "covered_texels", impl_->counters, (first + LW_RSM_COVERED) * sizeof(cl_uint));
     }
-    for (const auto& choice : impl_->choices) report.choose(choice.first, choice.second);
+    for (const Impl::Choices& ofMap : impl_->choices)
+        for (const auto& choice : ofMap) report.choose(choice.first, choice.second);
     if (impl_->keptCount)
         report.choose("rsms", impl_->keptCount < spans.size() ? "some not read again: their versions are those of the frame before"
                                                               : "not read again: their versions are those of the frame before");

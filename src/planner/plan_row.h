@@ -21,13 +21,13 @@ constexpr std::size_t kPlanProbes = 8;  // in the order of LWPlanProbes' fields
 
 // A technique with settings that were measured.
 //
-//     ms = launches * (here) + computeScale * (cost[0] - launches * (there) + (cost[1] + cost[4] * facing) * coverage * views * Mpixels
+//     ms = launches * (here) + computeScale * (cost[0] - launches * (there) + (cost[1] + cost[4] * facing) * views * lit
 //                                              + cost[2] * Mtriangles)
 //          + memoryScale * cost[3] * Mtexels
 //
 // and, in a frame whose lights or geometry moved, computeScale * maps * (fixed + perMtriangles * Mtriangles) of kPlanMaps.
 //
-// with (here) and (there) the milliseconds of a launch on this device and on the one that was measured, scales of 1 there;
+// with lit = Mpixels * (cost[5] + (1 - cost[5]) * coverage), and (here) and (there) the milliseconds of a launch on this device and on the one that was measured, scales of 1 there;
 // triangles: and surfels, texels: of all RSMs; the probes facing, of pairs that a gather has work with, and coverage, of pixels that show a
 // surface. All of `cost` are 0 or more.
 //
@@ -38,7 +38,9 @@ struct PlanRow {
     std::uint32_t needs;
     double launches;  // of kernels in a frame; 0: not known
     double maps;      // of 128 x 128 texels that it draws where lights or geometry moved, and keeps where not
-    double cost[5];   // ms, ms per million pixels with a surface, per million triangles, per million texels, per million such pixels with facing = 1
+    // ms; ms per million pixels with a surface, per million triangles, per million texels, per million such pixels with facing = 1; and what a
+    // pixel without a surface takes, as a share of what one with takes.
+    double cost[6];
     double errorMean;
     double errorSlopes[kPlanProbes];
     double errorSigma;

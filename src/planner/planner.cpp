@@ -52,7 +52,8 @@ double shareOf(float probe, double usual) {
 
 double millisecondsOf(const PlanRow& row, const Calibration& calibration, const FrameTraits& traits, const FrameFigures& probes) {
     const double facing = shareOf(probes.facing, kPlanReference.usualFacing);
-    const double lit = traits.pixels * traits.views * shareOf(probes.coverage, kPlanReference.usualCoverage);
+    const double coverage = shareOf(probes.coverage, kPlanReference.usualCoverage);
+    const double lit = traits.pixels * traits.views * (row.cost[5] + (1.0 - row.cost[5]) * coverage);
     const double million = 1e-6;
     // What a launch takes is part of what was measured as fixed, but grows by its own rate.
     const double launching = std::min(row.launches * kPlanReference.launchMicroseconds * 1e-3, row.cost[0]);

@@ -1,6 +1,7 @@
 // Technique auto: which candidate runs in a frame, and its world part.
 #include <algorithm>
 #include <iterator>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -75,6 +76,9 @@ void Auto::learn() {
     if (const FrameFigures* probes = probing_.take()) {
         if (!hasProbes_) steering_.forgetChoice();  // what runs was chosen without them
         probes_ = *probes;
+        // How much of the view is sky changes faster than probes come. Steering learns what frames take as it is; told as well, now and then, it
+        // would correct for the same thing twice.
+        probes_.coverage = std::numeric_limits<float>::quiet_NaN();
         hasProbes_ = true;
     }
 }

@@ -142,7 +142,7 @@ TEST_CASE("predicted times follow the frame's sizes and the device's rates", "[p
         INFO(row.technique << " " << row.settings);
         const double whole = traits.pixels * 1e-6, texels = traits.rsmTexels * 1e-6, triangles = traits.triangles * 1e-6;
         // Not told how many pixels show a surface, nor how many pairs face each other: as many as usual.
-        const double pixels = whole * kPlanReference.usualCoverage;
+        const double pixels = whole * (row.cost[5] + (1.0 - row.cost[5]) * kPlanReference.usualCoverage);
         const double perPixel = row.cost[1] + row.cost[4] * kPlanReference.usualFacing;
         CHECK(each.milliseconds == Approx(row.cost[0] + perPixel * pixels + row.cost[2] * triangles + row.cost[3] * texels));
         LWPlanProbes all = kNoProbes;
@@ -150,14 +150,15 @@ TEST_CASE("predicted times follow the frame's sizes and the device's rates", "[p
         const auto faced = predict({}, traits, all);
         CHECK(find(faced, each.candidate)->milliseconds - each.milliseconds ==
               Approx(row.cost[4] * (1.0 - kPlanReference.usualFacing) * pixels).margin(1e-9));
-        // Of a picture that is half sky half as much, of one that is all sky what is fixed.
+        // Sky takes its share of what a surface takes, no more than that.
         FrameFigures half = all, sky = all;
         half.coverage = 0.5f;
         sky.coverage = 0.0f;
         CHECK(find(predict({}, traits, half), each.candidate)->milliseconds - find(predict({}, traits, sky), each.candidate)->milliseconds ==
-              Approx(0.5 * (row.cost[1] + row.cost[4]) * whole).margin(1e-9));
+              Approx(0.5 * (1.0 - row.cost[5]) * (row.cost[1] + row.cost[4]) * whole).margin(1e-9));
         CHECK(find(predict({}, traits, sky), each.candidate)->milliseconds ==
-              Approx(row.cost[0] + row.cost[2] * triangles + row.cost[3] * texels));
+              Approx(row.cost[0] + row.cost[5] * (row.cost[1] + row.cost[4]) * whole + row.cost[2] * triangles + row.cost[3] * texels));
+        CHECK(row.cost[5] <= 1.0);
         hasMaps = hasMaps || row.maps > 0.0;
         CHECK(find(predict({}, moved, kNoProbes), each.candidate)->milliseconds - each.milliseconds ==
               Approx(row.maps * (kPlanMaps.fixed + kPlanMaps.perMtriangles * triangles)).margin(1e-9));
