@@ -2,7 +2,7 @@
 """Writes the measured part of docs/thrift.md from what `lightwell chart` measured: techniques by a fixed setting, and the same that take no
 more than a frame needs.
 
-    docs/figures/thrift.py [--results build/thrift] [--runs 3] [--lightwell build/release/bin/lightwell] [chart options ...]
+    docs/figures/thrift.py [--results build/thrift] [--runs 4] [--lightwell build/release/bin/lightwell] [chart options ...]
 
 Charts first where --results holds none of the runs' results.json, with the options that follow (such as --kept-truths); the pairs' points
 lie next to each other in time. Of each point the quickest run counts: what else a machine does, or its neighbours on the same memory, only
@@ -41,7 +41,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--lightwell", default=str(ROOT / "build/release/bin/lightwell"))
     parser.add_argument("--results", default=str(ROOT / "build/thrift"))
-    parser.add_argument("--runs", type=int, default=3)
+    parser.add_argument("--runs", type=int, default=4)
     options, chart_options = parser.parse_known_args()
     runs = [run_of(pathlib.Path(options.results) / str(run), options.lightwell, chart_options) for run in range(options.runs)]
     page = ROOT / "docs/thrift.md"
