@@ -38,7 +38,7 @@ def draw(data, needs, kept):
             wide = math.log(high / low)
             if wide > 0.12:
                 text = "nothing" if c is None else label_of(names[c], 10 ** data.log[:, c].mean())
-                axes.text(math.sqrt(low * high), 0.5, text, ha="center", va="center", fontsize=6.2 if wide > 0.3 else 5.2, rotation=0 if wide > 0.3 else 90)
+                axes.text(math.sqrt(low * high), 0.5, text, ha="center", va="center", fontsize=6.2 if wide > 0.5 else 5.2, rotation=0 if wide > 0.5 else 90)
             start = i
         axes.set_yticks([]), axes.set_ylim(0, 1)
         axes.set_title(title, fontsize=8.5, loc="left", pad=2)
