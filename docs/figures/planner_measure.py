@@ -7,11 +7,11 @@ import json
 import pathlib
 import re
 import statistics
-import subprocess
 
 import planner_scenes
 from planner_candidates import CANDIDATES, barred, is_drawn, parted, variant
 from planner_model import COVERAGE, DATA, PROBES
+from program import caller
 
 SIZE, BLOCK = (1280, 720), 10
 SCENES = ["cornell", "basic", "rooms", "cornell_original", "sponza_crytek", "sponza_dabrovic", "sibenik", "living_room", "wooden_staircase",
@@ -30,15 +30,11 @@ RIVALS = [f"rival,bounces=2,spp={spp},resolution={resolution}" for spp in (1, 2,
 
 
 def measure(program, work):
-    def lightwell(*arguments, capture=True):
-        result = subprocess.run([program, *map(str, arguments)], capture_output=capture, text=True)
-        if result.returncode:
-            raise SystemExit(f"lightwell {arguments[0]} failed: {(result.stderr or '').strip()}")
-        return result.stdout
+    lightwell = caller(program)
 
     def chart(folder, techniques, size, frames, *more):
         lightwell("chart", "--out", work / folder, "--size", f"{size[0]}x{size[1]}", "--judge-one-of", BLOCK, "--picture-noise", 0, "--no-report",
-                  "--frames", frames, "--techniques", *techniques, *more, capture=False)
+                  "--frames", frames, "--techniques", *techniques, *more, shown=True)
 
     all_of = list(map(variant, CANDIDATES))
     truth = ["--noise", "3e-3", "--truth-seconds", 120]
@@ -64,7 +60,7 @@ def measure(program, work):
         {"technique": t, "rsm_size": n, "ms": json.loads(lightwell("render", "cornell", "--technique", t, "--set", "resolution=half", "--rsm-size", n,
                                                                    "--size", "1280x720", "--frames", 11, "--json"))["wall_ms"]}
         for t in ("rsm", "ssvp") for n in RSM_SIZES]))
-    (work / "maps.json").write_text(json.dumps(maps(program)))
+    (work / "maps.json").write_text(json.dumps(maps(lightwell)))
     (work / "launches.json").write_text(json.dumps({c: launches(lightwell, c) for c in CANDIDATES}))
     (work / "rates.json").write_text(json.dumps([json.loads(lightwell("devices", "--probe", "--json"))[0] for _ in range(4)]))
 
@@ -75,22 +71,20 @@ def probe(lightwell, view):
     return {"scene": pathlib.Path(view["scene"]).stem, "camera": view["camera"], "probes": named, "triangles": plan["triangles"]}
 
 
-def maps(program):
+def maps(lightwell):
     """Milliseconds that a first frame's maps take, of 128 x 128 texels each: the least of three."""
-    def lightwell(*arguments):
-        return json.loads(subprocess.run([program, *map(str, arguments), "--json"], capture_output=True, text=True, check=True).stdout)
-
     def once(scene):
-        frame = lightwell("render", scene, "--technique", "ssvp", "--set", f"clusters={MAPS}", "bounces=1", "--size", "320x180", "--frames", 1, "--warmup", 0)
+        frame = json.loads(lightwell("render", scene, "--technique", "ssvp", "--set", f"clusters={MAPS}", "bounces=1", "--size", "320x180", "--frames", 1,
+                                     "--warmup", 0, "--json"))
         return sum(p["ms"] for p in frame["passes"] if p["name"].startswith("paraboloid_map."))
 
-    return [{"scene": scene, "triangles": lightwell("plan", scene, "--budget-ms", 33)["triangles"], "maps": MAPS,
+    return [{"scene": scene, "triangles": json.loads(lightwell("plan", scene, "--budget-ms", 33, "--json"))["triangles"], "maps": MAPS,
              "ms": rounded(min(once(scene) for _ in range(3)))} for scene in MAPPED]
 
 
 def put_maps(program):
     data = json.loads(DATA.read_text())
-    data["maps"] = maps(program)
+    data["maps"] = maps(caller(program))
     DATA.write_text(compact(data), encoding="utf-8")
 
 

@@ -35,7 +35,7 @@ def write(data, kept, heldOut, ridges, sigma, model, costs):
     found = outcomes(data, ms, log, everything, kept)
     draw_predicted(data, kept, ms, log)
     planner_choosing.draw(data, needs, kept)
-    write_between(ROOT / "docs/planner.md", BEGIN, END, fit_block(data, kept, ms, log, found, ridges, sigma))
+    write_between(ROOT / "docs/planner.md", BEGIN, END, fit_block(data, kept, ms, log, found, ridges, sigma, costs))
     write_between(ROOT / "docs/choosing.md", BEGIN, END, planner_choosing.block(data, needs, kept, found))
     write_between(ROOT / "docs/choosing.md", "<!-- begin: thrift, written by docs/figures/planner.py -->", "<!-- end: thrift -->", planner_choosing.thrift_block(data))
     write_between(ROOT / "docs/techniques/ssvp_visibility.md", "<!-- begin: strict, written by docs/figures/planner.py -->", "<!-- end: strict -->",
@@ -82,7 +82,7 @@ def late_share(data, picks):
     return f"{100 * np.mean(late):.0f} %"
 
 
-def fit_block(data, kept, ms, log, found, ridges, sigma):
+def fit_block(data, kept, ms, log, found, ridges, sigma, costs):
     raw = data.raw
     off = np.abs(ms[:, kept] / data.ms[:, kept] - 1.0)
     byScene = log[:, kept] - data.log[:, kept]
@@ -100,7 +100,7 @@ def fit_block(data, kept, ms, log, found, ridges, sigma):
              "![Predicted against measured, scenes left out](images/planner_predicted.png)", "",
              f"**Time**: off by {100 * np.median(off):.1f} % at the median, {100 * np.quantile(off, 0.9):.0f} % at the ninth decile (wanted: 15 % at the median). "
              f"**Error**: within a factor of two in {100 * twice:.0f} % of all predictions (the confidences say {100 * said:.0f} %). Most of what is off is alike for all "
-             "candidates of a view, and does not change what is chosen.", "",
+             f"candidates of a view, and does not change what is chosen. {sky_text(data, kept, costs)}", "",
              "**Choice**: the error of what is chosen over the error of the best of all measured configurations that fit the budget in truth "
              "(where none fits, of the quickest).", "",
              "| policy | median | 90 % | worst | over the budget by a tenth |", "| --- | ---: | ---: | ---: | ---: |"]
@@ -121,6 +121,11 @@ def fit_block(data, kept, ms, log, found, ridges, sigma):
         if ratio > 1.6:
             lines.append(f"| {view_name(data.views[v])} | {budget} ms | `{short(names[c])}` | {data.error[v, c]:.3g} | `{short(names[best])}` | {data.error[v, best]:.3g} | {ratio:.3g} |")
     return lines
+
+
+def sky_text(data, kept, costs):
+    shares = {data.candidates[c][0]: costs[c, 5] for c in kept}
+    return f"In the fit to all, a pixel of sky takes of what one with a surface takes: {', '.join(f'{share:g} of `{t}`' for t, share in sorted(shares.items()))}."
 
 
 def draw_predicted(data, kept, ms, log):

@@ -26,11 +26,11 @@ def read_options(description, scenes, spp, size="1280x720", parts=(), default=No
 
 
 def caller(program):
-    """call(*arguments): what the program prints; its own message ends the script when it fails."""
-    def call(*arguments):
-        result = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True)
+    """call(*arguments): what the program prints; its own message ends the script when it fails. shown=True: it prints for itself, as of what takes hours."""
+    def call(*arguments, shown=False):
+        result = subprocess.run([program, *map(str, arguments)], capture_output=not shown, text=True)
         if result.returncode:
-            sys.exit(result.stderr.strip() or f"lightwell {arguments[0]} failed")
+            sys.exit((result.stderr or "").strip() or f"lightwell {arguments[0]} failed")
         return result.stdout
     return call
 
