@@ -72,7 +72,9 @@ ssvp vpls=1024 clusters=64 bounces=4
 ssvp vpls=1024 clusters=64 visibility=strict bounces=4
 ssvp vpls=512 sampling=view clusters=16 visibility=strict resolution=quarter
 ssvp vpls=512 sampling=view clusters=32 visibility=strict resolution=quarter
+ssvp vpls=512 sampling=view clusters=16 visibility=strict bounces=4 resolution=quarter
 ssvp vpls=512 sampling=view clusters=16 visibility=strict bounces=4 shadowed_bounces=3 resolution=quarter
+ssvp vpls=512 sampling=view clusters=32 visibility=strict bounces=4 resolution=quarter
 ssvp vpls=1024 sampling=view clusters=32 visibility=strict resolution=quarter
 ssvp vpls=1024 sampling=view clusters=32 visibility=strict bounces=4 resolution=quarter
 ssvp vpls=1024 sampling=view clusters=64 visibility=strict resolution=quarter

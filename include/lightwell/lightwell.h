@@ -502,7 +502,7 @@ typedef enum LWVisibility {
     LW_VISIBILITY_HARD = 1, /**< the nearest texel of the cluster's map decides */
     LW_VISIBILITY_SOFT = 2, /**< the share of its four nearest texels (percentage-closer) */
     LW_VISIBILITY_VOXEL = 3, /**< instead of maps, the voxels that the occluders occupy, between each VPL and the pixel */
-    LW_VISIBILITY_STRICT = 4 /**< as HARD; light past the rims of what stands before it counts as far as the rest of a place's light bears it out */
+    LW_VISIBILITY_STRICT = 4 /**< as HARD; light past the rims of what stands before it, and of bounces without shadows, counts as far as the rest of a place's light bears it out */
 } LWVisibility;
 
 typedef enum LWDirections {

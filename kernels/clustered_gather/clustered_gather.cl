@@ -24,11 +24,26 @@ LW_FN lw_current look_ahead(uint bits, __global const float* vpls, lw_maps maps,
     return current;
 }
 
-// Light as far as it is seen, and what of that is doubtful, a sum over the channels.
+// Light as far as it is seen; what of that is doubtful and, once there is unshadowed light, how much came before, sums over the channels.
 typedef struct {
     rgb light;
-    real doubt;
+    real doubt, shadowed;
+    int isUnshadowed;  // some of it
 } lw_seen_light;
+
+LW_FN lw_seen_light no_light(void) {
+    const lw_seen_light none = {{(real)0.0f, (real)0.0f, (real)0.0f}, (real)0.0f, (real)0.0f, 0};
+    return none;
+}
+
+LW_FN real channel_sum(rgb light) { return light.r + light.g + light.b; }
+
+// VPLs that nothing shadows come after all others.
+LW_FN void note_unshadowed(lw_seen_light* e, const lw_current* current) {
+    if (LW_VISIBILITY != 4 || current->cluster != LW_UNSHADOWED || e->isUnshadowed) return;
+    e->shadowed = channel_sum(e->light);
+    e->isUnshadowed = 1;
+}
 
 LW_FN void add_two_seen(lw_seen_light* e, const lw_surface s, const lw_surface away, __global const float* first,
                         __global const float* second, lw_maps maps, lw_current* current) {
@@ -36,7 +51,9 @@ LW_FN void add_two_seen(lw_seen_light* e, const lw_surface s, const lw_surface a
     real w[2];
     weigh_two_vpls(w, away, vpl);
     LW_UNROLL for (int u = 0; u < 2; ++u) {
-        add_light(&e->light, w[u] * visibility_of(current, maps, vpl[u], s), vpl[u]);
+        const real seen = visibility_of(current, maps, vpl[u], s);
+        note_unshadowed(e, current);
+        add_light(&e->light, w[u] * seen, vpl[u]);
         if (current->isDoubtful) e->doubt = fma_(w[u] * current->doubt, vpl[u][8] + vpl[u][9] + vpl[u][10], e->doubt);
     }
 }
@@ -45,7 +62,7 @@ LW_FN void add_two_seen(lw_seen_light* e, const lw_surface s, const lw_surface a
 LW_FN lw_seen_light gather_subset(const lw_surface s, __global const float* vpls, lw_subset_order order, int subset,
                         __global const uint* masks, lw_vpl_tiles tiles, int tile, lw_maps maps,
                         uint shadowed) {
-    lw_seen_light e = {{(real)0.0f, (real)0.0f, (real)0.0f}, (real)0.0f};
+    lw_seen_light e = no_light();
     const lw_surface away = turned_away(s);
     lw_current current = no_cluster();
     vpls += 12 * subset * order.capacity;
@@ -65,11 +82,20 @@ LW_FN lw_seen_light gather_subset(const lw_surface s, __global const float* vpls
     return e;
 }
 
+// Of unshadowed light what the rest bears out. What nobody looked after is mostly there where shadowed light is, and that is seldom a small part.
+LW_FN void bear_unshadowed_out(lw_seen_light* e) {
+    if (!e->isUnshadowed) return;
+    const real all = channel_sum(e->light), share = borne_out(all, all - e->shadowed, LW_UNSHADOWED_BORNE);
+    e->light.r *= share;
+    e->light.g *= share;
+    e->light.b *= share;
+}
+
 // What of the finished light r, g, b is doubtful, as its sum over the channels; unless that is to be kept, what is not borne out goes.
 LW_FN real settle_doubt(real* r, real* g, real* b, const lw_seen_light sum, int isKept) {
-    const real all = sum.light.r + sum.light.g + sum.light.b, finished = *r + *g + *b;
+    const real all = channel_sum(sum.light), finished = *r + *g + *b;
     if (isKept) return select_((real)0.0f, finished * fmin(sum.doubt / all, (real)1.0f), and_(all > 0.0f, all < INFINITY));
-    const real share = borne_out(all, sum.doubt);
+    const real share = borne_out(all, sum.doubt, LW_DOUBT_BORNE);
     *r *= share;
     *g *= share;
     *b *= share;
@@ -79,7 +105,8 @@ LW_FN real settle_doubt(real* r, real* g, real* b, const lw_seen_light sum, int 
 // One work-item = LW_WIDTH * LW_INTERLEAVE adjacent pixels of one row, of a width x height image.
 // vpls: float[12] each as clustered_gather_order and _deal wrote them. frames1 ... sight: as lw_maps. masks, irradiance, counts: as in interleaved_gather_gather.
 // Of strict look-ups: withDoubt: a fourth plane of `irradiance` takes what is doubtful, for a filter that knows more of a place's light than
-// one pixel's subset tells; otherwise each pixel decides by its own.
+// one pixel's subset tells; otherwise each pixel decides by its own. Of what
+// nobody looked after each pixel decides at once.
 __kernel void clustered_gather_gather(__global const float* position, int4 positionLayout,
                                       __global const float* normal, int4 normalLayout, int width, int height,
                                       __global const float* vpls, lw_subset_order order,
@@ -102,10 +129,11 @@ __kernel void clustered_gather_gather(__global const float* position, int4 posit
     lanei rejectedHere = (lanei)0, saturatedHere = (lanei)0;
     for (int j = 0; j < LW_INTERLEAVE; ++j) {  // not unrolled: seconds of compilation
         const lw_surface s = make_surface(p[0][j], p[1][j], p[2][j], n[0][j], n[1][j], n[2][j]);
-        lw_seen_light sum = {{(real)0.0f, (real)0.0f, (real)0.0f}, (real)0.0f};
+        lw_seen_light sum = no_light();
         if (any_(s.valid)) {
             const int subset = (y & (LW_INTERLEAVE - 1)) * LW_INTERLEAVE + j;
             sum = gather_subset(s, vpls, order, subset, masks, tiles, tile, maps, shadowed);
+            if (LW_VISIBILITY == 4) bear_unshadowed_out(&sum);
         }
         const mask saturated = finish_irradiance(sum.light, s.valid, &e[0][j], &e[1][j], &e[2][j]);
         if (LW_VISIBILITY == 4) e[3][j] = settle_doubt(e[0] + j, e[1] + j, e[2] + j, sum, withDoubt);

@@ -21,7 +21,7 @@ __kernel void clustered_gather_harmonics(__global const float* position, int4 po
     lw_bands sum = no_bands();
     if (any_(s.valid)) {
         lw_current current = no_cluster();
-        real doubt = (real)0.0f;  // of what a surface that faces each VPL gets, over the channels
+        real doubt = (real)0.0f, unshadowed = (real)0.0f;  // of what a surface that faces each VPL gets, over the channels
         for (int k = 0; k < order.capacity; k += 2) {
             __global const float* const vpl[2] = {vpls + 12 * k, vpls + 12 * k + 12};
             real facing[2], from[2][3];
@@ -29,10 +29,14 @@ __kernel void clustered_gather_harmonics(__global const float* position, int4 po
             LW_UNROLL for (int u = 0; u < 2; ++u) {
                 const real seen = visibility_of(&current, maps, vpl[u], s);
                 add_bands(&sum, facing[u], from[u], seen, vpl[u]);
+                if (LW_VISIBILITY == 4 && current.cluster == LW_UNSHADOWED) unshadowed = fma_(facing[u], vpl[u][8] + vpl[u][9] + vpl[u][10], unshadowed);
                 if (current.isDoubtful) doubt = fma_(facing[u] * current.doubt, vpl[u][8] + vpl[u][9] + vpl[u][10], doubt);
             }
         }
-        if (LW_VISIBILITY == 4) scale_bands(&sum, borne_out(sum.c[0][0] + sum.c[0][1] + sum.c[0][2], doubt));
+        if (LW_VISIBILITY == 4) {
+            scale_bands(&sum, borne_out(sum.c[0][0] + sum.c[0][1] + sum.c[0][2], unshadowed, LW_UNSHADOWED_BORNE));
+            scale_bands(&sum, borne_out(sum.c[0][0] + sum.c[0][1] + sum.c[0][2], doubt, LW_DOUBT_BORNE));
+        }
     }
     const mask saturated = store_bands(finish_bands(sum), s.valid, harmonics, harmonicsLayout, band, x, y);
     const mask counted = and_(saturated, lanei_iota() + x < width);

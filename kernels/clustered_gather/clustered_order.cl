@@ -45,7 +45,7 @@ LW_FN __global lw_vpl* slots_of(__global lw_vpl* vpls, lw_subset_order order, in
 }
 
 LW_FN void clear_rest(__global lw_vpl* out, int used, int count) {
-    for (; used < count; ++used) out[used] = of_cluster(no_vpl(), -1);
+    for (; used < count; ++used) out[used] = of_cluster(no_vpl(), LW_SEEN_EVERYWHERE);
 }
 
 // One work-item = one subset of the n x n: fills its slots from a list by index, sorted as above. groups: a power of
@@ -66,21 +66,21 @@ __kernel void clustered_gather_order(__global const lw_vpl* list, __global const
     clear_rest(out, used, slots.y);
 }
 
-// The same from a list whose light nothing shadows, dealt out as `dealt` says: flux.w is -1.
+// The same from a list whose light nothing shadows, dealt out as `dealt` says. cluster: what its flux.w is, LW_SEEN_EVERYWHERE or LW_UNSHADOWED.
 __kernel void clustered_gather_deal(__global const lw_vpl* list, lw_subset_order dealt, lw_subset_order order,
-                                    int2 slots, __global lw_vpl* vpls) {
+                                    int2 slots, int cluster, __global lw_vpl* vpls) {
     const int subset = (int)get_global_id(0);
     if (subset >= order.subsets) return;
     __global lw_vpl* out = slots_of(vpls, order, slots, subset);
     int used = 0;
     for (int place = 0; place < dealt.capacity; ++place) {
         const int k = lw_subset_index(dealt, subset * dealt.capacity + place);
-        if (k >= 0) out[used++] = of_cluster(list[k], -1);
+        if (k >= 0) out[used++] = of_cluster(list[k], cluster);
     }
     clear_rest(out, used, slots.y);
 }
 
-// For debugging: one work-item = one slot of the sorted list: its cluster, -1 for none.
+// For debugging: one work-item = one slot of the sorted list: its cluster, or what stands for none.
 __kernel void clustered_gather_clusters(__global const lw_vpl* vpls, int count, __global float* planes) {
     const int i = lw_list_index();
     if (i < count) planes[i] = vpls[i].flux.w;

@@ -5,6 +5,7 @@
 #ifndef LW_VISIBILITY
 #define LW_VISIBILITY 1  // 0: none, 1: hard, 2: soft (percentage-closer), 3: through voxels, 4: strict
 #endif
+#include "shared/cluster_types.h"
 #include "shared/paraboloid.h"
 #include "shared/surface.h"
 #include "voxel_sight.h"
@@ -29,7 +30,7 @@ typedef struct {
 #define LW_MAPS_OF_ARGUMENTS \
     {{frames1, frames2, frames3, frames4}, {records1, records2, records3, records4}, lists, sights, eyes, sight}
 
-// 1 where the cluster's map sees the surface, or the share of it that does; of voxels, of its light that arrives. Cluster -1 is seen everywhere.
+// 1 where the cluster's map sees the surface, or the share of it that does; of voxels, of its light that arrives. What stands for no cluster is seen everywhere.
 // doubt: 1 where that is doubtful, which only strict look-ups tell, else 0.
 LW_FN real cluster_visibility(lw_maps maps, int cluster, const lw_surface s, real* doubt) {
     *doubt = (real)0.0f;

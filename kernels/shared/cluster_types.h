@@ -21,4 +21,9 @@ LW_SIZE_CHECK(lw_cluster, 80);
 // neighbours share one anyway.
 #define LW_MOST_SORTED 64
 
+// What stands for the number of its cluster where a gathered VPL has none: seen everywhere, beyond doubt; the same, as nobody looked: strict
+// gathers let it count as far as shadowed light bears it out.
+#define LW_SEEN_EVERYWHERE -1
+#define LW_UNSHADOWED -2
+
 #endif

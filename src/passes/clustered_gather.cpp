@@ -102,7 +102,8 @@ void ClusteredGather::recordOrder(Executor& executor, const std::vector<Gathered
         const lw_subset_order dealt = subsetOrder(list.vpls.count, subsets);
         slots.s[1] = dealt.capacity;
         if (!list.assignment) {
-            executor.run("clustered_gather.order", deal_, {subsets, 1}, {1, 1}, list.vpls.vpls, dealt, order_, slots, vpls_);
+            executor.run("clustered_gather.order", deal_, {subsets, 1}, {1, 1}, list.vpls.vpls, dealt, order_, slots,
+                         cl_int(list.isUnshadowed ? LW_UNSHADOWED : LW_SEEN_EVERYWHERE), vpls_);
         } else {
             if (sortedLists == kMostClusteredLists) fail(LW_ERROR_INTERNAL, "clustered_gather: more lists with clusters than maps");
             Buffer& sorted = sorted_[sortedLists++];

@@ -23,11 +23,13 @@ struct VplList {
     std::uint32_t count;
 };
 
-// The VPLs of a bounce; without an assignment (an int each: cluster, or -1: left out) nothing shadows their light.
+// The VPLs of a bounce; without an assignment (an int each: cluster, or -1: left out) nothing shadows their light. isUnshadowed: that is for
+// thrift, so that strict gathers let it count as far as shadowed light bears it out; otherwise it is beyond doubt.
 struct GatheredList {
     VplList vpls;
     const Buffer* assignment = nullptr;
     std::uint32_t clusterCount = 0;
+    bool isUnshadowed = false;
 };
 
 // Bounces whose VPLs have clusters.
@@ -64,7 +66,8 @@ public:
     void recordOrder(Executor& executor, const std::vector<GatheredList>& lists);
     // Pass "clustered_gather.gather"; masks (of `vpls`, by InterleavedGather::recordCull), irradiance and counts as in
     // InterleavedGather::recordGather. Of strict look-ups: a fourth plane of irradiance, if there is one, takes what is doubtful (the sum
-    // over its channels), for a filter made with `doubtful`; otherwise what is not borne out is gone already.
+    // over its channels), for a filter made with `doubtful`; otherwise what is not borne out is gone already. Unshadowed light that is
+    // not borne out by its pixel's subset of VPLs is gone either way.
     void recordGather(Executor& executor, const Planes& position, const Planes& normal, const Buffer& masks,
                       const lw_vpl_tiles& tiles, const ClusterMaps& maps, const Planes& irradiance, const Buffer& counts);
 
@@ -76,7 +79,7 @@ public:
     Planes clustersShape() const;
     void recordClusters(Executor& executor, const Planes& planes);
 
-    const Buffer& vpls() const { return vpls_; }       // lw_vpl by slot; flux.w: cluster or -1
+    const Buffer& vpls() const { return vpls_; }       // lw_vpl by slot; flux.w: cluster, or LW_SEEN_EVERYWHERE, LW_UNSHADOWED
     lw_subset_order order() const { return order_; }  // its subsets and capacity
     std::uint64_t bytes() const;
 

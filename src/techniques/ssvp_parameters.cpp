@@ -48,7 +48,7 @@ std::vector<LWParameter> makeTable() {
         allowing(uint("map_size", "texels a side of a cluster's map: finer occluders, memory and drawing time with its square",
                       offsetof(LWSsvpDesc, mapSize), 64, 512, 128),
                  kMapSizeValues),
-        swept(oneOf("visibility", "of VPLs: none; the map's nearest texel, its four nearest, or strictly: the nearest, with light past rims as far as the rest bears it out; past voxels instead of maps",
+        swept(oneOf("visibility", "of VPLs: none; the map's nearest texel, its four nearest, or strictly: the nearest, with light past rims and of bounces without shadows as far as the rest bears it out; past voxels instead of maps",
                     offsetof(LWSsvpDesc, visibility), kVisibilityNames, 4, LW_VISIBILITY_HARD),
               kVisibilitySweep),
         swept(uint("bounces", "indirect bounces; those after the first with VPLs drawn from the maps of the bounce before", offsetof(LWSsvpDesc, bounces), 1, 4, 2),

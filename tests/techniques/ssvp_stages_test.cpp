@@ -140,19 +140,46 @@ TEST_CASE("light of shadowed bounces does not leave a closed room", "[ssvp][stag
     outside.structSize = sizeof outside;
     outside.position = position.image();
     outside.normal = normal.image();
-    double leak[5] = {};
-    for (std::uint32_t shadowed = 1; shadowed <= 4; ++shadowed) {
-        TestTechnique technique(device, descOf(8, 4, shadowed));
-        TestView view(device, kWidth, kHeight);
-        technique.update(Frame({floor.light}, room.describe()).frame);
-        for (const float e : technique.render(view, outside)) leak[shadowed] += double(e);
-    }
-    CAPTURE(leak[1], leak[2], leak[3], leak[4]);
+    double leak[5] = {}, leakOfStrict[5] = {};
+    for (std::uint32_t shadowed = 1; shadowed <= 4; ++shadowed)
+        for (const LWVisibility visibility : {LW_VISIBILITY_HARD, LW_VISIBILITY_STRICT}) {
+            LWSsvpDesc desc = descOf(8, 4, shadowed);
+            desc.visibility = visibility;
+            TestTechnique technique(device, desc);
+            TestView view(device, kWidth, kHeight);
+            technique.update(Frame({floor.light}, room.describe()).frame);
+            double& sum = (visibility == LW_VISIBILITY_STRICT ? leakOfStrict : leak)[shadowed];
+            for (const float e : technique.render(view, outside)) sum += double(e);
+        }
+    CAPTURE(leak[1], leak[2], leak[3], leak[4], leakOfStrict[1], leakOfStrict[2]);
     // The first bounce goes up from the floor and would pass the wall too; each bounce that is shadowed keeps its share in.
     CHECK(leak[2] < 0.9 * leak[1]);
     CHECK(leak[3] < 0.9 * leak[2]);
     CHECK(leak[3] > 0.0);
     CHECK(leak[4] < 1e-3 * leak[1]);
+    // Where no shadowed light gets, strict look-ups let none of the other bounces' count: a single bounce's shadows are enough.
+    for (std::uint32_t shadowed = 1; shadowed <= 4; ++shadowed) CHECK(leakOfStrict[shadowed] < 1e-3 * leak[1]);
+}
+
+TEST_CASE("inside a room strict look-ups let bounces without shadows count", "[ssvp][stages]") {
+    TestDevice device(16);
+    LitFloor floor(64, plain);
+    Walls room = Walls::room();
+    double sums[2][3] = {};
+    for (const std::uint32_t bounces : {2u, 4u})
+        for (const LWVisibility visibility : {LW_VISIBILITY_HARD, LW_VISIBILITY_STRICT}) {
+            Canvas canvas;
+            LWSsvpDesc desc = descOf(8, bounces, 2);
+            desc.visibility = visibility;
+            TestTechnique technique(device, desc);
+            TestView view(device, kWidth, kHeight);
+            technique.update(Frame({floor.light}, room.describe()).frame);
+            for (const float e : canvas.render(device, technique, view)) sums[visibility == LW_VISIBILITY_STRICT][bounces / 2] += double(e);
+        }
+    const double hard = sums[0][2] - sums[0][1], strict = sums[1][2] - sums[1][1];
+    CAPTURE(sums[0][1], sums[1][1], hard, strict);
+    CHECK(hard > 0.1 * sums[0][1]);
+    CHECK(strict > 0.9 * hard);
 }
 
 TEST_CASE("without maps their debug view is empty, and prewarming goes through", "[ssvp][stages]") {
