@@ -24,15 +24,15 @@ LW_FN lw_current look_ahead(uint bits, __global const float* vpls, lw_maps maps,
     return current;
 }
 
-// Light as far as it is seen; what of that is doubtful and, once there is unshadowed light, how much came before, sums over the channels.
+// Light as far as it is seen; once there is unshadowed light, what came before it; what is doubtful, a sum over the channels.
 typedef struct {
-    rgb light;
-    real doubt, shadowed;
+    rgb light, shadowed;
+    real doubt;
     int isUnshadowed;  // some of it
 } lw_seen_light;
 
 LW_FN lw_seen_light no_light(void) {
-    const lw_seen_light none = {{(real)0.0f, (real)0.0f, (real)0.0f}, (real)0.0f, (real)0.0f, 0};
+    const lw_seen_light none = {{(real)0.0f, (real)0.0f, (real)0.0f}, {(real)0.0f, (real)0.0f, (real)0.0f}, (real)0.0f, 0};
     return none;
 }
 
@@ -41,7 +41,7 @@ LW_FN real channel_sum(rgb light) { return light.r + light.g + light.b; }
 // VPLs that nothing shadows come after all others.
 LW_FN void note_unshadowed(lw_seen_light* e, const lw_current* current) {
     if (LW_VISIBILITY != 4 || current->cluster != LW_UNSHADOWED || e->isUnshadowed) return;
-    e->shadowed = channel_sum(e->light);
+    e->shadowed = e->light;
     e->isUnshadowed = 1;
 }
 
@@ -82,20 +82,20 @@ LW_FN lw_seen_light gather_subset(const lw_surface s, __global const float* vpls
     return e;
 }
 
-// Of unshadowed light what the rest bears out. What nobody looked after is mostly there where shadowed light is, and that is seldom a small part.
+// Of unshadowed light what the rest bears out.
 LW_FN void bear_unshadowed_out(lw_seen_light* e) {
     if (!e->isUnshadowed) return;
-    const real all = channel_sum(e->light), share = borne_out(all, all - e->shadowed, LW_UNSHADOWED_BORNE);
-    e->light.r *= share;
-    e->light.g *= share;
-    e->light.b *= share;
+    const real share = unshadowed_share(channel_sum(e->shadowed), channel_sum(e->light));
+    e->light.r = borne_part(e->shadowed.r, e->light.r, share);
+    e->light.g = borne_part(e->shadowed.g, e->light.g, share);
+    e->light.b = borne_part(e->shadowed.b, e->light.b, share);
 }
 
 // What of the finished light r, g, b is doubtful, as its sum over the channels; unless that is to be kept, what is not borne out goes.
 LW_FN real settle_doubt(real* r, real* g, real* b, const lw_seen_light sum, int isKept) {
     const real all = channel_sum(sum.light), finished = *r + *g + *b;
     if (isKept) return select_((real)0.0f, finished * fmin(sum.doubt / all, (real)1.0f), and_(all > 0.0f, all < INFINITY));
-    const real share = borne_out(all, sum.doubt, LW_DOUBT_BORNE);
+    const real share = borne_out(all, sum.doubt);
     *r *= share;
     *g *= share;
     *b *= share;

@@ -55,7 +55,7 @@ LW_FN void store_mean(const lw_window_sum sum, mask valid, __global float* filte
                       __global float* validity, int4 validityLayout, int hasValidity, int x, int y) {
     // The pixel itself has weight 1 up to rounding, so the sum is never small.
     real scale = select_((real)0.0f, 1.0f / sum.weight, and_(valid, sum.weight > 0.0f));
-    if (LW_DOUBT) scale *= borne_out(sum.r + sum.g + sum.b, sum.doubt, LW_DOUBT_BORNE);
+    if (LW_DOUBT) scale *= borne_out(sum.r + sum.g + sum.b, sum.doubt);
     const int o = filteredLayout.x + y * filteredLayout.y + x;
     store_past(sum.r * scale, filtered, o);
     store_past(sum.g * scale, filtered, o + filteredLayout.z);
