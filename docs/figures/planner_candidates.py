@@ -31,10 +31,14 @@ ssvp vpls=512 clusters=32 bounces=4 resolution=quarter
 ssvp vpls=512 clusters=32 visibility=strict bounces=4 resolution=quarter
 ssvp vpls=1024 clusters=16 visibility=strict bounces=4 resolution=quarter
 ssvp vpls=1024 clusters=32 bounces=4 resolution=quarter
+ssvp vpls=1024 clusters=32 second_vpls=8 visibility=strict bounces=4 resolution=quarter
+ssvp vpls=1024 clusters=32 second_vpls=16 visibility=strict bounces=4 resolution=quarter
 ssvp vpls=1024 clusters=32 visibility=strict bounces=4 resolution=quarter
 ssvp vpls=1024 clusters=64 resolution=quarter
 ssvp vpls=1024 clusters=64 visibility=strict resolution=quarter
 ssvp vpls=1024 clusters=64 bounces=4 resolution=quarter
+ssvp vpls=1024 clusters=64 second_vpls=8 visibility=strict bounces=4 resolution=quarter
+ssvp vpls=1024 clusters=64 second_vpls=16 visibility=strict bounces=4 resolution=quarter
 ssvp vpls=1024 clusters=64 visibility=strict bounces=4 resolution=quarter
 ssvp vpls=1024 clusters=64 bounces=4 shadowed_bounces=3 resolution=quarter
 ssvp vpls=1024 clusters=64 visibility=strict bounces=4 shadowed_bounces=3 resolution=quarter
