@@ -25,10 +25,10 @@ LW_FN real borne_out(real light, real doubt) {
 
 // The share of light of bounces without shadows that counts where `shadowed` of `all` light is shadowed (sums over channels, 0 or more): of
 // U = all - shadowed as much as the shadowed light S bears out, w = 1 / (1 + (U / kS)^2). w U is kS/2 at most, where U is kS, and nothing
-// where S is. No light is taken for leaks where a sum is beyond all floats.
+// where S is. Where a sum is beyond all floats, none of U counts.
 LW_FN real unshadowed_share(real shadowed, real all) {
     const mask isLit = and_(all > 0.0f, all < INFINITY);
-    const real part = select_((real)0.0f, shadowed / all, isLit), s = LW_UNSHADOWED_BORNE * part, u = 1.0f - part;
+    const real part = select_((real)0.0f, fmin(shadowed / all, (real)1.0f), isLit), s = LW_UNSHADOWED_BORNE * part, u = 1.0f - part;
     return select_((real)0.0f, s * s / fma_(s, s, u * u), isLit);
 }
 

@@ -282,6 +282,19 @@ TEST_CASE("hard gathers trust all light without shadows, and strict ones what so
     CHECK(bitDifference(std::vector<float>(strict.begin(), strict.begin() + std::ptrdiff_t(3 * scene.pixels)), light) == "");
 }
 
+TEST_CASE("light without shadows that is beyond all floats leaves the shadowed light as it is", "[clustered_gather][large]") {
+    LaterBounce scene(GENERATE(1u, 16u), testSize({75, 33}));
+    for (lw_vpl& vpl : scene.later)
+        for (int c = 0; c < 3; ++c) vpl.flux.s[c] = 3e38f;
+    for (const float area : {0.02f, 1e-9f}) {  // some of the pixels' sums overflow, or all
+        for (lw_vpl& vpl : scene.later) vpl.positionArea.s[3] = area;
+        const std::vector<float> before = scene.shadowed(ClusterVisibility::hard).planes(3), kept = scene.all(ClusterVisibility::strict, true).planes(4);
+        int more = 0;
+        for (std::size_t i = 0; i < before.size(); ++i) more += !(std::abs(double(kept[i]) - double(before[i])) <= 1e-6 * double(before[i]));
+        CHECK(more == 0);
+    }
+}
+
 TEST_CASE("the filter bears doubtful light out by what surrounds it", "[clustered_gather]") {
     const auto width = GENERATE(1u, 16u);
     const auto size = testSize({67, 21});
