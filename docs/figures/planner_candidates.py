@@ -17,31 +17,40 @@ ssvp resolution=quarter
 ssvp visibility=strict resolution=quarter
 ssvp bounces=4 resolution=quarter
 ssvp visibility=strict bounces=4 resolution=quarter
+ssvp visibility=careful bounces=4 resolution=quarter
 ssvp clusters=16 resolution=quarter
 ssvp clusters=16 visibility=strict resolution=quarter
 ssvp clusters=16 bounces=4 resolution=quarter
 ssvp clusters=16 visibility=strict bounces=4 resolution=quarter
+ssvp clusters=16 visibility=careful bounces=4 resolution=quarter
 ssvp clusters=16 bounces=4 shadowed_bounces=1 resolution=quarter
 ssvp clusters=16 visibility=strict bounces=4 shadowed_bounces=1 resolution=quarter
 ssvp vpls=512 clusters=16 bounces=4 resolution=quarter
 ssvp vpls=512 clusters=16 visibility=strict bounces=4 resolution=quarter
+ssvp vpls=512 clusters=16 visibility=careful bounces=4 resolution=quarter
 ssvp vpls=512 clusters=16 bounces=4 shadowed_bounces=3 resolution=quarter
 ssvp vpls=512 clusters=16 visibility=strict bounces=4 shadowed_bounces=3 resolution=quarter
+ssvp vpls=512 clusters=16 visibility=careful bounces=4 shadowed_bounces=3 resolution=quarter
 ssvp vpls=512 clusters=32 bounces=4 resolution=quarter
 ssvp vpls=512 clusters=32 visibility=strict bounces=4 resolution=quarter
+ssvp vpls=512 clusters=32 visibility=careful bounces=4 resolution=quarter
 ssvp vpls=1024 clusters=16 visibility=strict bounces=4 resolution=quarter
+ssvp vpls=1024 clusters=16 visibility=careful bounces=4 resolution=quarter
 ssvp vpls=1024 clusters=32 bounces=4 resolution=quarter
-ssvp vpls=1024 clusters=32 second_vpls=8 visibility=strict bounces=4 resolution=quarter
-ssvp vpls=1024 clusters=32 second_vpls=16 visibility=strict bounces=4 resolution=quarter
+ssvp vpls=1024 clusters=32 second_vpls=8 visibility=careful bounces=4 resolution=quarter
+ssvp vpls=1024 clusters=32 second_vpls=16 visibility=careful bounces=4 resolution=quarter
 ssvp vpls=1024 clusters=32 visibility=strict bounces=4 resolution=quarter
+ssvp vpls=1024 clusters=32 visibility=careful bounces=4 resolution=quarter
 ssvp vpls=1024 clusters=64 resolution=quarter
 ssvp vpls=1024 clusters=64 visibility=strict resolution=quarter
 ssvp vpls=1024 clusters=64 bounces=4 resolution=quarter
-ssvp vpls=1024 clusters=64 second_vpls=8 visibility=strict bounces=4 resolution=quarter
-ssvp vpls=1024 clusters=64 second_vpls=16 visibility=strict bounces=4 resolution=quarter
+ssvp vpls=1024 clusters=64 second_vpls=8 visibility=careful bounces=4 resolution=quarter
+ssvp vpls=1024 clusters=64 second_vpls=16 visibility=careful bounces=4 resolution=quarter
 ssvp vpls=1024 clusters=64 visibility=strict bounces=4 resolution=quarter
+ssvp vpls=1024 clusters=64 visibility=careful bounces=4 resolution=quarter
 ssvp vpls=1024 clusters=64 bounces=4 shadowed_bounces=3 resolution=quarter
 ssvp vpls=1024 clusters=64 visibility=strict bounces=4 shadowed_bounces=3 resolution=quarter
+ssvp vpls=1024 clusters=64 visibility=careful bounces=4 shadowed_bounces=3 resolution=quarter
 ssvp vpls=1024 clusters=64 map_size=256 bounces=4 resolution=quarter
 ssvp vpls=128 clusters=4 map_size=64 bounces=1 resolution=half
 ssvp vpls=64 clusters=4 map_size=64 second_vpls=16 resolution=half
@@ -50,42 +59,57 @@ ssvp bounces=4 resolution=half
 ssvp clusters=16 resolution=half
 ssvp clusters=16 bounces=4 resolution=half
 ssvp clusters=16 visibility=strict bounces=4 resolution=half
+ssvp clusters=16 visibility=careful bounces=4 resolution=half
 ssvp vpls=512 clusters=16 bounces=4 resolution=half
 ssvp vpls=512 clusters=16 visibility=strict bounces=4 resolution=half
+ssvp vpls=512 clusters=16 visibility=careful bounces=4 resolution=half
 ssvp clusters=32 resolution=half
 ssvp clusters=32 bounces=4 resolution=half
 ssvp clusters=32 visibility=strict bounces=4 resolution=half
+ssvp clusters=32 visibility=careful bounces=4 resolution=half
 ssvp vpls=1024 clusters=32 bounces=4 resolution=half
 ssvp vpls=1024 clusters=32 visibility=strict bounces=4 resolution=half
+ssvp vpls=1024 clusters=32 visibility=careful bounces=4 resolution=half
 ssvp vpls=1024 clusters=32 bounces=4 interleave=8 resolution=half
 ssvp vpls=1024 clusters=32 visibility=strict bounces=4 interleave=8 resolution=half
+ssvp vpls=1024 clusters=32 visibility=careful bounces=4 interleave=8 resolution=half
 ssvp vpls=1024 clusters=64 resolution=half
 ssvp vpls=1024 clusters=64 visibility=strict resolution=half
 ssvp vpls=1024 clusters=64 bounces=4 resolution=half
 ssvp vpls=1024 clusters=64 visibility=strict bounces=4 resolution=half
+ssvp vpls=1024 clusters=64 visibility=careful bounces=4 resolution=half
 ssvp vpls=1024 clusters=64 bounces=4 interleave=8 resolution=half
 ssvp vpls=1024 clusters=64 visibility=strict bounces=4 interleave=8 resolution=half
+ssvp vpls=1024 clusters=64 visibility=careful bounces=4 interleave=8 resolution=half
 ssvp vpls=1024 clusters=64 bounces=4 shadowed_bounces=3 resolution=half
 ssvp vpls=1024 clusters=64 visibility=strict bounces=4 shadowed_bounces=3 resolution=half
+ssvp vpls=1024 clusters=64 visibility=careful bounces=4 shadowed_bounces=3 resolution=half
 ssvp vpls=1024 clusters=64 map_size=256 bounces=4 resolution=half
 ssvp
 ssvp clusters=16 bounces=4
 ssvp vpls=1024 clusters=32 bounces=4
 ssvp vpls=1024 clusters=32 visibility=strict bounces=4
+ssvp vpls=1024 clusters=32 visibility=careful bounces=4
 ssvp vpls=1024 clusters=64 bounces=4
 ssvp vpls=1024 clusters=64 visibility=strict bounces=4
+ssvp vpls=1024 clusters=64 visibility=careful bounces=4
 ssvp vpls=512 sampling=view clusters=16 visibility=strict resolution=quarter
 ssvp vpls=512 sampling=view clusters=32 visibility=strict resolution=quarter
-ssvp vpls=512 sampling=view clusters=16 visibility=strict bounces=4 resolution=quarter
+ssvp vpls=512 sampling=view clusters=16 visibility=careful bounces=4 resolution=quarter
 ssvp vpls=512 sampling=view clusters=16 visibility=strict bounces=4 shadowed_bounces=3 resolution=quarter
-ssvp vpls=512 sampling=view clusters=32 visibility=strict bounces=4 resolution=quarter
+ssvp vpls=512 sampling=view clusters=16 visibility=careful bounces=4 shadowed_bounces=3 resolution=quarter
+ssvp vpls=512 sampling=view clusters=32 visibility=careful bounces=4 resolution=quarter
 ssvp vpls=1024 sampling=view clusters=32 visibility=strict resolution=quarter
 ssvp vpls=1024 sampling=view clusters=32 visibility=strict bounces=4 resolution=quarter
+ssvp vpls=1024 sampling=view clusters=32 visibility=careful bounces=4 resolution=quarter
 ssvp vpls=1024 sampling=view clusters=64 visibility=strict resolution=quarter
 ssvp vpls=1024 sampling=view clusters=64 visibility=strict bounces=4 resolution=quarter
+ssvp vpls=1024 sampling=view clusters=64 visibility=careful bounces=4 resolution=quarter
 ssvp vpls=1024 sampling=view clusters=64 visibility=strict bounces=4 shadowed_bounces=3 resolution=quarter
+ssvp vpls=1024 sampling=view clusters=64 visibility=careful bounces=4 shadowed_bounces=3 resolution=quarter
 ssvp vpls=1024 sampling=view clusters=64 visibility=strict resolution=half
 ssvp vpls=1024 sampling=view clusters=64 visibility=strict bounces=4 shadowed_bounces=3 resolution=half
+ssvp vpls=1024 sampling=view clusters=64 visibility=careful bounces=4 shadowed_bounces=3 resolution=half
 lpv transport=sweep size=16 directions=96 resolution=half
 lpv transport=sweep size=16 directions=96 bounces=4 resolution=half
 cone_tracing size=32 cones=6 bounces=0 resolution=quarter

@@ -18,7 +18,7 @@ COLOURS = {"rsm": "#d98b2b", "ssvp": "#1f6fb4", "lpv": "#3f9b57", "cone_tracing"
 
 
 def short(name):
-    return name.replace("resolution=half", "half").replace("resolution=quarter", "quarter").replace("shadowed_bounces", "shadowed").replace("visibility=strict", "strict").replace("sampling=view", "view")
+    return name.replace("resolution=half", "half").replace("resolution=quarter", "quarter").replace("shadowed_bounces", "shadowed").replace("visibility=strict", "strict").replace("visibility=careful", "careful").replace("sampling=view", "view")
 
 
 def view_name(view):

@@ -502,7 +502,8 @@ typedef enum LWVisibility {
     LW_VISIBILITY_HARD = 1, /**< the nearest texel of the cluster's map decides */
     LW_VISIBILITY_SOFT = 2, /**< the share of its four nearest texels (percentage-closer) */
     LW_VISIBILITY_VOXEL = 3, /**< instead of maps, the voxels that the occluders occupy, between each VPL and the pixel */
-    LW_VISIBILITY_STRICT = 4 /**< as HARD; light past the rims of what stands before it, and of technique ssvp's bounces without shadows, counts as far as the rest of a place's light bears it out */
+    LW_VISIBILITY_STRICT = 4, /**< as HARD; light past the rims of what stands before it counts as far as the rest of a place's light bears it out */
+    LW_VISIBILITY_CAREFUL = 5 /**< technique ssvp's: as STRICT; light of bounces without shadows, too, counts as far as shadowed light bears it out */
 } LWVisibility;
 
 typedef enum LWDirections {
@@ -532,7 +533,7 @@ typedef struct LWSsvpDesc {
     uint32_t bounces;        /**< 1 .. 4 */
     uint32_t shadowedBounces; /**< 1 .. 4: bounces whose light `visibility` shadows; the VPLs of each but the first are put into as
                                   many clusters (64 where `clusters` is 0) with maps of their own. Light of later bounces
-                                  goes through walls; with VISIBILITY_STRICT, from 2 on, only where shadowed light is */
+                                  goes through walls; with VISIBILITY_CAREFUL, from 2 on, only where shadowed light is */
     uint32_t secondVpls;     /**< of the second and of each further bounce, for each cluster of the bounce before */
     LWDirections directions; /**< in which a cluster's second-bounce VPLs are drawn */
     uint32_t warmStart;      /**< 1: clusters start where they were in the frame before */

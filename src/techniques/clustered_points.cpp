@@ -11,6 +11,7 @@ ClusterVisibility visibilityOf(LWVisibility visibility) {
         case LW_VISIBILITY_SOFT:
             return ClusterVisibility::soft;
         case LW_VISIBILITY_STRICT:
+        case LW_VISIBILITY_CAREFUL:  // what else it asks, the lists say
             return ClusterVisibility::strict;
         case LW_VISIBILITY_VOXEL:
             return ClusterVisibility::voxel;

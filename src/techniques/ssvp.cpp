@@ -109,7 +109,7 @@ public:
             if (i + 1 < desc_.bounces) lists.push_back({recordNext(executor, i)});
         }
         // The first bounce's light alone does not tell where the second's gets: most of what lights a closed room would go.
-        if (shadowedOf(desc_) > 1)
+        if (desc_.visibility == LW_VISIBILITY_CAREFUL && shadowedOf(desc_) > 1)
             for (std::size_t i = shadowedOf(desc_); i < lists.size(); ++i) lists[i].isUnshadowed = true;
         if (shadows_) recordShadows(executor, frame, restart);
         gather_.recordOrder(executor, lists);
@@ -288,7 +288,7 @@ std::vector<DebugView> SsvpTechnique::debugViews(const View* view) {
             views.push_back({kMaps[i], "maps one below the other: distance (m), world normal xyz, albedo rgb", maps.debugShape(),
                              [&maps](Executor& executor, const Planes& planes) { maps.recordPlanes(executor, planes); }});
         }
-        views.push_back({"vpl_clusters", "one column per slot as in vpls: the VPL's cluster, -1 for none, -2 for one that strict look-ups doubt as a whole, of a bounce without shadows", gather_.clustersShape(),
+        views.push_back({"vpl_clusters", "one column per slot as in vpls: the VPL's cluster, -1 for none, -2 for one of a bounce without shadows with visibility careful", gather_.clustersShape(),
                          [this](Executor& executor, const Planes& planes) { gather_.recordClusters(executor, planes); }});
     }
     const InterleavedView* state = states_.find(view);

@@ -39,6 +39,8 @@ SecondBounceOptions nextOptions(const LWSsvpDesc& desc, std::size_t stage) {
     return options;
 }
 
+bool looksStrictly(const LWSsvpDesc& desc) { return desc.visibility == LW_VISIBILITY_STRICT || desc.visibility == LW_VISIBILITY_CAREFUL; }
+
 InterleavedOptions interleavedOptions(const LWSsvpDesc& desc) {
     InterleavedOptions options;
     options.interleave = desc.interleave;
@@ -46,7 +48,7 @@ InterleavedOptions interleavedOptions(const LWSsvpDesc& desc) {
     options.halvings = desc.autoResolution > 0.0f ? 1 : std::uint32_t(desc.resolution);
     options.history = {desc.history, desc.historyClamp, 0};
     options.compensated = desc.compensation > 0;
-    options.doubtful = desc.visibility == LW_VISIBILITY_STRICT;
+    options.doubtful = looksStrictly(desc);
     options.repairs = desc.autoResolution;
     return options;
 }
@@ -62,7 +64,7 @@ OccluderOptions occluderOptions(const LWSsvpDesc& desc) {
     options.occluders = desc.occluders;
     options.mapSize = desc.mapSize;
     options.isWanted = desc.visibility != LW_VISIBILITY_NONE || desc.bounces > 1;
-    options.isStrict = desc.visibility == LW_VISIBILITY_STRICT;
+    options.isStrict = looksStrictly(desc);
     options.throughVoxels = desc.visibility == LW_VISIBILITY_VOXEL;
     const bool looks = desc.visibility != LW_VISIBILITY_NONE && !options.throughVoxels;
     options.drawn = looks ? stagesOf(desc) : desc.bounces - 1;

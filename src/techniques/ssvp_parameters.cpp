@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* kSamplingNames[] = {"flux", "uniform", "view", nullptr};
 constexpr const char* kResolutionNames[] = {"full", "half", "quarter", nullptr};
-constexpr const char* kVisibilityNames[] = {"none", "hard", "soft", "voxel", "strict", nullptr};
+constexpr const char* kVisibilityNames[] = {"none", "hard", "soft", "voxel", "strict", "careful", nullptr};
 constexpr const char* kOccludersNames[] = {"auto", "triangles", "surfels", "screen", nullptr};
 constexpr const char* kDirectionsNames[] = {"cosine", "disc", "square", nullptr};
 constexpr double kInterleaveValues[] = {1, 2, 4, 8};
@@ -48,12 +48,12 @@ std::vector<LWParameter> makeTable() {
         allowing(uint("map_size", "texels a side of a cluster's map: finer occluders, memory and drawing time with its square",
                       offsetof(LWSsvpDesc, mapSize), 64, 512, 128),
                  kMapSizeValues),
-        swept(oneOf("visibility", "of VPLs: none; the map's nearest texel, its four nearest, or strictly: the nearest, with light past rims and of bounces without shadows as far as the rest bears it out; past voxels instead of maps",
-                    offsetof(LWSsvpDesc, visibility), kVisibilityNames, 4, LW_VISIBILITY_HARD),
+        swept(oneOf("visibility", "of VPLs: none; the map's nearest texel, its four nearest, or strictly: the nearest, with light past rims as far as the rest bears it out, carefully: light of bounces without shadows, too; past voxels instead of maps",
+                    offsetof(LWSsvpDesc, visibility), kVisibilityNames, 5, LW_VISIBILITY_HARD),
               kVisibilitySweep),
         swept(uint("bounces", "indirect bounces; those after the first with VPLs drawn from the maps of the bounce before", offsetof(LWSsvpDesc, bounces), 1, 4, 2),
               kBouncesSweep),
-        uint("shadowed_bounces", "bounces whose light is shadowed, by maps of their own clusters: less light through walls, time; of later ones none (strict: as far as shadowed light bears it out, from 2 on)",
+        uint("shadowed_bounces", "bounces whose light is shadowed, by maps of their own clusters: less light through walls, time; of later ones none (visibility=careful: as far as shadowed light bears it out, from 2 on)",
              offsetof(LWSsvpDesc, shadowedBounces), 1, 4, 2),
         uint("second_vpls", "VPLs of each bounce after the first for each cluster of the one before", offsetof(LWSsvpDesc, secondVpls), 1, 1024, 32),
         oneOf("directions", "in which second-bounce VPLs are drawn: by cosine, evenly on the map's disc, or on its square",

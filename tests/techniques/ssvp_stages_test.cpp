@@ -140,29 +140,29 @@ TEST_CASE("light of shadowed bounces does not leave a closed room", "[ssvp][stag
     outside.structSize = sizeof outside;
     outside.position = position.image();
     outside.normal = normal.image();
-    double leak[5] = {}, leakOfStrict[5] = {};
+    double leak[5] = {}, leakOfCareful[5] = {};
     for (std::uint32_t shadowed = 1; shadowed <= 4; ++shadowed)
-        for (const LWVisibility visibility : {LW_VISIBILITY_HARD, LW_VISIBILITY_STRICT}) {
+        for (const LWVisibility visibility : {LW_VISIBILITY_HARD, LW_VISIBILITY_CAREFUL}) {
             LWSsvpDesc desc = descOf(8, 4, shadowed);
             desc.visibility = visibility;
             TestTechnique technique(device, desc);
             TestView view(device, kWidth, kHeight);
             technique.update(Frame({floor.light}, room.describe()).frame);
-            double& sum = (visibility == LW_VISIBILITY_STRICT ? leakOfStrict : leak)[shadowed];
+            double& sum = (visibility == LW_VISIBILITY_CAREFUL ? leakOfCareful : leak)[shadowed];
             for (const float e : technique.render(view, outside)) sum += double(e);
         }
-    CAPTURE(leak[1], leak[2], leak[3], leak[4], leakOfStrict[1], leakOfStrict[2]);
+    CAPTURE(leak[1], leak[2], leak[3], leak[4], leakOfCareful[1], leakOfCareful[2]);
     // The first bounce goes up from the floor and would pass the wall too; each bounce that is shadowed keeps its share in.
     CHECK(leak[2] < 0.9 * leak[1]);
     CHECK(leak[3] < 0.9 * leak[2]);
     CHECK(leak[3] > 0.0);
     CHECK(leak[4] < 1e-3 * leak[1]);
-    // Where no shadowed light gets, strict look-ups let none of the other bounces' count. A single bounce's shadows tell too little.
-    for (std::uint32_t shadowed = 2; shadowed <= 4; ++shadowed) CHECK(leakOfStrict[shadowed] < 1e-3 * leak[1]);
-    CHECK(leakOfStrict[1] > 0.1 * leak[1]);
+    // Where no shadowed light gets, careful look-ups let none of the other bounces' count. A single bounce's shadows tell too little.
+    for (std::uint32_t shadowed = 2; shadowed <= 4; ++shadowed) CHECK(leakOfCareful[shadowed] < 1e-3 * leak[1]);
+    CHECK(leakOfCareful[1] > 0.1 * leak[1]);
 }
 
-TEST_CASE("inside a room strict look-ups let bounces without shadows count", "[ssvp][stages]") {
+TEST_CASE("inside a room careful look-ups let bounces without shadows count", "[ssvp][stages]") {
     TestDevice device(16);
     LitFloor floor(64, plain);
     Walls room = Walls::room();
@@ -177,17 +177,17 @@ TEST_CASE("inside a room strict look-ups let bounces without shadows count", "[s
         technique.update(Frame({floor.light}, room.describe()).frame);
         return canvas.render(device, technique, view);
     };
-    const std::vector<float> hard2 = lightOf(LW_VISIBILITY_HARD, 2), hard4 = lightOf(LW_VISIBILITY_HARD, 4), strict2 = lightOf(LW_VISIBILITY_STRICT, 2),
-                             strict4 = lightOf(LW_VISIBILITY_STRICT, 4);
+    const std::vector<float> hard2 = lightOf(LW_VISIBILITY_HARD, 2), hard4 = lightOf(LW_VISIBILITY_HARD, 4), careful2 = lightOf(LW_VISIBILITY_CAREFUL, 2),
+                             careful4 = lightOf(LW_VISIBILITY_CAREFUL, 4);
     double all = 0.0, counted = 0.0, shadowed = 0.0;
     int wrong = 0;
     for (std::size_t i = 0; i < hard2.size(); ++i) {
         all += double(hard4[i] - hard2[i]);
-        counted += double(strict4[i] - strict2[i]);
+        counted += double(careful4[i] - careful2[i]);
         shadowed += double(hard2[i]);
         // Never less than without these bounces, and no more than they bring or eight times the shadowed light.
         const float slack = 1e-4f * hard4[i];
-        wrong += strict4[i] < strict2[i] - slack || strict4[i] > hard4[i] + slack || strict4[i] > 9.0f * hard2[i] + slack;
+        wrong += careful4[i] < careful2[i] - slack || careful4[i] > hard4[i] + slack || careful4[i] > 9.0f * hard2[i] + slack;
     }
     CAPTURE(interleave, all, counted, shadowed);
     CHECK(wrong == 0);
