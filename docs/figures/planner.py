@@ -58,7 +58,7 @@ def main():
 def rows_of_table(data):
     """What is near the front in two scenes or more. Without maps of 256 x 256: for 5 % less error at rest they are four times as dear where lights
     move, and single sample sets of theirs rule what is chosen. Nor hard maps where strict ones of the same settings are measured, which for a
-    twentieth more time err by up to a quarter more where all is bright (a half with few clusters), and by half and less where light comes through openings. Nor what is not
+    twentieth more time err by up to a fifth more where all is bright, and by half and less where light comes through openings. Nor what is not
     known of made-up scenes."""
     names = data.names()
     able = [c for c in range(len(names)) if names[c] not in barred(names)]
