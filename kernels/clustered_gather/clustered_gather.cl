@@ -105,8 +105,7 @@ LW_FN real settle_doubt(real* r, real* g, real* b, const lw_seen_light sum, int 
 // One work-item = LW_WIDTH * LW_INTERLEAVE adjacent pixels of one row, of a width x height image.
 // vpls: float[12] each as clustered_gather_order and _deal wrote them. frames1 ... sight: as lw_maps. masks, irradiance, counts: as in interleaved_gather_gather.
 // Of strict look-ups: withDoubt: a fourth plane of `irradiance` takes what is doubtful, for a filter that knows more of a place's light than
-// one pixel's subset tells; otherwise each pixel decides by its own. About unshadowed light
-// each pixel decides at once.
+// one pixel's subset tells; otherwise each pixel decides by its own. About unshadowed light each pixel decides at once.
 __kernel void clustered_gather_gather(__global const float* position, int4 positionLayout,
                                       __global const float* normal, int4 normalLayout, int width, int height,
                                       __global const float* vpls, lw_subset_order order,

@@ -288,7 +288,9 @@ std::vector<DebugView> SsvpTechnique::debugViews(const View* view) {
             views.push_back({kMaps[i], "maps one below the other: distance (m), world normal xyz, albedo rgb", maps.debugShape(),
                              [&maps](Executor& executor, const Planes& planes) { maps.recordPlanes(executor, planes); }});
         }
-        views.push_back({"vpl_clusters", "one column per slot as in vpls: the VPL's cluster, -1 for none, -2 for one of a bounce without shadows with visibility careful", gather_.clustersShape(),
+        views.push_back({"vpl_clusters",
+                         "one column per slot as in vpls: the VPL's cluster, -1 for none, -2 for one of a bounce without shadows with visibility careful",
+                         gather_.clustersShape(),
                          [this](Executor& executor, const Planes& planes) { gather_.recordClusters(executor, planes); }});
     }
     const InterleavedView* state = states_.find(view);

@@ -25,8 +25,8 @@ CompensationOptions compensationOptions(const LWSsvpDesc& desc);  // of one that
 OccluderOptions occluderOptions(const LWSsvpDesc& desc);
 SsvpPlanOptions planOptions(const LWSsvpDesc& desc);  // of one with an error target
 std::uint32_t groupsOf(const LWSsvpDesc& desc);
-// Bounces whose VPLs are shadowed, and those whose VPLs have clusters.
 bool looksStrictly(const LWSsvpDesc& desc);  // strictly or carefully
+// Bounces whose VPLs are shadowed, and those whose VPLs have clusters.
 std::size_t shadowedOf(const LWSsvpDesc& desc);
 std::size_t stagesOf(const LWSsvpDesc& desc);
 // As TechniqueEntry::estimateBytes.
