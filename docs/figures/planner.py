@@ -8,7 +8,7 @@ docs/techniques/ssvp_visibility.md and docs/accuracy.md, their pictures, and wha
     docs/figures/planner.py --maps [--lightwell PROGRAM]       measures what maps take to draw, and nothing else
 
 The candidates are in planner_candidates.py, the models in planner_model.py, the measuring in planner_measure.py with its made-up scenes in planner_scenes.py,
-the pages in planner_page.py and planner_choosing.py.
+the pages in planner_page.py, planner_choosing.py and planner_rival.py.
 """
 import argparse
 import datetime

@@ -1,16 +1,16 @@
-"""The part of docs/figures/planner_page.py that docs/choosing.md has: which technique for which inputs and budget, and against the rival."""
+"""The part of docs/figures/planner_page.py that docs/choosing.md has: which technique for which inputs and budget. Against the rival: planner_rival.py."""
 import math
 
 import matplotlib.pyplot as plt
 import numpy as np
 
+import planner_rival
 from planner_model import BUDGETS
 from planner_page import COLOURS, save, short, view_name
 
 # What a host may have, and which bits of PlanNeeds that is.
 INPUTS = [("RSMs, triangles, G-buffer with direct light, source views", 64 + 15), ("RSMs, triangles, G-buffer with direct light", 15), ("RSMs and G-buffer, no triangles", 7), ("G-buffer with direct light alone", 6),
           ("G-buffer without light", 4)]
-WANTED_TIMES = 20
 DRAWN_BUDGETS = np.geomspace(4, 100, 200)
 
 
@@ -56,7 +56,7 @@ def label_of(name, error):
     return "\n".join(lines + [f"{error:.2g}"])
 
 
-def block(data, needs, kept, found):
+def block(data, needs, kept, heldOut, found):
     names = data.names()
     lines = [f"Measured {data.raw['date']} at {data.raw['size'][0]}x{data.raw['size'][1]} on {data.raw['device']}, {data.raw['threads']} threads; see "
              "[the planner](planner.md#how-good-it-is) for how. Of the planner's rows; relMSE against all bounces, geometric mean over the views; in brackets the least and the "
@@ -80,7 +80,7 @@ def block(data, needs, kept, found):
             f = next(f for f in found if f[0] == v and f[1] == budget)
             cells.append(f"`{short(names[f[2]])}` {data.error[v, f[2]]:.2g} ({data.error[v, f[3]]:.2g})" if f[5] else "nothing fits")
         lines.append(f"| {view_name(view)} | " + " | ".join(cells) + " |")
-    return lines + [""] + rival_lines(data, found)
+    return lines + [""] + planner_rival.block(data, kept, heldOut, found)
 
 
 STEPS = [("bounces 2 to 4", "ssvp clusters=16 resolution=half", "ssvp clusters=16 bounces=4 resolution=half"),
@@ -141,55 +141,3 @@ def strict_block(data):
         lines.append(f"| {view_name(view)} | " + " | ".join(both(data.error[v, a], data.error[v, b]) for a, b in pairs) + " |")
     lines.append("| all | " + " | ".join(both(10 ** data.log[:, a].mean(), 10 ** data.log[:, b].mean()) for a, b in pairs) + " |")
     return lines + ["| time | " + " | ".join(f"x {np.median(data.ms[:, b] / data.ms[:, a]):.2f}" for a, b in pairs) + " |"]
-
-
-def rival_time(points, error):
-    """Milliseconds of the rival's line at an error, straight in logarithms: of its end where it never gets so far (it takes longer), None where
-    its beginning is better already."""
-    front = []
-    for p in sorted(points, key=lambda p: p["ms"]):
-        if not front or p["all"] < front[-1]["all"]:
-            front.append(p)
-    if error < front[-1]["all"]:
-        return front[-1]["ms"]
-    for a, b in zip(front, front[1:]):
-        if b["all"] <= error <= a["all"]:
-            share = math.log(error / a["all"]) / math.log(b["all"] / a["all"])
-            return math.exp(math.log(a["ms"]) + share * math.log(b["ms"] / a["ms"]))
-    return None
-
-
-def rival_lines(data, found):
-    rivals = data.raw["rival"]
-    if not rivals:
-        return []
-    names, reached = data.names(), []
-    lines = ["**Against path tracing.** The [rival](techniques/rival.md) with two bounces, all that it has, 1 to 8 paths a pixel, filtered, traced at full, half and quarter "
-             "resolution: its line is the least error in no more time, of the means of three sample sets. Both it and the planner's choices are judged against all bounces. How many times longer the rival takes for the "
-             "same error, at the budget where that is most (>: no point of the rival's line is as accurate; then its longest time); `full`: its line without coarse resolution.", "",
-             "| scene | rival: errors of its line, paths a pixel | chosen | ms | relMSE | rival's ms (full) | times (full) |", "| --- | --- | --- | ---: | ---: | ---: | ---: |"]
-    for view in dict.fromkeys((r["scene"], r["camera"]) for r in rivals):
-        v = next(i for i, w in enumerate(data.views) if (w["scene"], w["camera"]) == view)
-        points = [r for r in rivals if (r["scene"], r["camera"]) == view]
-        full = [p for p in points if p["resolution"] == "full"]
-        rows = []
-        for f in found:
-            if f[0] == v and f[5]:
-                error, ms = data.error[v, f[2]], data.ms[v, f[2]]
-                both, alone = rival_time(points, error), rival_time(full, error)
-                if both or alone:
-                    rows.append(((both or 0) / ms, (alone or 0) / ms, f[2], ms, error, both, alone))
-        span = f"{max(p['all'] for p in points):.2g} to {min(p['all'] for p in points):.2g} (1 to {max(p['spp'] for p in points)} paths)"
-        if not rows:
-            errors = [data.error[v, f[2]] for f in found if f[0] == v and f[5]]
-            lines.append(f"| {view_name(data.views[v])} | {span} | none within that range: {max(errors):.2g} to {min(errors):.2g} | | | | |")
-            continue
-        _, _, c, ms, error, both, alone = max(rows)
-        if both and both >= WANTED_TIMES * ms:
-            reached.append(view_name(data.views[v]))
-        more = "> " if error < min(p["all"] for p in points) else ""
-        dash = lambda x, d=0: f"{more}{x:.{d}f}" if x else "none"  # noqa: E731
-        lines.append(f"| {view_name(data.views[v])} | {span} | `{short(names[c])}` | {ms:.1f} | {error:.2g} | {dash(both)} ({dash(alone)}) | "
-                     f"{dash(both / ms if both else None, 1)} ({dash(alone / ms if alone else None, 1)}) |")
-    count = len({(r["scene"], r["camera"]) for r in rivals})
-    return lines + ["", f"At least {WANTED_TIMES} times as quick in {len(reached)} of {count} scenes ({'; '.join(reached)}); wanted: 7."]

@@ -197,6 +197,12 @@ def choose(ms, log, budget):
     return int(near[np.argmin(ms[near])])
 
 
+def reach(ms, log, target):
+    """Likewise without a budget, with a target of relMSE: the cheapest predicted to reach it, None where none is."""
+    able = np.where(log <= math.log10(target))[0]
+    return int(able[np.argmin(ms[able])]) if len(able) else None
+
+
 def outcomes(data, ms, log, rows, allowed):
     """(view, budget, chosen, best, ratio of their errors) of each view of `rows`, by predictions `ms` and `log`."""
     result = []

@@ -36,7 +36,7 @@ def write(data, kept, heldOut, ridges, sigma, model, costs):
     draw_predicted(data, kept, ms, log)
     planner_choosing.draw(data, needs, kept)
     write_between(ROOT / "docs/planner.md", BEGIN, END, fit_block(data, kept, ms, log, found, ridges, sigma, costs))
-    write_between(ROOT / "docs/choosing.md", BEGIN, END, planner_choosing.block(data, needs, kept, found))
+    write_between(ROOT / "docs/choosing.md", BEGIN, END, planner_choosing.block(data, needs, kept, heldOut, found))
     write_between(ROOT / "docs/choosing.md", "<!-- begin: thrift, written by docs/figures/planner.py -->", "<!-- end: thrift -->", planner_choosing.thrift_block(data))
     write_between(ROOT / "docs/techniques/ssvp_visibility.md", "<!-- begin: strict, written by docs/figures/planner.py -->", "<!-- end: strict -->",
                   planner_choosing.strict_block(data))

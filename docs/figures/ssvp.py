@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Makes the tables of times in docs/techniques/ssvp.md: passes by number of clusters, as Table I of Aranha et al. 2020, and the
-setting that has a budget.
+setting that has a budget, and frames that keep their light.
 
-    docs/figures/ssvp.py [--lightwell build/release/bin/lightwell] [--work build/figures] [--part passes budget]
+    docs/figures/ssvp.py [--lightwell build/release/bin/lightwell] [--work build/figures] [--part passes budget kept]
                          [--size 1280x720] [--scenes cornell sibenik sponza_dabrovic sponza_crytek living_room level_zdm2]
 
 Scenes other than the shipped ones are looked for in LIGHTWELL_SCENES. Frames are at rest, so that their maps are kept; what drawing
@@ -20,6 +20,9 @@ LARGE = "1920x1080"
 BUDGET = ["shadowed_bounces=1", "clusters=8"]
 VARIANTS = {"hard": [], "soft": ["visibility=soft"], "half": ["resolution=half"]}
 RUNS = 3
+KEPT = ["vpls=512 clusters=16 bounces=4 resolution=quarter", "vpls=1024 clusters=32 second_vpls=8 bounces=4 resolution=quarter",
+        "vpls=1024 clusters=64 bounces=4 resolution=quarter", "vpls=1024 clusters=64 bounces=4 resolution=half"]
+STRICT = "visibility=strict"
 # Column: the passes that begin with one of these.
 GROUPS = {"RSM, VPLs": ("rsm_input", "vpl_sampling"), "clusters": ("kmeans",), "second bounce, order": ("second_bounce", "clustered_gather.order"),
           "tiles": ("interleaved_gather.bounds", "interleaved_gather.cull"), "gather": ("clustered_gather.gather",),
@@ -28,7 +31,7 @@ MAPS = ("paraboloid_map",)
 
 
 def main():
-    options = read_options(__doc__, ["cornell", "sibenik", "sponza_dabrovic", "sponza_crytek", "living_room", "level_zdm2"], 0, parts=["passes", "budget"])
+    options = read_options(__doc__, ["cornell", "sibenik", "sponza_dabrovic", "sponza_crytek", "living_room", "level_zdm2"], 0, parts=["passes", "budget", "kept"])
     call = caller(options.lightwell)
 
     def render(scene, *settings, size=options.size, frames=1, warmup=0):
@@ -37,7 +40,7 @@ def main():
                                "--out", options.work / "ssvp.exr", "--json"))
 
     page = ROOT / "docs/techniques/ssvp.md"
-    for part, lines in (("passes", passes_table), ("budget", budget_table)):
+    for part, lines in (("passes", passes_table), ("budget", budget_table), ("kept", kept_table)):
         if part in options.part:
             replace(page, part, lines(options, render))
     print(page)
@@ -69,6 +72,21 @@ def budget_table(options, render):
     for scene in options.scenes:
         runs = [[render(scene, *BUDGET, *settings, size=size, frames=15, warmup=5)["total_ms"] for size, _, settings in columns] for _ in range(RUNS)]
         lines.append(f"| {scene} | " + " | ".join(f"{statistics.median(cell):.1f} ({min(cell):.1f})" for cell in zip(*runs)) + " |")
+    return lines
+
+
+def kept_table(options, render):
+    """A host that tells no versions and one that does take turns, so that a slow minute falls on both."""
+    lines = [f"Milliseconds at {options.size}, `{STRICT}`, versions not told → told, and the ratio: medians of {RUNS} runs, each the median of 15 frames after 20; load "
+             f"average {os.getloadavg()[0]:.1f}.", "",
+             "| scene | " + " | ".join(f"`{row.replace('resolution=', '')}`" for row in KEPT) + " |", "| --- | " + " | ".join(["---:"] * len(KEPT)) + " |"]
+    for scene in options.scenes:
+        cells = []
+        for row in KEPT:
+            runs = [[render(scene, *row.split(), STRICT, f"rsm_versions={told}", frames=15, warmup=20)["total_ms"] for told in ("off", "on")] for _ in range(RUNS)]
+            off, on = (statistics.median(some) for some in zip(*runs))
+            cells.append(f"{off:.1f} → {on:.1f}, x {statistics.median(b / a for a, b in runs):.2f}")
+        lines.append(f"| {scene} | " + " | ".join(cells) + " |")
     return lines
 
 

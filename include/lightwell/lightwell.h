@@ -303,7 +303,8 @@ typedef struct LWRsm {
     uint64_t version;  /**< 0: read in every frame. Else a number that stands for these pixels alone: another one when they change,
                             and never the same for another map that may come to lie at the same address (one counter for all maps
                             does). A map that has version, camera and memory of the one at its place in the technique's last frame
-                            is not read again, unless worldOrigin moved or a map came, went or changed its size */
+                            is not read again, unless worldOrigin moved or a map came, went or changed its size. Technique ssvp
+                            keeps its VPLs and their clusters and maps, too, once no map and no occluder has changed for 16 frames */
 } LWRsm;
 
 /** A light, and the surfaces it lights as RSMs: none (analytic only), one, six faces of a point light,

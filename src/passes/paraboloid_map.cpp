@@ -115,6 +115,10 @@ void ParaboloidMap::record(Executor& executor, const Buffer& clusters, std::uint
     noteDrawn(geometry.revision);
 }
 
+void ParaboloidMap::recordKept(Executor& executor) {
+    if (counters_) executor.fill("paraboloid_map.clear", counters_, 0, 0, LW_MAP_COUNTERS * sizeof(cl_uint));
+}
+
 Planes ParaboloidMap::debugShape() const {
     Planes planes;
     planes.width = size_;

@@ -37,6 +37,8 @@ public:
     void noteDrawn(std::uint64_t revision);
     // Pass "paraboloid_map.marks", after all that draws: what strict look-ups ask for (LW_PARABOLOID_DOUBTFUL), of the maps drawn anew.
     void recordMarks(Executor& executor);
+    // Of a frame that keeps the last one's maps as they are, instead of all that: counts none.
+    void recordKept(Executor& executor);
     MapTexels texels() const { return {frames_, state_, records_, albedo_, size_, mapCount_}; }
     void redrawAll() { drawnCount_ = 0; }  // in the next record(), whatever moved
 

@@ -124,6 +124,13 @@ void OccluderMaps::import(Executor& executor, const LWFrame& frame, const RsmInp
             break;
     }
     if (source != Source::screen) screen_.clear();
+    if (isOther_ || revision() != revision_) ++generation_;
+    revision_ = revision();
+}
+
+std::uint64_t OccluderMaps::revision() const {
+    if (source_ == Source::surfels) return hostSurfels_.surfels().revision;
+    return source_ == Source::triangles || source_ == Source::sampledTriangles ? triangles_.revision : 0;
 }
 
 VoxelSurfaces OccluderMaps::surfaces() const {

@@ -47,6 +47,14 @@ public:
     // screen shows moves with every frame.
     void record(Executor& executor, std::size_t stage, const Buffer& clusters, std::uint32_t clusterCount);
 
+    // Of a frame that keeps the maps of the one before: none is drawn anew.
+    void recordKept(Executor& executor) {
+        for (Stage& stage : stages_) stage.maps.recordKept(executor);
+    }
+
+    // Of what occludes: another number after an import() that may have changed some; 0: not known, as of what the screen shows.
+    std::uint64_t generation() const { return source_ == Source::screen ? 0 : generation_; }
+
     // What voxels are made of, of the last import().
     VoxelSurfaces surfaces() const;
 
@@ -73,6 +81,7 @@ private:
 
     void draw(Executor& executor, std::size_t stage, const Buffer& clusters, std::uint32_t clusterCount);
     Source sourceOf(const LWFrame& frame) const;
+    std::uint64_t revision() const;
     bool draws(std::size_t stage) const { return source_ != Source::none && stage < options_.drawn; }
     SurfelSet surfels() const;
 
@@ -80,6 +89,7 @@ private:
     OccluderOptions options_;
     Source source_ = Source::none;
     bool isOther_ = false;  // than in the import before
+    std::uint64_t generation_ = 1, revision_ = 0;
     GeometryInput triangles_;
     SurfelInput hostSurfels_;
     ScreenSurfels screen_;

@@ -21,10 +21,15 @@
 #include "techniques/prewarm.h"
 #include "techniques/ssvp_options.h"
 #include "techniques/ssvp_parameters.h"
+#include "techniques/still_frames.h"
 #include "techniques/technique_entry.h"
 
 namespace lightwell {
 namespace {
+
+// Updates of the same light and geometry in which clusters settle: 16 times three of Lloyd's iterations (sibenik's 64 clusters, the slowest
+// of the scenes tried, took 42 from their first frame on). Fewer: clusters of light that came to rest stay where they were half-way.
+constexpr std::uint32_t kSettling = 16;
 
 // A bounce whose VPLs have clusters, and the VPLs of the next one.
 struct Stage {
@@ -87,36 +92,13 @@ public:
         const bool lost = continuity_.beginLost(), restart = lost || frame.reset != 0;
         if (lost) maps_.forget();
         maps_.import(executor, frame, rsms_);
-        if (plan_) plan_->begin(executor, restart);
-        if (history_) sampling_.turn(restart ? turns_ = 0 : ++turns_);
-        sampling_.importViews(executor, frame);
-        recordVpls(executor, frame);
-        if (compensation_)
-            compensation_->recordScale(executor, sampling_.vpls(), sampling_.order(), sampling_.vplCount() - frame.vplCount);
-
-        std::vector<GatheredList> lists{{{sampling_.vpls(), sampling_.vplCount()}}};
-        for (std::size_t i = 0; i < stages_.size(); ++i) {
-            KMeans& clusters = stages_[i].clusters;
-            clusters.record(executor, lists[i].vpls.vpls, lists[i].vpls.count, restart,
-                            plan_ ? plan_->seeds(i) : nullptr);
-            if (plan_) plan_->recordClusters(executor, i, clusters);
-            maps_.record(executor, i, clusters.clusters(), clusters.clusterCount());
-            if (i < std::max<std::size_t>(shadowedOf(desc_), 1)) {
-                lists[i].assignment = &clusters.assignment();
-                lists[i].clusterCount = clusters.clusterCount();
-            }
-            // All stages, also in the dark: what is left of a lit frame would be shown, counted and warm the next clusters.
-            if (i + 1 < desc_.bounces) lists.push_back({recordNext(executor, i)});
-        }
-        // The first bounce's light alone does not tell where the second's gets: most of what lights a closed room would go.
-        if (desc_.visibility == LW_VISIBILITY_CAREFUL && shadowedOf(desc_) > 1)
-            for (std::size_t i = shadowedOf(desc_); i < lists.size(); ++i) lists[i].isUnshadowed = true;
-        if (shadows_) recordShadows(executor, frame, restart);
-        gather_.recordOrder(executor, lists);
-        if (gatherAll_) gatherAll_->recordOrder(executor, lists);
-        lists_ = std::move(lists);
+        const bool wasKept = isKept_;
+        isKept_ = still_.note(lightGeneration(frame), maps_.generation(), restart);
+        if (!isKept_) recordLight(executor, frame, restart);
+        else if (!wasKept) maps_.recordKept(executor);
 
         choices_ = inputChoices(maps_, desc_, frame);
+        if (isKept_) choices_.push_back({"ssvp.vpls", "kept with their clusters and maps: by the host's versions light and geometry stand still"});
         states_.purge();
         states_.each([&](InterleavedView& state) { state.startFrame(restart); });
         if (points_) points_->startFrame();
@@ -172,6 +154,42 @@ public:
     std::uint64_t bytes() const override;
 
 private:
+    // VPLs of all bounces with their clusters and maps, and the order that they are gathered in.
+    void recordLight(Executor& executor, const LWFrame& frame, bool restart) {
+        if (plan_) plan_->begin(executor, restart);
+        if (history_) sampling_.turn(restart ? turns_ = 0 : ++turns_);
+        sampling_.importViews(executor, frame);
+        recordVpls(executor, frame);
+        if (compensation_)
+            compensation_->recordScale(executor, sampling_.vpls(), sampling_.order(), sampling_.vplCount() - frame.vplCount);
+
+        std::vector<GatheredList> lists{{{sampling_.vpls(), sampling_.vplCount()}}};
+        for (std::size_t i = 0; i < stages_.size(); ++i) {
+            KMeans& clusters = stages_[i].clusters;
+            clusters.record(executor, lists[i].vpls.vpls, lists[i].vpls.count, restart,
+                            plan_ ? plan_->seeds(i) : nullptr);
+            if (plan_) plan_->recordClusters(executor, i, clusters);
+            maps_.record(executor, i, clusters.clusters(), clusters.clusterCount());
+            if (i < std::max<std::size_t>(shadowedOf(desc_), 1)) {
+                lists[i].assignment = &clusters.assignment();
+                lists[i].clusterCount = clusters.clusterCount();
+            }
+            // All stages, also in the dark: what is left of a lit frame would be shown, counted and warm the next clusters.
+            if (i + 1 < desc_.bounces) lists.push_back({recordNext(executor, i)});
+        }
+        // The first bounce's light alone does not tell where the second's gets: most of what lights a closed room would go.
+        if (desc_.visibility == LW_VISIBILITY_CAREFUL && shadowedOf(desc_) > 1)
+            for (std::size_t i = shadowedOf(desc_); i < lists.size(); ++i) lists[i].isUnshadowed = true;
+        if (shadows_) recordShadows(executor, frame, restart);
+        gather_.recordOrder(executor, lists);
+        if (gatherAll_) gatherAll_->recordOrder(executor, lists);
+        lists_ = std::move(lists);
+    }
+    // Of all that recordLight() reads but geometry; 0: it changes from frame to frame, or the host does not tell.
+    std::uint64_t lightGeneration(const LWFrame& frame) const {
+        const bool isFramesOwn = plan_ || history_ || shadows_ || desc_.sampling == LW_SAMPLING_VIEW || frame.vplCount;
+        return isFramesOwn ? 0 : rsms_.generation;
+    }
     void recordVpls(Executor& executor, const LWFrame& frame) {
         if (!plan_ || !plan_->plansVpls())
             return sampling_.record(executor, rsms_, frame.vpls, frame.vplCount);
@@ -223,6 +241,8 @@ private:
     Device& device_;
     LWSsvpDesc desc_;
     Continuity continuity_{device_};
+    StillFrames still_{kSettling};
+    bool isKept_ = false;         // of the last update: what the one before recorded
     std::uint32_t turns_ = 0;     // of the sample set, one a frame while there is a history
     RsmInput rsms_;
     VplSampling sampling_;

@@ -1,4 +1,4 @@
-// What a technique's stats say of a choice.
+// What a technique's stats say of a choice, and of a pass.
 #pragma once
 
 #include <string>
@@ -13,6 +13,15 @@ inline std::string reasonOf(TestTechnique& technique, const std::string& name) {
     for (std::uint32_t i = 0; i < stats.choiceCount; ++i)
         if (stats.choices[i].name == name) return stats.choices[i].reason;
     return "";
+}
+
+// Launches of the passes of that name since the last lwUpdate.
+inline std::uint32_t launchesOf(TestTechnique& technique, const std::string& pass) {
+    const LWStats stats = technique.stats();
+    std::uint32_t launches = 0;
+    for (std::uint32_t i = 0; i < stats.passCount; ++i)
+        if (stats.passes[i].name == pass) launches += stats.passes[i].launches;
+    return launches;
 }
 
 }  // namespace lightwell::test

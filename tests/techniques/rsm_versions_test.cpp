@@ -70,14 +70,6 @@ struct Maps {
     }
 };
 
-std::uint32_t launchesOf(TestTechnique& technique, const std::string& pass) {
-    const LWStats stats = technique.stats();
-    std::uint32_t launches = 0;
-    for (std::uint32_t i = 0; i < stats.passCount; ++i)
-        if (stats.passes[i].name == pass) launches += stats.passes[i].launches;
-    return launches;
-}
-
 struct Step {
     const char* what;
     std::function<void(Maps&)> change;

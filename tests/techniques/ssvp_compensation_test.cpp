@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "support/choices.h"
 #include "support/lit_room.h"
 #include "support/scoped_api.h"
 
@@ -180,4 +181,23 @@ TEST_CASE("compensation names what it lacks", "[ssvp][compensation]") {
     LWTechnique none = nullptr;
     CHECK(lwCreateSsvp(device, &many, &none) == LW_ERROR_INVALID_ARGUMENT);
     CHECK(lastError(device).find("compensation") != std::string::npos);
+}
+
+TEST_CASE("light that is kept at rest is compensated with the bits of light made anew", "[ssvp][compensation][still]") {
+    TestDevice device(16);
+    const LitFloor floor(32, evenly);
+    const Corner corner;
+    TestTechnique technique(device, descOf(4)), reference(device, descOf(4));
+    TestView view(device, kWidth, kHeight), other(device, kWidth, kHeight);
+    LWRsm told = floor.rsm;
+    told.version = 1;
+    LWLight light = floor.light;
+    light.rsms = &told;
+    for (int i = 0; i < 20; ++i) {
+        technique.update({light});
+        reference.update({floor.light});
+        CHECK(technique.render(view, corner.gbuffer) == reference.render(other, corner.gbuffer));
+    }
+    CHECK(launchesOf(technique, "vpl_sampling.draw") == 0);
+    CHECK(launchesOf(reference, "vpl_sampling.draw") == 1);
 }
