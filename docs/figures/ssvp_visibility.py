@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Writes the tables of docs/techniques/ssvp_visibility.md, and its picture, from what `lightwell visibility` counts.
+"""Writes the tables of docs/techniques/ssvp_visibility.md, and their pictures, from what `lightwell visibility` counts (--part page), and the
+page's picture of strict and careful look-ups (--part gallery, in seconds).
 
-    docs/figures/ssvp_visibility.py [--lightwell build/release/bin/lightwell] [--work build/figures]
+    docs/figures/ssvp_visibility.py [--lightwell build/release/bin/lightwell] [--work build/figures] [--part page gallery]
                                     [--size 320x180] [--scenes cornell sibenik sponza_crytek living_room]
 
 Scenes other than the shipped ones are looked for in LIGHTWELL_SCENES. What has been counted lies in --work and is kept: remove it
-to count anew.
+to count anew. Of these options the gallery heeds the first two.
 """
 import json
 import os
@@ -27,12 +28,22 @@ EARLIER = {("none", 0): (9.4, 76), ("exact", 0): (0.097, 0.129),
            ("mean", 8): (0.44, 2.9), ("mean", 32): (0.37, 33), ("mean", 64): (0.45, 38),
            ("map 256 soft", 8): (0.46, 0.75), ("map 256 soft", 32): (0.29, 1.5)}
 GREY_NOISE, GREY_SECONDS = "5e-3", "150"
+# Crytek Sponza's gallery: four bounces, the last two without shadows.
+GALLERY = ["sponza_crytek", "--camera", "suggested_camera_2", "--size", "640x360", "--technique", "ssvp",
+           "--set", "vpls=1024", "clusters=64", "bounces=4", "resolution=half"]
+GALLERY_WAYS, GAP = ["strict", "careful"], 4  # pixels of white between the two
 
 
 def main():
-    options = read_options(__doc__, ["cornell", "sibenik", "sponza_crytek", "living_room"], 0, "320x180")
+    options = read_options(__doc__, ["cornell", "sibenik", "sponza_crytek", "living_room"], 0, "320x180", parts=("page", "gallery"))
     call = caller(options.lightwell)
+    if "page" in options.part:
+        write_page(options, call)
+    if "gallery" in options.part:
+        gallery(options, call)
 
+
+def write_page(options, call):
     def count(name, scene, *arguments):
         kept = options.work / f"visibility_{name}.json"
         if not kept.exists():
@@ -159,6 +170,23 @@ def pictures(options, call):
         shutil.copy(picture, ROOT / "docs/images" / name)
         lines.append(f"![{scene}](../images/{name})")
     return lines
+
+
+def gallery(options, call):
+    """Both at the exposure of the first: by its own, a picture that is black in part would be brighter elsewhere."""
+    import numpy
+    from PIL import Image
+
+    exposure, shown = [], []
+    for way in GALLERY_WAYS:
+        picture = options.work / f"ssvp_gallery_{way}.png"
+        report = json.loads(call("render", *GALLERY, f"visibility={way}", "--json", "--out", picture, *exposure))
+        exposure = ["--exposure", report["exposure"]]
+        shown.append(numpy.asarray(Image.open(picture).convert("RGB")))
+    gap = numpy.full((shown[0].shape[0], GAP, 3), 255, numpy.uint8)
+    out = ROOT / "docs/images/ssvp_careful.jpg"
+    Image.fromarray(numpy.hstack([shown[0], gap, shown[1]])).save(out, quality=85)
+    print(out)
 
 
 if __name__ == "__main__":

@@ -51,6 +51,8 @@ std::vector<LWChoice> inputChoices(const OccluderMaps& maps, const LWSsvpDesc& d
         choices.push_back({"frame.environment", kReason});
     if (std::any_of(frame.lights, frame.lights + frame.lightCount, [](const LWLight& light) { return light.rsmCount == 0; }))
         choices.push_back({"frame.lights", "some have no RSM: technique ssvp makes no indirect light of those"});
+    if (desc.visibility == LW_VISIBILITY_CAREFUL && !bearsOut(desc))
+        choices.push_back({"ssvp.visibility", "as strict: careful is for bounces without shadows after two or more with"});
     if (groupsOf(desc) < desc.clusterGroups)
         choices.push_back({"ssvp.clusterGroups", "as many as the interleave's window has pixels, which are fewer"});
     return choices;
@@ -177,8 +179,7 @@ private:
             // All stages, also in the dark: what is left of a lit frame would be shown, counted and warm the next clusters.
             if (i + 1 < desc_.bounces) lists.push_back({recordNext(executor, i)});
         }
-        // The first bounce's light alone does not tell where the second's gets: most of what lights a closed room would go.
-        if (desc_.visibility == LW_VISIBILITY_CAREFUL && shadowedOf(desc_) > 1)
+        if (bearsOut(desc_))
             for (std::size_t i = shadowedOf(desc_); i < lists.size(); ++i) lists[i].isUnshadowed = true;
         if (shadows_) recordShadows(executor, frame, restart);
         gather_.recordOrder(executor, lists);

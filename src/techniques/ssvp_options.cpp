@@ -41,6 +41,11 @@ SecondBounceOptions nextOptions(const LWSsvpDesc& desc, std::size_t stage) {
 
 bool looksStrictly(const LWSsvpDesc& desc) { return desc.visibility == LW_VISIBILITY_STRICT || desc.visibility == LW_VISIBILITY_CAREFUL; }
 
+// The first bounce's light alone does not tell where the second's gets: most of what lights a closed room would go.
+bool bearsOut(const LWSsvpDesc& desc) {
+    return desc.visibility == LW_VISIBILITY_CAREFUL && shadowedOf(desc) > 1 && desc.bounces > shadowedOf(desc);
+}
+
 InterleavedOptions interleavedOptions(const LWSsvpDesc& desc) {
     InterleavedOptions options;
     options.interleave = desc.interleave;

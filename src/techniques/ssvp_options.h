@@ -26,6 +26,7 @@ OccluderOptions occluderOptions(const LWSsvpDesc& desc);
 SsvpPlanOptions planOptions(const LWSsvpDesc& desc);  // of one with an error target
 std::uint32_t groupsOf(const LWSsvpDesc& desc);
 bool looksStrictly(const LWSsvpDesc& desc);  // strictly or carefully
+bool bearsOut(const LWSsvpDesc& desc);  // light of bounces without shadows counts as far as shadowed light bears it out
 // Bounces whose VPLs are shadowed, and those whose VPLs have clusters.
 std::size_t shadowedOf(const LWSsvpDesc& desc);
 std::size_t stagesOf(const LWSsvpDesc& desc);
