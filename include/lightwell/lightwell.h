@@ -504,7 +504,7 @@ typedef enum LWVisibility {
     LW_VISIBILITY_SOFT = 2, /**< the share of its four nearest texels (percentage-closer) */
     LW_VISIBILITY_VOXEL = 3, /**< instead of maps, the voxels that the occluders occupy, between each VPL and the pixel */
     LW_VISIBILITY_STRICT = 4, /**< as HARD; light past the rims of what stands before it counts as far as the rest of a place's light bears it out */
-    LW_VISIBILITY_CAREFUL = 5 /**< technique ssvp's: as STRICT; light of bounces without shadows, too, counts as far as shadowed light bears it out */
+    LW_VISIBILITY_CAREFUL = 5 /**< ssvp's: as STRICT; where 2 <= shadowedBounces < bounces, later ones count as far as shadowed light bears them out */
 } LWVisibility;
 
 typedef enum LWDirections {
@@ -534,7 +534,7 @@ typedef struct LWSsvpDesc {
     uint32_t bounces;        /**< 1 .. 4 */
     uint32_t shadowedBounces; /**< 1 .. 4: bounces whose light `visibility` shadows; the VPLs of each but the first are put into as
                                   many clusters (64 where `clusters` is 0) with maps of their own. Light of later bounces
-                                  goes through walls; with VISIBILITY_CAREFUL, from 2 on, only where shadowed light is */
+                                  goes through walls, but with LW_VISIBILITY_CAREFUL and 2 or more here only to where shadowed light gets */
     uint32_t secondVpls;     /**< of the second and of each further bounce, for each cluster of the bounce before */
     LWDirections directions; /**< in which a cluster's second-bounce VPLs are drawn */
     uint32_t warmStart;      /**< 1: clusters start where they were in the frame before */
@@ -806,7 +806,7 @@ typedef struct LWStaticVplDesc {
     uint32_t filter;          /**< as LWRsmDesc's */
     LWResolution resolution;  /**< as LWRsmDesc's */
     LWVisibility visibility;  /**< what stands between VPLs and what they light: nothing (the default), or LWFrame::geometry in paraboloid
-                                   maps or voxels, as LWSsvpDesc's. A frame without geometry is then an error of lwUpdate */
+                                   maps or voxels, as LWSsvpDesc's but CAREFUL. A frame without geometry is then an error of lwUpdate */
     uint32_t clusters;        /**< VPLs of a frame up to this many see for themselves; more are put into so many clusters, and a
                                    cluster's share what its middle one sees. 1 .. 64; 0: every VPL sees for itself */
     uint32_t mapSize;         /**< as LWSsvpDesc's */

@@ -192,7 +192,7 @@ void InterleavedView::addDebugViews(std::vector<DebugView>& views, TemporalHisto
     if (!lastGathered_) return;
     views.push_back({"position", "world position (m)", gbuffer_.position, {}});
     views.push_back({"normal", "world normal as the host gave it", gbuffer_.normal, {}});
-    views.push_back({"gathered", "irradiance before the filter (W/m^2), with what strict look-ups doubt", lastGathered_, {}});
+    views.push_back({"gathered", "irradiance before the filter (W/m^2), with what strict look-ups doubt, without what careful ones leave out", lastGathered_, {}});
     if (options_.filters()) views.push_back({"filtered", "irradiance after the filter (W/m^2)", lastFiltered_, {}});
     if (repaired_)
         views.push_back({"repair_marks", "1: a pixel that half resolution does not know the light of",

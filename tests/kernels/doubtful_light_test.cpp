@@ -102,13 +102,13 @@ struct Asked {
         return rig.downloadPlanes(rig.planes(out, w, rows, 1));
     }
     // Two bands: c0, c1.x, c1.y, c1.z one below the other, three planes.
-    std::vector<float> harmonics(ClusterVisibility visibility) {
+    std::vector<float> harmonics(ClusterVisibility visibility, bool hasNormals = true) {
         const std::uint32_t w = leaves.position.width, h = leaves.position.height;
         const Guarded p = rig.uploadPlanes(leaves.position.planes, w, h, 3, kNaN), n = rig.uploadPlanes(leaves.normal.planes, w, h, 3, kNaN);
         const Guarded out = rig.makePlanes(w, 4 * h, 3), counts = rig.upload(std::vector<cl_int>{0, 0, 0});
         const Planes all = rig.planes(out, w, 4 * h, 3);
         ClusteredHarmonics bands(rig.device(), visibility);
-        bands.record(rig.executor(), rig.planes(p, w, h, 3), rig.planes(n, w, h, 3), pass, maps(), {all, cl_int(all.rowStride * h)}, counts);
+        bands.record(rig.executor(), rig.planes(p, w, h, 3), hasNormals ? rig.planes(n, w, h, 3) : Planes{}, pass, maps(), {all, cl_int(all.rowStride * h)}, counts);
         rig.device().finish();
         return rig.downloadPlanes(all);
     }
@@ -275,6 +275,37 @@ TEST_CASE("light of bounces without shadows counts in two bands, by light from a
     CHECK(wrong == 0);
 }
 
+// Without normals a point is seen from all sides. What faces each VPL gets is c0, but for a factor.
+TEST_CASE("light of bounces without shadows is borne out at points without normals, too", "[clustered_gather][large]") {
+    LaterBounce scene(GENERATE(1u, 16u), testSize({75, 33}));
+    const auto bands = [](Asked asked, ClusterVisibility visibility) { return asked.harmonics(visibility, false); };
+    const std::vector<float> before = bands(scene.shadowed(ClusterVisibility::hard), ClusterVisibility::hard),
+                             sure = bands(scene.shadowed(ClusterVisibility::strict), ClusterVisibility::strict),
+                             all = bands(scene.all(ClusterVisibility::hard, false), ClusterVisibility::hard),
+                             kept = bands(scene.all(ClusterVisibility::strict, true), ClusterVisibility::strict);
+    const std::size_t plane = 4 * scene.pixels;
+    int little = 0, much = 0, wrong = 0;
+    for (std::size_t i = 0; i < scene.pixels; ++i) {
+        double lit = 0.0, sum = 0.0, certain = 0.0;
+        for (std::size_t c = i; c < before.size(); c += plane) {
+            lit += double(before[c]);
+            certain += double(sure[c]);
+            sum += double(all[c]);
+        }
+        if (certain != lit) continue;  // beside a rim: the other tests'
+        const double share = shareOfUnshadowed(lit, sum - lit);
+        little += share < 0.1;
+        much += share > 0.9;
+        for (std::size_t value = i; value < all.size(); value += scene.pixels) {
+            const double expected = double(before[value]) + share * (double(all[value]) - double(before[value]));
+            wrong += !(std::abs(double(kept[value]) - expected) <= 20.0 * kTwinTolerance * (lit + share * (sum - lit)) + 1e-9);
+        }
+    }
+    CAPTURE(little, much);
+    CHECK(wrong == 0);
+    if (scene.pixels > 2000) CHECK((little > 100 && much > 100));
+}
+
 TEST_CASE("hard gathers trust all light without shadows, and strict ones what somebody vouches for", "[clustered_gather][large]") {
     LaterBounce scene(GENERATE(1u, 16u), testSize({75, 33}));
     const std::vector<float> light = scene.all(ClusterVisibility::hard, false).planes(3), strict = scene.all(ClusterVisibility::strict, false).planes(4);
@@ -288,10 +319,17 @@ TEST_CASE("light without shadows that is beyond all floats leaves the shadowed l
         for (int c = 0; c < 3; ++c) vpl.flux.s[c] = 3e38f;
     for (const float area : {0.02f, 1e-9f}) {  // some of the pixels' sums overflow, or all
         for (lw_vpl& vpl : scene.later) vpl.positionArea.s[3] = area;
-        const std::vector<float> before = scene.shadowed(ClusterVisibility::hard).planes(3), kept = scene.all(ClusterVisibility::strict, true).planes(4);
-        int more = 0;
-        for (std::size_t i = 0; i < before.size(); ++i) more += !(std::abs(double(kept[i]) - double(before[i])) <= 1e-6 * double(before[i]));
-        CHECK(more == 0);
+        const auto same = [](const std::vector<float>& kept, const std::vector<float>& before) {
+            int more = 0;
+            for (std::size_t i = 0; i < before.size(); ++i) more += !(std::abs(double(kept[i]) - double(before[i])) <= 1e-6 * std::abs(double(before[i])));
+            return more == 0;
+        };
+        // For a filter that settles doubt (light, then its doubtful part, too), by each pixel, and at points.
+        Asked strict = scene.all(ClusterVisibility::strict, true), shadowed = scene.shadowed(ClusterVisibility::strict);
+        CHECK(same(strict.planes(4), scene.shadowed(ClusterVisibility::hard).planes(3)));
+        CHECK(same(strict.planes(4), shadowed.planes(4)));
+        CHECK(same(strict.planes(3), shadowed.planes(3)));
+        CHECK(same(strict.harmonics(ClusterVisibility::strict), shadowed.harmonics(ClusterVisibility::strict)));
     }
 }
 

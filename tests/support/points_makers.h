@@ -58,7 +58,7 @@ inline Maker lpvOf(LWLpvTransport transport, bool damped = false, std::uint32_t 
             }};
 }
 inline std::vector<Maker> makers() {
-    return {rsmOf(256, 1), rsmOf(0, 1), ssvpOf(LW_VISIBILITY_HARD, 2), ssvpOf(LW_VISIBILITY_SOFT, 3, 2), ssvpOf(LW_VISIBILITY_NONE, 1), ssvpOf(LW_VISIBILITY_STRICT, 2),
+    return {rsmOf(256, 1), rsmOf(0, 1), ssvpOf(LW_VISIBILITY_HARD, 2), ssvpOf(LW_VISIBILITY_SOFT, 3, 2), ssvpOf(LW_VISIBILITY_NONE, 1), ssvpOf(LW_VISIBILITY_STRICT, 2), ssvpOf(LW_VISIBILITY_CAREFUL, 4, 2),
             rsmOf(256, 1, LW_RSM_VISIBILITY_VOXEL), ssvpOf(LW_VISIBILITY_VOXEL, 2, 2),
             lpvOf(LW_LPV_TRANSPORT_PROPAGATE), lpvOf(LW_LPV_TRANSPORT_PROPAGATE, true), lpvOf(LW_LPV_TRANSPORT_SWEEP),
             lpvOf(LW_LPV_TRANSPORT_SWEEP, false, 4), lpvOf(LW_LPV_TRANSPORT_COARSE_TO_FINE),

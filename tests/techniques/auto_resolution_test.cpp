@@ -6,6 +6,7 @@
 #include "support/camera_matrices.h"
 #include "support/lit_room.h"
 #include "support/scoped_api.h"
+#include "support/walls.h"
 
 using namespace lightwell::test;
 using lightwell::reference::Vec;
@@ -50,16 +51,29 @@ LWSsvpDesc ssvpDesc(float share) {
     return desc;
 }
 
+// Four bounces, two of them shadowed: with occluders all around there is light of all four.
+LWSsvpDesc carefulDesc(float share) {
+    LWSsvpDesc desc = ssvpDesc(share);
+    desc.visibility = LW_VISIBILITY_CAREFUL;
+    desc.bounces = 4;
+    return desc;
+}
+
 struct Result {
     std::vector<float> light, marks;
     std::uint64_t repaired = 0, unrepaired = 0;
 };
 
 template <class Desc>
-Result render(LWDevice device, const Desc& desc, const LitFloor& floor, const Sticks& scene) {
+Result render(LWDevice device, const Desc& desc, const LitFloor& floor, const Sticks& scene, const LWGeometry* geometry = nullptr) {
     TestTechnique technique(device, desc);
     TestView view(device, kWidth, kHeight);
-    technique.update({floor.light});
+    LWFrame frame{};
+    frame.structSize = sizeof frame;
+    frame.lightCount = 1;
+    frame.lights = &floor.light;
+    frame.geometry = geometry;
+    technique.update(frame);
     Result result;
     result.light = technique.render(view, scene.gbuffer);
     if (!(desc.autoResolution > 0.0f)) return result;
@@ -91,16 +105,16 @@ Desc halved(Desc desc) {
 }
 
 template <class Desc>
-void checkTowardsExact(LWDevice device, Desc desc) {
+void checkTowardsExact(LWDevice device, Desc desc, const LWGeometry* geometry = nullptr) {
     const LitFloor floor(64, spotProfile);
     const Sticks scene;
     Desc fixed = desc;
     fixed.autoResolution = 0.0f;
-    const std::vector<float> exact = render(device, exactly(desc), floor, scene).light;
-    const double full = rootMeanSquare(render(device, fixed, floor, scene).light, exact);
-    const std::vector<float> halfLight = render(device, halved(desc), floor, scene).light;
+    const std::vector<float> exact = render(device, exactly(desc), floor, scene, geometry).light;
+    const double full = rootMeanSquare(render(device, fixed, floor, scene, geometry).light, exact);
+    const std::vector<float> halfLight = render(device, halved(desc), floor, scene, geometry).light;
     const double half = rootMeanSquare(halfLight, exact);
-    const Result found = render(device, desc, floor, scene);
+    const Result found = render(device, desc, floor, scene, geometry);
     const double own = rootMeanSquare(found.light, exact);
     CAPTURE(full, half, own, found.repaired, found.unrepaired);
     CHECK(found.repaired > 0);
@@ -128,6 +142,8 @@ TEST_CASE("auto_resolution with visibility of maps, and of lost pixels alone", "
     TestDevice device(16);
     checkTowardsExact(device, rsmDesc(3.0f));
     checkTowardsExact(device, ssvpDesc(0.3f));
+    Walls room = Walls::room();
+    checkTowardsExact(device, carefulDesc(0.3f), room.describe());
 }
 
 TEST_CASE("auto_resolution with visibility of voxels", "[auto_resolution][long]") {
@@ -182,6 +198,10 @@ TEST_CASE("auto_resolution: memory as estimated, nothing compiled late, wrong se
     LWSsvpDesc ssvp = ssvpDesc(0.3f);
     check("rsm", &rsm);
     check("ssvp", &ssvp);
+    Walls room = Walls::room();
+    frame.geometry = room.describe();
+    const LWSsvpDesc careful = carefulDesc(0.3f);
+    check("ssvp", &careful);
     LWTechnique none = nullptr;
     const LWRsmDesc negative = rsmDesc(-1.0f);
     CHECK(lwCreateRsm(device, &negative, &none) == LW_ERROR_INVALID_ARGUMENT);

@@ -239,6 +239,7 @@ TEST_CASE("two million surfels compile nothing that prewarming has not", "[ssvp]
 
 TEST_CASE("the estimate follows stages, clusters and occluders", "[ssvp][stages]") {
     const ScopedVariable unified("LIGHTWELL_UNIFIED_MEMORY", GENERATE(as<const char*>{}, "1", "0"));
+    const LWVisibility visibility = GENERATE(LW_VISIBILITY_HARD, LW_VISIBILITY_CAREFUL);  // which keeps a fourth plane for the filter
     TestDevice device(16);
     LitFloor floor(64, plain);
     Canvas canvas;
@@ -257,6 +258,7 @@ TEST_CASE("the estimate follows stages, clusters and occluders", "[ssvp][stages]
             for (const std::uint32_t shadowed : {1u, 4u})
                 for (const std::uint32_t clusters : {0u, 8u}) {
                     LWSsvpDesc desc = descOf(clusters, bounces, shadowed);
+                    desc.visibility = visibility;
                     desc.occluders = occluders;
                     TestTechnique technique(device, desc);
                     technique.update(frame.frame);
@@ -265,7 +267,7 @@ TEST_CASE("the estimate follows stages, clusters and occluders", "[ssvp][stages]
                     REQUIRE(lwEstimateFrameMemory(device, "ssvp", &desc, &viewDesc, &frame.frame, &estimate) == LW_SUCCESS);
                     const auto over = std::int64_t(estimate) - std::int64_t(technique.stats().deviceBytes);
                     if (inPlace < 0) inPlace = over;
-                    CAPTURE(occluders, bounces, shadowed, clusters);
+                    CAPTURE(int(visibility), occluders, bounces, shadowed, clusters);
                     CHECK(over >= 0);
                     CHECK(over == inPlace);
                 }
@@ -330,12 +332,14 @@ TEST_CASE("without a warm start no frame shows what came before it", "[ssvp][sta
     Canvas canvas;
     TestView view(device, kWidth, kHeight);
     const LWSourceView source{view, &canvas.scene.gbuffer};
-    const unsigned seed = GENERATE(range(1u, 4u));
+    const unsigned seed = GENERATE(range(1u, 7u));
     std::mt19937 random(seed);
-    LWSsvpDesc desc = descOf(std::array{0u, 1u, 8u, 64u}[random() % 4], std::uint32_t(1 + random() % 4), std::uint32_t(1 + random() % 4));
+    const unsigned clusters = random() % 4, bounces = 1 + random() % 4, shadowed = 1 + random() % 4;
+    LWSsvpDesc desc = descOf(std::array{0u, 1u, 8u, 16u}[clusters], bounces, shadowed);
     desc.warmStart = 0;
     desc.secondVpls = 8;
-    setEnum(desc.visibility, std::uint32_t(random() % 3));
+    setEnum(desc.visibility, (seed + 3) % 6);  // each once; careful where two of four bounces are shadowed
+    if (desc.visibility == LW_VISIBILITY_CAREFUL) REQUIRE((desc.bounces == 4 && desc.shadowedBounces == 2));
     TestTechnique technique(device, desc);
     AnyFrame any;
     for (int i = 0; i < 8; ++i) {
