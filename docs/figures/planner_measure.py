@@ -14,6 +14,7 @@ from planner_model import COVERAGE, DATA, PROBES
 from program import caller
 
 SIZE, BLOCK = (1280, 720), 10
+TRUTH = ["--noise", "3e-3", "--truth-seconds", 120]
 SCENES = ["cornell", "basic", "rooms", "cornell_original", "sponza_crytek", "sponza_dabrovic", "sibenik", "living_room", "wooden_staircase",
           "breakfast_room", "level_zdm2", "bunny_corner"]
 SHARED = SCENES[3:]  # the large ones, of which the rival is asked first
@@ -37,17 +38,16 @@ def measure(program, work):
                   "--frames", frames, "--techniques", *techniques, *more, shown=True)
 
     all_of = list(map(variant, CANDIDATES))
-    truth = ["--noise", "3e-3", "--truth-seconds", 120]
-    chart("chart", all_of, SIZE, 11, "--scenes", *SCENES, *truth)
+    chart("chart", all_of, SIZE, 11, "--scenes", *SCENES, *TRUTH)
     drawn = [c for c in CANDIDATES if is_drawn(c)]
     for seed in SEEDS:
-        chart(f"seeds{seed}", [f"{variant(c)},seed={seed}" for c in drawn], SIZE, 1, "--scenes", *SCENES, *truth)
+        chart(f"seeds{seed}", [f"{variant(c)},seed={seed}" for c in drawn], SIZE, 1, "--scenes", *SCENES, *TRUTH)
     for seed in MORE_SEEDS:
-        chart(f"seeds{seed}", [f"{variant(c)},seed={seed}" for c in drawn], SIZE, 1, "--scenes", *UNSURE, *truth)
+        chart(f"seeds{seed}", [f"{variant(c)},seed={seed}" for c in drawn], SIZE, 1, "--scenes", *UNSURE, *TRUTH)
     for size in SIZES:
         chart(f"sizes_{size[1]}", all_of, size, 11, "--scenes", *SIZED, "--cameras", "first", "--noise", "1e3")
     for seed in (0, *SEEDS):
-        chart(f"rival{seed}", [f"{r},seed={seed}" for r in RIVALS], SIZE, 1, "--scenes", *SHARED, "--cameras", "first", *truth)
+        chart(f"rival{seed}", [f"{r},seed={seed}" for r in RIVALS], SIZE, 1, "--scenes", *SHARED, "--cameras", "first", *TRUTH)
     made = planner_scenes.write(work / "made")
     taught = [c for c in CANDIDATES if c.split()[0] in TAUGHT and "voxel" not in c and c not in barred(CANDIDATES)]
     chart("train0", list(map(variant, taught)), SIZE, 1, "--scenes", *made, *MADE_TRUTH)

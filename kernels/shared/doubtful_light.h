@@ -22,14 +22,17 @@ LW_FN real borne_out(real light, real doubt) {
 // Light of bounces without shadows, this many times as strong as the shadowed light beside it, counts by half. Raised: light of surfaces behind
 // walls; lowered: what comes round corners, where shadowed bounces bring little, is lost, most of all with few clusters.
 #define LW_UNSHADOWED_BORNE 16.0f
+// As much of it counts in any case: places that only later bounces reach have no shadowed light at all. A share f leaves f^2 of the squared error
+// of light behind walls and (1 - f)^2 of what black is off by. Raised: the former; lowered: such places darken, to black with 0.
+#define LW_UNSHADOWED_LEAST 0.25f
 
 // The share of light of bounces without shadows that counts where `shadowed` of `all` light is shadowed (sums over channels, 0 or more): of
-// U = all - shadowed as much as the shadowed light S bears out, w = 1 / (1 + (U / kS)^2). w U is kS/2 at most, where U is kS, and nothing
-// where S is. Where a sum is beyond all floats, none of U counts.
+// U = all - shadowed as much as the shadowed light S bears out, w = max(1 / (1 + (U / kS)^2), f). Where a sum is beyond all floats, none of
+// U counts.
 LW_FN real unshadowed_share(real shadowed, real all) {
     const mask isLit = and_(all > 0.0f, all < INFINITY);
     const real part = select_((real)0.0f, fmin(shadowed / all, (real)1.0f), isLit), s = LW_UNSHADOWED_BORNE * part, u = 1.0f - part;
-    return select_((real)0.0f, s * s / fma_(s, s, u * u), isLit);
+    return select_((real)0.0f, fmax(s * s / fma_(s, s, u * u), (real)LW_UNSHADOWED_LEAST), isLit);
 }
 
 // What is left of a channel. (Without a share the difference may be one of infinities.)

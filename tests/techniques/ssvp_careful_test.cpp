@@ -1,5 +1,5 @@
 // Technique ssvp with careful look-ups: strict ones, to the bit, wherever there is no bounce without shadows to be held against two or more
-// with them; no more memory anywhere; and what a lid keeps in.
+// with them; no more memory anywhere; and what a lid keeps in of four bounces.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -101,7 +101,7 @@ TEST_CASE("careful look-ups are strict ones, but for bounces without shadows aft
     }
 }
 
-TEST_CASE("careful look-ups: with four bounces, two of them shadowed, an open room blocks nothing, a lid blocks all", "[ssvp][careful]") {
+TEST_CASE("careful look-ups: with four bounces, two of them shadowed, an open room blocks nothing, a lid all that is shadowed and three quarters of the rest", "[ssvp][careful]") {
     Rig open, closed;
     closed.room.add({-0.6, 0.05, -0.1}, {1.2, 0, 0}, {0, 0, 1.2});
     LWSsvpDesc desc = descOf(LW_VISIBILITY_CAREFUL, 4, 2);
@@ -112,6 +112,7 @@ TEST_CASE("careful look-ups: with four bounces, two of them shadowed, an open ro
                  leak = meanOf(closed.render(hard).light);
     CAPTURE(desc.clusters, lit, all, dark, leak);
     CHECK(lit > 0.95 * all);
-    CHECK(dark < 0.02 * lit);
+    // Of the two bounces that nothing shadows a quarter.
+    CHECK(dark < 0.25 * leak + 0.005 * lit);
     CHECK(leak > 0.02 * all);
 }
