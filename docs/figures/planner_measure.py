@@ -15,6 +15,7 @@ from program import caller
 
 SIZE, BLOCK = (1280, 720), 10
 TRUTH = ["--noise", "3e-3", "--truth-seconds", 120]
+KEPT = [*TRUTH, "--kept-truths"]  # of the first chart: every further one would trace on where that noise was not reached
 SCENES = ["cornell", "basic", "rooms", "cornell_original", "sponza_crytek", "sponza_dabrovic", "sibenik", "living_room", "wooden_staircase",
           "breakfast_room", "level_zdm2", "bunny_corner"]
 SHARED = SCENES[3:]  # the large ones, of which the rival is asked first
@@ -41,18 +42,18 @@ def measure(program, work):
     chart("chart", all_of, SIZE, 11, "--scenes", *SCENES, *TRUTH)
     drawn = [c for c in CANDIDATES if is_drawn(c)]
     for seed in SEEDS:
-        chart(f"seeds{seed}", [f"{variant(c)},seed={seed}" for c in drawn], SIZE, 1, "--scenes", *SCENES, *TRUTH)
+        chart(f"seeds{seed}", [f"{variant(c)},seed={seed}" for c in drawn], SIZE, 1, "--scenes", *SCENES, *KEPT)
     for seed in MORE_SEEDS:
-        chart(f"seeds{seed}", [f"{variant(c)},seed={seed}" for c in drawn], SIZE, 1, "--scenes", *UNSURE, *TRUTH)
+        chart(f"seeds{seed}", [f"{variant(c)},seed={seed}" for c in drawn], SIZE, 1, "--scenes", *UNSURE, *KEPT)
     for size in SIZES:
         chart(f"sizes_{size[1]}", all_of, size, 11, "--scenes", *SIZED, "--cameras", "first", "--noise", "1e3")
     for seed in (0, *SEEDS):
-        chart(f"rival{seed}", [f"{r},seed={seed}" for r in RIVALS], SIZE, 1, "--scenes", *SHARED, "--cameras", "first", *TRUTH)
+        chart(f"rival{seed}", [f"{r},seed={seed}" for r in RIVALS], SIZE, 1, "--scenes", *SHARED, "--cameras", "first", *KEPT)
     made = planner_scenes.write(work / "made")
     taught = [c for c in CANDIDATES if c.split()[0] in TAUGHT and "voxel" not in c and c not in barred(CANDIDATES)]
     chart("train0", list(map(variant, taught)), SIZE, 1, "--scenes", *made, *MADE_TRUTH)
     for seed in SEEDS:
-        chart(f"train{seed}", [f"{variant(c)},seed={seed}" for c in taught if is_drawn(c)], SIZE, 1, "--scenes", *made, *MADE_TRUTH)
+        chart(f"train{seed}", [f"{variant(c)},seed={seed}" for c in taught if is_drawn(c)], SIZE, 1, "--scenes", *made, *MADE_TRUTH, "--kept-truths")
     (work / "train_probes.json").write_text(json.dumps([probe(lightwell, {"scene": path, "camera": "camera"}) for path in made]))
     views = json.loads((work / "chart/results.json").read_text())["views"]
     (work / "probes.json").write_text(json.dumps([probe(lightwell, v) for v in views]))

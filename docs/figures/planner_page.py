@@ -82,6 +82,15 @@ def late_share(data, picks):
     return f"{100 * np.mean(late):.0f} %"
 
 
+def again(raw):
+    """What planner_again.py measured once more."""
+    if "errors_again" not in raw:
+        return ""
+    told = raw["errors_again"]
+    more = "".join(f", {n} in {scene}" for scene, n in told["more_sets"].items())
+    return f" Errors with `{told['rows']}` are of {told['date']}, after a change of that light: {told['sets']} sets{more}; {told['made_sets']} in made-up scenes (others 3)."
+
+
 def fit_block(data, kept, ms, log, found, ridges, sigma, costs):
     raw = data.raw
     off = np.abs(ms[:, kept] / data.ms[:, kept] - 1.0)
@@ -93,7 +102,7 @@ def fit_block(data, kept, ms, log, found, ridges, sigma, costs):
              f"all threads over their number, times {raw['clock_over_processor']:.3f}, what the clock showed beyond it where nothing else ran. "
              f"{len(data.candidates)} configurations in {len(data.views)} views of {len(set(v['scene'] for v in data.views))} scenes; {len(kept)} of them, within 5 % of a front "
              "in two scenes or more, are the table, which holds no hard maps where strict ones are measured, no maps of 256 x 256, and none of `lpv`, `cone_tracing`, `ao`, `fallback` and `visibility=voxel`, which made-up scenes lack. Errors are against all bounces, at one pixel of each "
-             f"{raw['judged_block']} x {raw['judged_block']}, the geometric mean over {raw['seeds']} sample sets where VPLs are drawn ({max(raw['more_seeds'].values())} in {', '.join(raw['more_seeds'])}, where they lie farthest apart); the truth's own noise ({min(v['noise'] for v in data.views):.1g} to {max(v['noise'] for v in data.views):.1g}) is taken off.", "",
+             f"{raw['judged_block']} x {raw['judged_block']}, the geometric mean over {raw['seeds']} sample sets where VPLs are drawn ({max(raw['more_seeds'].values())} in {', '.join(raw['more_seeds'])}, where they lie farthest apart); the truth's own noise ({min(v['noise'] for v in data.views):.1g} to {max(v['noise'] for v in data.views):.1g}) is taken off." + again(raw), "",
              "Everything below is *leave one scene out*: each view is predicted by models that were fitted without its scene (the two Cornell "
              f"boxes count as one), with the ridges chosen within the scenes that are left. {len(data.madeLog)} made-up scenes teach errors to all of them and are not judged. The fit to all: "
              f"ridge {ridge:g} of what tells candidates apart, " + (f"{ofView:g} of what is alike for all." if math.isfinite(ofView) else "nothing that is alike for all."), "",

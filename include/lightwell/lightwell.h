@@ -304,7 +304,7 @@ typedef struct LWRsm {
                             and never the same for another map that may come to lie at the same address (one counter for all maps
                             does). A map that has version, camera and memory of the one at its place in the technique's last frame
                             is not read again, unless worldOrigin moved or a map came, went or changed its size. Technique ssvp
-                            keeps its VPLs and their clusters and maps, too, once no map and no occluder has changed for 16 frames */
+                            keeps its VPLs and their clusters and maps, too, once no map and no occluder has changed for 16 or 48 frames */
 } LWRsm;
 
 /** A light, and the surfaces it lights as RSMs: none (analytic only), one, six faces of a point light,
@@ -504,7 +504,7 @@ typedef enum LWVisibility {
     LW_VISIBILITY_SOFT = 2, /**< the share of its four nearest texels (percentage-closer) */
     LW_VISIBILITY_VOXEL = 3, /**< instead of maps, the voxels that the occluders occupy, between each VPL and the pixel */
     LW_VISIBILITY_STRICT = 4, /**< as HARD; light past the rims of what stands before it counts as far as the rest of a place's light bears it out */
-    LW_VISIBILITY_CAREFUL = 5 /**< ssvp's: as STRICT; where 2 <= shadowedBounces < bounces, later ones count as far as shadowed light bears them out */
+    LW_VISIBILITY_CAREFUL = 5 /**< ssvp's: as STRICT; where 2 <= shadowedBounces < bounces, later ones count as far as shadowed light bears out, or a quarter */
 } LWVisibility;
 
 typedef enum LWDirections {
@@ -534,7 +534,7 @@ typedef struct LWSsvpDesc {
     uint32_t bounces;        /**< 1 .. 4 */
     uint32_t shadowedBounces; /**< 1 .. 4: bounces whose light `visibility` shadows; the VPLs of each but the first are put into as
                                   many clusters (64 where `clusters` is 0) with maps of their own. Light of later bounces
-                                  goes through walls, but with LW_VISIBILITY_CAREFUL and 2 or more here only to where shadowed light gets */
+                                  goes through walls, a quarter or more of it with LW_VISIBILITY_CAREFUL and 2 or more here */
     uint32_t secondVpls;     /**< of the second and of each further bounce, for each cluster of the bounce before */
     LWDirections directions; /**< in which a cluster's second-bounce VPLs are drawn */
     uint32_t warmStart;      /**< 1: clusters start where they were in the frame before */

@@ -82,7 +82,7 @@ LW_FN lw_seen_light gather_subset(const lw_surface s, __global const float* vpls
     return e;
 }
 
-// Of unshadowed light what the rest bears out.
+// Of unshadowed light what the rest bears out, at least a quarter.
 LW_FN void bear_unshadowed_out(lw_seen_light* e) {
     if (!e->isUnshadowed) return;
     const real share = unshadowed_share(channel_sum(e->shadowed), channel_sum(e->light));

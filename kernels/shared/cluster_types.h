@@ -22,7 +22,7 @@ LW_SIZE_CHECK(lw_cluster, 80);
 #define LW_MOST_SORTED 64
 
 // What stands for the number of its cluster where a gathered VPL has none: seen everywhere, beyond doubt; the same, as nobody looked: strict
-// gathers let it count as far as shadowed light bears it out.
+// gathers let it count as far as shadowed light bears it out, at least a quarter.
 #define LW_SEEN_EVERYWHERE (-1)
 #define LW_UNSHADOWED (-2)
 

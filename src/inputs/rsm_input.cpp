@@ -79,10 +79,10 @@ struct RsmInput::Impl {
 
     // Of each map, whether the texels made of it before are what it would make. By place among the texels: where one map has another
     // size all are read.
-    std::vector<bool> findKept(const std::vector<ReadRsm>& now, Executor& executor) const {
+    std::vector<bool> findKept(const std::vector<ReadRsm>& now, Executor& executor, std::uint64_t failed) const {
         std::vector<bool> kept(now.size(), false);
         const Device& current = executor.device();
-        const bool isLost = device != &current || failures != current.failures();
+        const bool isLost = device != &current || failures != failed;
         if (isLost || !(origin == executor.worldOrigin()) || !std::equal(now.begin(), now.end(), read.begin(), read.end(),
                                   [](const ReadRsm& a, const ReadRsm& b) { return a.isAtSamePlace(b); }))
             return kept;
@@ -136,11 +136,12 @@ void RsmInput::import(Executor& executor, const LWFrame& frame) {
     std::vector<RsmSpan> newSpans;
     const std::vector<CheckedRsm> rsms = checkLights(device, frame, newSpans);
     std::vector<ReadRsm> now(rsms.begin(), rsms.end());
-    const std::vector<bool> kept = impl_->findKept(now, executor);
+    const std::uint64_t failures = device.failures();  // once: another may happen meanwhile, which the next import's is
+    const std::vector<bool> kept = impl_->findKept(now, executor, failures);
     impl_->keptCount = std::size_t(std::count(kept.begin(), kept.end(), true));
     impl_->read.clear();  // until all commands are on their way
     impl_->device = &device;
-    impl_->failures = device.failures();
+    impl_->failures = failures;
     impl_->origin = executor.worldOrigin();
     std::uint64_t total = 0;
     std::uint32_t newRows = 0, newTexels = 0;

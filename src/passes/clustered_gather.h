@@ -24,7 +24,7 @@ struct VplList {
 };
 
 // The VPLs of a bounce; without an assignment (an int each: cluster, or -1: left out) nothing shadows their light. isUnshadowed: that is for
-// thrift, so that strict gathers let it count as far as shadowed light bears it out; otherwise it is beyond doubt.
+// thrift, so that strict gathers let it count as far as shadowed light bears it out, at least a quarter; otherwise it is beyond doubt.
 struct GatheredList {
     VplList vpls;
     const Buffer* assignment = nullptr;
@@ -66,8 +66,8 @@ public:
     void recordOrder(Executor& executor, const std::vector<GatheredList>& lists);
     // Pass "clustered_gather.gather"; masks (of `vpls`, by InterleavedGather::recordCull), irradiance and counts as in
     // InterleavedGather::recordGather. Of strict look-ups: a fourth plane of irradiance, if there is one, takes what is doubtful (the sum
-    // over its channels), for a filter made with `doubtful`; otherwise what is not borne out is gone already. Unshadowed light that is
-    // not borne out by its pixel's subset of VPLs is gone either way.
+    // over its channels), for a filter made with `doubtful`; otherwise what is not borne out is gone already. Of unshadowed light
+    // what its pixel's subset of VPLs does not bear out is gone either way, but for a quarter of all.
     void recordGather(Executor& executor, const Planes& position, const Planes& normal, const Buffer& masks,
                       const lw_vpl_tiles& tiles, const ClusterMaps& maps, const Planes& irradiance, const Buffer& counts);
 

@@ -37,6 +37,10 @@ PullPush::PullPush(Device& device)
       push_(device.programs().kernel(kProgram, "pull_push_push")),
       pushRecords_(device.programs().kernel(kProgram, "pull_push_push_records")) {}
 
+void PullPush::recordKept(Executor& executor) {
+    if (filled_) executor.fill("pull_push.clear", filled_, 0, 0, sizeof(cl_uint));
+}
+
 void PullPush::record(Executor& executor, const MapTexels& maps) {
     filled_.reserve(device_, sizeof(cl_uint), "count of filled texels");
     executor.fill("pull_push.clear", filled_, 0, 0, sizeof(cl_uint));

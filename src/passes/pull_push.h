@@ -20,7 +20,10 @@ public:
     // Known texels stay as they are; holes too wide stay unknown.
     void record(Executor& executor, const MapTexels& maps);
 
-    void report(Report& report) const;  // filled_texels, of the last record()
+    // Of a frame that keeps the last one's maps as they are: fills none.
+    void recordKept(Executor& executor);
+
+    void report(Report& report) const;  // filled_texels, of the last of both
     std::uint64_t bytes() const;
     static std::uint64_t estimateBytes(std::uint32_t size, std::uint32_t clusterCount);
 

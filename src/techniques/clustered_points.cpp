@@ -23,9 +23,9 @@ ClusterVisibility visibilityOf(LWVisibility visibility) {
 ClusteredPoints::ClusteredPoints(Device& device, ClusterVisibility visibility)
     : device_(device), light_(device), cull_(device, 1), gather_(device, 1, 1, visibility), harmonics_(device, visibility) {}
 
-void ClusteredPoints::startFrame() {
+void ClusteredPoints::startFrame(bool isLightKept) {
     light_.startFrame();
-    isOrdered_ = false;
+    if (!isLightKept) isOrdered_ = false;
 }
 
 void ClusteredPoints::render(Executor& executor, const Points& points, const std::vector<GatheredList>& lists, const ClusterMaps& maps) {

@@ -17,7 +17,7 @@ class ClusteredPoints final : private PointGather {
 public:
     ClusteredPoints(Device& device, ClusterVisibility visibility);
 
-    void startFrame();
+    void startFrame(bool isLightKept = false);
     // The bounces of the last update, and their maps.
     void render(Executor& executor, const Points& points, const std::vector<GatheredList>& lists, const ClusterMaps& maps);
 

@@ -49,7 +49,10 @@ public:
 
     // Of a frame that keeps the maps of the one before: none is drawn anew.
     void recordKept(Executor& executor) {
-        for (Stage& stage : stages_) stage.maps.recordKept(executor);
+        for (Stage& stage : stages_) {
+            stage.maps.recordKept(executor);
+            stage.holes.recordKept(executor);
+        }
     }
 
     // Of what occludes: another number after an import() that may have changed some; 0: not known, as of what the screen shows.

@@ -27,10 +27,6 @@
 namespace lightwell {
 namespace {
 
-// Updates of the same light and geometry in which clusters settle: 16 times three of Lloyd's iterations (sibenik's 64 clusters, the slowest
-// of the scenes tried, took 42 from their first frame on). Fewer: clusters of light that came to rest stay where they were half-way.
-constexpr std::uint32_t kSettling = 16;
-
 // A bounce whose VPLs have clusters, and the VPLs of the next one.
 struct Stage {
     Stage(Device& device, const LWSsvpDesc& desc, std::size_t index)
@@ -103,7 +99,7 @@ public:
         if (isKept_) choices_.push_back({"ssvp.vpls", "kept with their clusters and maps: by the host's versions light and geometry stand still"});
         states_.purge();
         states_.each([&](InterleavedView& state) { state.startFrame(restart); });
-        if (points_) points_->startFrame();
+        if (points_) points_->startFrame(isKept_);
     }
 
     void render(Executor& executor, const std::shared_ptr<View>& view, const LWGBuffer& gbuffer,
@@ -242,7 +238,7 @@ private:
     Device& device_;
     LWSsvpDesc desc_;
     Continuity continuity_{device_};
-    StillFrames still_{kSettling};
+    StillFrames still_{settlingOf(desc_)};
     bool isKept_ = false;         // of the last update: what the one before recorded
     std::uint32_t turns_ = 0;     // of the sample set, one a frame while there is a history
     RsmInput rsms_;

@@ -17,6 +17,7 @@
 namespace lightwell {
 
 VplSamplingOptions samplingOptions(const LWSsvpDesc& desc);
+std::uint32_t settlingOf(const LWSsvpDesc& desc);  // updates of the same light and geometry in which clusters come to rest
 // Of bounce `stage` + 1.
 KMeansOptions clusterOptions(const LWSsvpDesc& desc, std::size_t stage);
 SecondBounceOptions nextOptions(const LWSsvpDesc& desc, std::size_t stage);
@@ -26,7 +27,7 @@ OccluderOptions occluderOptions(const LWSsvpDesc& desc);
 SsvpPlanOptions planOptions(const LWSsvpDesc& desc);  // of one with an error target
 std::uint32_t groupsOf(const LWSsvpDesc& desc);
 bool looksStrictly(const LWSsvpDesc& desc);  // strictly or carefully
-bool bearsOut(const LWSsvpDesc& desc);  // light of bounces without shadows counts as far as shadowed light bears it out
+bool bearsOut(const LWSsvpDesc& desc);  // light of bounces without shadows counts as far as shadowed light bears it out, at least a quarter
 // Bounces whose VPLs are shadowed, and those whose VPLs have clusters.
 std::size_t shadowedOf(const LWSsvpDesc& desc);
 std::size_t stagesOf(const LWSsvpDesc& desc);

@@ -53,7 +53,7 @@ std::vector<LWParameter> makeTable() {
               kVisibilitySweep),
         swept(uint("bounces", "indirect bounces; those after the first with VPLs drawn from the maps of the bounce before", offsetof(LWSsvpDesc, bounces), 1, 4, 2),
               kBouncesSweep),
-        uint("shadowed_bounces", "bounces whose light is shadowed, by maps of their own clusters: less light through walls, time; of later ones none (visibility=careful with 2 or more: as far as shadowed light bears it out)",
+        uint("shadowed_bounces", "bounces whose light is shadowed, by maps of their own clusters: less light through walls, time; of later ones none (visibility=careful with 2 or more: as far as shadowed light bears it out, at least a quarter)",
              offsetof(LWSsvpDesc, shadowedBounces), 1, 4, 2),
         uint("second_vpls", "VPLs of each bounce after the first for each cluster of the one before", offsetof(LWSsvpDesc, secondVpls), 1, 1024, 32),
         oneOf("directions", "in which second-bounce VPLs are drawn: by cosine, evenly on the map's disc, or on its square",

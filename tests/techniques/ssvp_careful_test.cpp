@@ -114,5 +114,6 @@ TEST_CASE("careful look-ups: with four bounces, two of them shadowed, an open ro
     CHECK(lit > 0.95 * all);
     // Of the two bounces that nothing shadows a quarter.
     CHECK(dark < 0.25 * leak + 0.005 * lit);
+    CHECK(dark > 0.2 * leak);
     CHECK(leak > 0.02 * all);
 }

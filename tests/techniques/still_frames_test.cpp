@@ -16,7 +16,7 @@ using lightwell::StillFrames;
 namespace {
 
 constexpr std::uint32_t kWidth = 45, kHeight = 16;
-constexpr int kSettling = 16;  // as in ssvp.cpp
+constexpr int kSettling = 16, kSettlingOfMany = 48;  // as in ssvp_options.cpp
 
 LWSsvpDesc small() {
     LWSsvpDesc desc;
@@ -129,6 +129,29 @@ TEST_CASE("at rest nothing of the light is made again, with the bits of a host t
         step.change(host);
         CHECK(frame(step.reset) == kept);
         for (int i = 1; i <= kSettling; ++i) CHECK(frame(0) == (kept || i >= kSettling));
+    }
+}
+
+TEST_CASE("clusters of many VPLs have longer to come to rest after light that moved", "[ssvp][still]") {
+    TestDevice device(16);
+    Host host;
+    LWSsvpDesc desc = small();
+    desc.vpls = 4096;
+    desc.clusters = 64;
+    desc.bounces = 1;
+    desc.visibility = LW_VISIBILITY_NONE;
+    const WallAndCeiling scene(kWidth, kHeight);
+    TestTechnique technique(device, desc), reference(device, desc);
+    TestView view(device, kWidth, kHeight), other(device, kWidth, kHeight);
+    for (int i = 0; i < kSettlingOfMany + 8; ++i) {
+        if (i < 5) {  // a shadow that walks over the floor
+            for (std::uint32_t y = 0; y < 32; ++y) host.floor.flux.set(std::uint32_t(6 * i), y, {0, 0, 0});
+            ++host.mapVersion;
+        }
+        host.update(technique, true);
+        host.update(reference, false);
+        CHECK(technique.render(view, scene.gbuffer) == reference.render(other, scene.gbuffer));
+        CHECK(isKept(technique) == (i >= 4 + kSettlingOfMany));
     }
 }
 
