@@ -8,6 +8,7 @@
 
 #include "support/lpv_room.h"
 #include "support/scoped_api.h"
+#include "support/small_ssvp.h"
 
 namespace lightwell::test {
 
@@ -30,15 +31,7 @@ inline Maker rsmOf(std::uint32_t vpls, std::uint32_t interleave, LWRsmVisibility
 }
 inline Maker ssvpOf(LWVisibility visibility, std::uint32_t bounces, std::uint32_t shadowed = 1, std::uint32_t interleave = 1) {
     return {"ssvp", [=](LWDevice device) {
-                LWSsvpDesc desc;
-                lwDefaultSsvp(&desc);
-                desc.vpls = 64;
-                desc.clusters = 8;
-                desc.secondVpls = 16;
-                desc.mapSize = 64;
-                desc.visibility = visibility;
-                desc.bounces = bounces;
-                desc.shadowedBounces = shadowed;
+                LWSsvpDesc desc = smallSsvp(visibility, bounces, shadowed);
                 desc.interleave = interleave;
                 desc.voxels = 32;
                 return std::make_unique<TestTechnique>(device, desc);

@@ -8,6 +8,7 @@
 #include "support/lit_room.h"
 #include "support/packed_light.h"
 #include "support/scoped_api.h"
+#include "support/small_ssvp.h"
 #include "support/walls.h"
 
 using namespace lightwell::test;
@@ -17,19 +18,6 @@ namespace {
 constexpr std::uint32_t kWidth = 48, kHeight = 32;
 
 double tiledProfile(double x, double z) { return (int(std::floor(x * 5.0)) + int(std::floor(z * 5.0))) % 2 != 0 ? 0.2 : 0.8; }
-
-LWSsvpDesc descOf(LWVisibility visibility, std::uint32_t bounces, std::uint32_t shadowed) {
-    LWSsvpDesc desc;
-    lwDefaultSsvp(&desc);
-    desc.vpls = 64;
-    desc.clusters = 8;
-    desc.secondVpls = 16;
-    desc.mapSize = 64;
-    desc.visibility = visibility;
-    desc.bounces = bounces;
-    desc.shadowedBounces = shadowed;
-    return desc;
-}
 
 // A room lit from its floor, with walls that the caller adds.
 struct Rig {
@@ -83,7 +71,7 @@ TEST_CASE("careful look-ups are strict ones, but for bounces without shadows aft
                                    Gather{4, LW_RESOLUTION_HALF, 0.0f}, Gather{4, LW_RESOLUTION_FULL, 0.3f});
     for (const Case& c : {Case{1, 1, true}, Case{1, 4, true}, Case{2, 1, true}, Case{2, 2, true}, Case{4, 1, true}, Case{4, 4, true}, Case{3, 2, false},
                           Case{4, 3, false}}) {
-        LWSsvpDesc desc = descOf(LW_VISIBILITY_HARD, c.bounces, c.shadowed);
+        LWSsvpDesc desc = smallSsvp(LW_VISIBILITY_HARD, c.bounces, c.shadowed);
         desc.interleave = gather.interleave;
         desc.resolution = gather.resolution;
         desc.autoResolution = gather.autoResolution;
@@ -104,7 +92,7 @@ TEST_CASE("careful look-ups are strict ones, but for bounces without shadows aft
 TEST_CASE("careful look-ups: with four bounces, two of them shadowed, an open room blocks nothing, a lid all that is shadowed and three quarters of the rest", "[ssvp][careful]") {
     Rig open, closed;
     closed.room.add({-0.6, 0.05, -0.1}, {1.2, 0, 0}, {0, 0, 1.2});
-    LWSsvpDesc desc = descOf(LW_VISIBILITY_CAREFUL, 4, 2);
+    LWSsvpDesc desc = smallSsvp(LW_VISIBILITY_CAREFUL, 4, 2);
     desc.clusters = GENERATE(1u, 8u, 0u);
     LWSsvpDesc hard = desc;
     hard.visibility = LW_VISIBILITY_HARD;

@@ -7,6 +7,7 @@
 #include "support/choices.h"
 #include "support/lpv_room.h"
 #include "support/scoped_api.h"
+#include "support/small_ssvp.h"
 #include "support/walls.h"
 #include "techniques/still_frames.h"
 
@@ -19,11 +20,8 @@ constexpr std::uint32_t kWidth = 45, kHeight = 16;
 constexpr int kSettling = 16, kSettlingOfMany = 48;  // as in ssvp_options.cpp
 
 LWSsvpDesc small() {
-    LWSsvpDesc desc;
-    lwDefaultSsvp(&desc);
-    desc.vpls = 64;
+    LWSsvpDesc desc = smallSsvp(LW_VISIBILITY_HARD, 2, 2);
     desc.clusters = 4;
-    desc.mapSize = 64;
     desc.secondVpls = 8;
     return desc;
 }
