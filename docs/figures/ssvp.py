@@ -20,6 +20,7 @@ LARGE = "1920x1080"
 BUDGET = ["shadowed_bounces=1", "clusters=8"]
 VARIANTS = {"hard": [], "soft": ["visibility=soft"], "half": ["resolution=half"]}
 RUNS = 3
+SETTLING = 50  # frames until VPLs are kept: 16 for each of three bounces' clusters
 KEPT = ["vpls=512 clusters=16 bounces=4 resolution=quarter", "vpls=1024 clusters=32 second_vpls=8 bounces=4 resolution=quarter",
         "vpls=1024 clusters=64 bounces=4 resolution=quarter", "vpls=1024 clusters=64 bounces=4 resolution=half"]
 STRICT = "visibility=strict"
@@ -77,13 +78,13 @@ def budget_table(options, render):
 
 def kept_table(options, render):
     """A host that tells no versions and one that does take turns, so that a slow minute falls on both."""
-    lines = [f"Milliseconds at {options.size}, `{STRICT}`, versions not told → told, and the ratio: medians of {RUNS} runs, each the median of 15 frames after 20; load "
+    lines = [f"Milliseconds at {options.size}, `{STRICT}`, versions not told → told, and the median of the runs' ratios: medians of {RUNS} runs, each the median of 15 frames after {SETTLING}; load "
              f"average {os.getloadavg()[0]:.1f}.", "",
              "| scene | " + " | ".join(f"`{row.replace('resolution=', '')}`" for row in KEPT) + " |", "| --- | " + " | ".join(["---:"] * len(KEPT)) + " |"]
     for scene in options.scenes:
         cells = []
         for row in KEPT:
-            runs = [[render(scene, *row.split(), STRICT, f"rsm_versions={told}", frames=15, warmup=20)["total_ms"] for told in ("off", "on")] for _ in range(RUNS)]
+            runs = [[render(scene, *row.split(), STRICT, f"rsm_versions={told}", frames=15, warmup=SETTLING)["total_ms"] for told in ("off", "on")] for _ in range(RUNS)]
             off, on = (statistics.median(some) for some in zip(*runs))
             cells.append(f"{off:.1f} → {on:.1f}, x {statistics.median(b / a for a, b in runs):.2f}")
         lines.append(f"| {scene} | " + " | ".join(cells) + " |")

@@ -21,13 +21,6 @@ VplSamplingOptions samplingOptions(const LWSsvpDesc& desc) {
 // Lloyd's iterations that 64 clusters of some thousand VPLs settle in; a tenth of a millisecond each, in first frames only.
 constexpr std::uint32_t kFirstIterations = 24;
 
-// Three of Lloyd's iterations each. 64 clusters of 1,024 VPLs took 42 iterations from a first frame on in the slowest of six scenes, and of 2,048
-// four updates after light that had moved; of 4,096 to 16,384 up to 26. Fewer: clusters of light that came to rest stay where they were half-way.
-std::uint32_t settlingOf(const LWSsvpDesc& desc) {
-    constexpr std::uint32_t kMany = 2048, kFew = 16, kMore = 48;
-    return std::max(desc.vpls, stagesOf(desc) > 1 ? desc.clusters * desc.secondVpls : 0) > kMany ? kMore : kFew;
-}
-
 // Of bounce `stage` + 1. The first bounce's VPLs may have a cluster each; those of later ones would be
 // too many.
 KMeansOptions clusterOptions(const LWSsvpDesc& desc, std::size_t stage) {
@@ -36,6 +29,20 @@ KMeansOptions clusterOptions(const LWSsvpDesc& desc, std::size_t stage) {
     options.warmStart = desc.warmStart != 0;
     if (options.warmStart) options.firstIterations = kFirstIterations;
     return options;
+}
+
+// Three of Lloyd's iterations each. 64 clusters of 1,024 VPLs took 42 iterations from a first frame on in the slowest of six scenes, and of 2,048
+// four updates after light that had moved; of 4,096 to 16,384 up to 26. Fewer: clusters of light that came to rest stay where they were half-way.
+// A bounce's clusters come to rest after those that its VPLs are drawn from. VPLs that have a cluster each rest at once.
+std::uint32_t settlingOf(const LWSsvpDesc& desc) {
+    constexpr std::uint32_t kMany = 2048, kFew = 16, kMore = 48;
+    std::uint32_t vpls = desc.vpls, updates = 0;
+    for (std::size_t stage = 0; stage < stagesOf(desc); ++stage) {
+        const std::uint32_t clusters = clusterOptions(desc, stage).clusters;
+        if (clusters > 0) updates += vpls > kMany ? kMore : kFew;
+        vpls = (clusters > 0 ? clusters : vpls) * desc.secondVpls;
+    }
+    return std::max(updates, kFew);
 }
 
 SecondBounceOptions nextOptions(const LWSsvpDesc& desc, std::size_t stage) {
