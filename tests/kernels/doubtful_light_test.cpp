@@ -316,10 +316,9 @@ TEST_CASE("hard gathers trust all light without shadows, and strict ones what so
 
 TEST_CASE("light without shadows that is beyond all floats leaves the shadowed light as it is", "[clustered_gather][large]") {
     LaterBounce scene(GENERATE(1u, 16u), testSize({75, 33}));
-    for (lw_vpl& vpl : scene.later)
-        for (int c = 0; c < 3; ++c) vpl.flux.s[c] = 3e38f;
-    for (const float area : {0.02f, 1e-9f}) {  // some of the pixels' sums overflow, or more
-        for (lw_vpl& vpl : scene.later) vpl.positionArea.s[3] = area;
+    for (const float flux : {3e38f, 1e36f}) {  // many of the pixels' sums overflow, or none
+        for (lw_vpl& vpl : scene.later)
+            for (int c = 0; c < 3; ++c) vpl.flux.s[c] = flux;
         Asked strict = scene.all(ClusterVisibility::strict, true), shadowed = scene.shadowed(ClusterVisibility::strict);
         const std::vector<float> before = scene.shadowed(ClusterVisibility::hard).planes(3);
         const std::size_t pixels = scene.pixels;
@@ -329,7 +328,7 @@ TEST_CASE("light without shadows that is beyond all floats leaves the shadowed l
         const std::vector<float> kept = strict.planes(4), doubtful = shadowed.planes(4), settled = strict.planes(3), sure = shadowed.planes(3);
         constexpr double kMost = std::numeric_limits<float>::max() / 3.14159265358979, kLargest = 1e36;  // of sums, which lack 1 / pi; of outputs
         std::vector<bool> isBeyond(pixels);
-        int wrong = 0, beyond = 0, within = 0;
+        int wrong = 0, beyond = 0, within = 0, uncapped = 0;
         for (std::size_t i = 0; i < pixels; ++i) {
             const reference::Surface s = scene.surface(i);
             Vec unshadowed{};
@@ -344,13 +343,16 @@ TEST_CASE("light without shadows that is beyond all floats leaves the shadowed l
             for (std::size_t c = 0; c < 3; ++c) {
                 const std::size_t at = c * pixels + i;
                 const double expected = std::min(double(before[at]) + 0.25 * brings[c], kLargest);
+                uncapped += s.valid && !isBeyond[i] && expected < kLargest;
                 wrong += !(isBeyond[i] ? same(kept[at], before[at]) : std::abs(double(kept[at]) - expected) <= 2e-3 * expected);
                 wrong += !(isBeyond[i] ? same(settled[at], sure[at]) : settled[at] >= 0.0f && settled[at] <= float(kLargest));
             }
         }
-        CAPTURE(area, beyond, within);
+        CAPTURE(flux, beyond, within, uncapped);
         CHECK(wrong == 0);
-        CHECK(beyond > 0);
+        CHECK((beyond > 0) == (flux > 1e38f));
+        CHECK(within > 0);
+        CHECK(uncapped > (flux > 1e38f ? 0 : 2 * within));
         // Points see light from all sides: more of them are beyond all floats.
         const std::vector<float> bands = strict.harmonics(ClusterVisibility::strict), without = shadowed.harmonics(ClusterVisibility::strict);
         int wrongBands = 0;
