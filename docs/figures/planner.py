@@ -7,7 +7,7 @@ docs/techniques/ssvp_visibility.md and docs/accuracy.md, their pictures, and wha
     docs/figures/planner.py --collect --work DIR               takes what was measured below DIR
     docs/figures/planner.py --maps [--lightwell PROGRAM]       measures what maps take to draw, and nothing else
 
-The candidates are in planner_candidates.py, the models in planner_model.py, the measuring in planner_measure.py with its made-up scenes in planner_scenes.py,
+The candidates are in planner_candidates.py, the models in planner_model.py, the measuring in planner_measure.py (planner_again.py, planner_rest.py) with its made-up scenes in planner_scenes.py,
 the pages in planner_page.py, planner_choosing.py and planner_rival.py.
 """
 import argparse
@@ -19,7 +19,7 @@ import numpy as np
 import planner_measure
 import planner_page
 from planner_candidates import barred
-from planner_model import BUDGETS, FLOORS, LIMIT, PROBES, Data, ErrorModel, choose, fit_costs, leave_scenes_out, predict_ms, strengths
+from planner_model import BUDGETS, FLOORS, LIMIT, PROBES, Data, ErrorModel, choose, fit_costs, fit_rest, leave_scenes_out, light_of, needs_light, predict_ms, strengths
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 NEAR = 1.05  # of the least error that a view has in no more time: nearer than this is on the front, or as good
@@ -50,7 +50,11 @@ def main():
     ridges = strengths(data, everything, kept)
     model, costs = ErrorModel(data, everything, kept, *ridges), fit_costs(data, everything)
     sigma = spread(data, heldOut[1])
-    write_tables(data, kept, model, costs, sigma)
+    known = {light_of(data.candidates[c]) for c in np.where((~np.isnan(data.rest)).any(axis=0))[0]}
+    for c in kept:
+        if needs_light(*data.candidates[c]) and light_of(data.candidates[c]) not in known:
+            raise SystemExit(f"{data.names()[c]}: expected its times at rest, got none: measure them with docs/figures/planner_rest.py")
+    write_tables(data, kept, model, costs, fit_rest(data, costs, everything), sigma)
     write_values(data, kept, model, costs)
     planner_page.write(data, kept, heldOut, ridges, sigma, model, costs)
 
@@ -130,7 +134,7 @@ def numbers(values, digits=4):
     return ", ".join(f"{float(v):.{digits}g}" for v in values)
 
 
-def write_tables(data, kept, model, costs, sigma):
+def write_tables(data, kept, model, costs, rest, sigma):
     rates = data.raw["rates"]
     facing, coverage = data.probes[:, PROBES.index("facing")].mean(), data.coverage.mean()
     order = sorted(kept, key=lambda c: np.median(data.ms[:, c]))
@@ -145,7 +149,7 @@ def write_tables(data, kept, model, costs, sigma):
     for c in order:
         technique, settings = data.candidates[c]
         launches = data.raw["candidates"][c]["launches"]
-        lines.append(f'    {{"{technique}", "{settings}", {needs_of(technique, settings)}, {launches:g}, {maps_of(technique, settings):g}, {{{numbers(costs[c])}}}, {model.means[c]:.4f},\n'
+        lines.append(f'    {{"{technique}", "{settings}", {needs_of(technique, settings)}, {launches:g}, {maps_of(technique, settings):g}, {{{numbers(costs[c])}}}, {{{numbers(rest[c])}}}, {model.means[c]:.4f},\n'
                      f"     {{{numbers(model.slopes[:, c])}}}, {sigma[c]:.4f}}},")
     lines += ["};", "", "}  // namespace lightwell", ""]
     path = ROOT / "src/planner/plan_tables.h"

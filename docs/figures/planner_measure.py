@@ -167,6 +167,9 @@ def collect(work, date):
               "views": [{**v, "noise": noise_of(charts, v)} for v in probed],
               "errors": list(map(pick, errors)), "ms": list(map(pick, ms)), "made_views": made[0], "made_errors": list(map(pick, made[1])),
               "sizes": [{**entry, "ms": pick(entry["ms"])} for entry in sizes(work, threads, beyond)], "ms_per_megatexel": per_megatexel(work), "maps": json.loads((work / "maps.json").read_text()), "rival": rivals(work, threads, beyond)}
+    before = json.loads(DATA.read_text()) if DATA.exists() else {}
+    if "rest" in before and [c["settings"] for c in before["candidates"]] == [c["settings"] for c in result["candidates"]]:
+        result.update({key: before[key] for key in ("rest", "rest_shares")})  # planner_rest.py's
     DATA.write_text(compact(result), encoding="utf-8")
     print(DATA)
 

@@ -38,6 +38,11 @@ class Data:
         # Made-up scenes, of which errors alone are known, and of some candidates only: the error model learns from them, nothing is judged by them.
         self.madeLog = np.log10(np.array([[np.nan if e is None else e for e in row] for row in raw["made_errors"]]))
         self.madeProbes = np.array([[view["probes"][name] for name in PROBES] for view in raw["made_views"]])
+        # What a frame at rest takes of one in which light is read, of the views and candidates where that is measured.
+        self.rest = np.full_like(self.ms, np.nan)
+        for view in raw.get("rest_shares", []):
+            v = next(i for i, w in enumerate(self.views) if (w["scene"], w["camera"]) == (view["scene"], view["camera"]))
+            self.rest[v] = [np.nan if s is None else s for s in view["shares"]]
         self.mega = {"pixels": raw["size"][0] * raw["size"][1] * 1e-6, "texels": raw["rsm_texels"] * 1e-6}
 
     def names(self):
@@ -146,6 +151,47 @@ def predict_ms(data, costs, rows):
     fixed, byPixel, byTriangle, byTexel, byFacing, sky = costs.T
     lit = data.mega["pixels"] * (sky + (1.0 - sky) * data.coverage[rows][:, None])
     return fixed + (byPixel + byFacing * data.probes[rows, FACING][:, None]) * lit + byTriangle * triangles + byTexel * data.mega["texels"]
+
+
+def saved_at_rest(data, rows):
+    """Milliseconds that each candidate does not take at rest, the median of what is measured in `rows` of candidates with the same light: what is kept is the world's, alike in all
+    views. 0 of what has nothing to keep."""
+    saved = (data.ms * (1.0 - data.rest))[rows]
+    known = {}
+    for c, of in enumerate(saved.T):  # NaN where it was not measured
+        known.setdefault(light_of(data.candidates[c]), []).extend(of[~np.isnan(of)])
+    return np.array([max(float(np.median(known[light_of(c)] or [0.0])), 0.0) if needs_light(*c) else 0.0 for c in data.candidates])
+
+
+def keeps_light(technique, settings):
+    """Whether nothing of the world is made again at rest; else maps alone are not read again."""
+    return technique == "ssvp" and "sampling=view" not in settings and "voxel" not in settings
+
+
+def light_of(candidate):
+    """What is the same for all that keep the same at rest: their VPLs, clusters and maps, or the reading of light maps."""
+    if not keeps_light(*candidate):
+        return "reading"
+    return " ".join(s for s in candidate[1].replace("careful", "strict").split() if not s.startswith(("resolution=", "interleave=")))
+
+
+def at_rest(data, ms):
+    """Times of all views and candidates at rest: measured ones less what is saved at the median (single sittings are off by a tenth and more), and predicted ones, `ms`, a view's
+    scene left out."""
+    predicted = ms.copy()
+    for scene in data.scenes():
+        predicted[data.scene == scene] -= saved_at_rest(data, np.where(data.scene != scene)[0])
+    return data.ms - saved_at_rest(data, np.arange(len(data.views))), predicted
+
+
+def fit_rest(data, costs, rows):
+    """rest[2] of every candidate: milliseconds saved beyond what texels take that are not read (less than 0 where texels take more than is saved: by the fit), and the share of
+    texels that is read all the same."""
+    saved, texels = saved_at_rest(data, rows), costs[:, 3] * data.mega["texels"]
+    reads = np.array([needs_light(*c) for c in data.candidates])
+    keeps = np.array([keeps_light(*c) for c in data.candidates])
+    share = np.clip(1.0 - saved / np.where(texels > 0.0, texels, np.inf), 0.0, 1.0)
+    return np.stack([np.where(keeps, saved - texels, 0.0), np.where(keeps, 0.0, np.where(reads, share, 1.0))], axis=1)
 
 
 # ------------------------------------------------------------------------------------------ error

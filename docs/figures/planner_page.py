@@ -84,11 +84,12 @@ def late_share(data, picks):
 
 def again(raw):
     """What planner_again.py measured once more."""
-    if "errors_again" not in raw:
-        return ""
-    told = raw["errors_again"]
-    more = "".join(f", {n} in {scene}" for scene, n in told["more_sets"].items())
-    return f" Errors with `{told['rows']}` are of {told['date']}, after a change of that light: {told['sets']} sets{more}; {told['made_sets']} in made-up scenes (others 3)."
+    def told(run):
+        more = "".join(f", {n} in {scene}" for scene, n in run["more_sets"].items())
+        what = f"with `{run['rows']}` ({run['sets']} sets{more})" if run["rows"] else "of all rows and of path tracing"
+        made = f", of {run['made_rows']} rows also in made-up scenes ({' or '.join(map(str, run['made_sets']))} sets; others 3)" if run["made_rows"] else ""
+        return f" Errors {what} were measured again on {run['date']}{made}."
+    return "".join(map(told, raw.get("errors_again", [])))
 
 
 def fit_block(data, kept, ms, log, found, ridges, sigma, costs):

@@ -304,7 +304,8 @@ typedef struct LWRsm {
                             and never the same for another map that may come to lie at the same address (one counter for all maps
                             does). A map that has version, camera and memory of the one at its place in the technique's last frame
                             is not read again, unless worldOrigin moved or a map came, went or changed its size. Technique ssvp
-                            keeps its VPLs and their clusters and maps, too, once no map and no occluder has changed for 16 or 48 frames */
+                            keeps its VPLs and their clusters and maps, too, once no map and no occluder has changed for 16 frames for
+                            each bounce with clusters, 48 where these have more than 2,048 VPLs */
 } LWRsm;
 
 /** A light, and the surfaces it lights as RSMs: none (analytic only), one, six faces of a point light,
@@ -969,6 +970,9 @@ typedef struct LWPlanDesc {
     float errorTarget; /**< relMSE against all bounces (docs/accuracy.md); the cheapest that is predicted to reach it, else the most
                             accurate within the budget. 0: the most accurate within the budget */
     uint32_t views;    /**< that a frame renders, 64 at most; 0: 1 */
+    uint32_t atRest;   /**< 1: of frames whose light and geometry have long stood still, of a host that tells so (LWRsm::version of all
+                            maps, LWGeometry::version; no VPLs of its own): what is kept then takes no time. The view's camera may move;
+                            worldOrigin and the maps' cameras must not. 0: of frames in which light is read and VPLs are made */
 } LWPlanDesc;
 
 /** What lwPlan measures of a frame in order to predict errors; where it has nothing to measure it by, a figure is NaN. */
@@ -1002,7 +1006,7 @@ typedef struct LWPlan {
 /** Picks technique and parameters for what this frame brings and what may be spent: what is possible by the inputs given; how long it
  *  takes by a model calibrated on this device (in less than two seconds at the first call, with the lock held, then kept in the device's cache); how wrong it
  *  is by a model fitted to `lightwell chart`'s results and probes of the frame. docs/planner.md says how, and how good it is.
- *  Times are of frames at rest; VPLs drawn for source views cost more under a camera that moves. `view`, `gbuffer`: of the view that is to be lit.
+ *  Maps of clusters are taken for drawn already; VPLs drawn for source views cost more under a camera that moves. `view`, `gbuffer`: of the view that is to be lit.
  *  Waits for the probes: a few milliseconds. Changes nothing.
  *  Errors: INVALID_*, as lwUpdate and lwRender, and where no technique can light such a frame; OUT_OF_MEMORY. */
 LW_API LWStatus lwPlan(LWView view, const LWFrame* frame, const LWGBuffer* gbuffer, const LWPlanDesc* desc, LWPlan* plan);

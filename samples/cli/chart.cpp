@@ -129,9 +129,12 @@ void addChart(CLI::App& app) {
         "Folder of the truths; default: references/ in LIGHTWELL_CACHE_DIR or the user's cache");
     command
         ->add_option("--frames", options.frames,
-                     "Measured frames of each point after three unmeasured ones, whatever their time; "
+                     "Measured frames of each point after the unmeasured ones, whatever their time; "
                      "default: enough for steady figures")
         ->check(CLI::Range(1, 200));
+    command->add_option("--warmup", options.warmUp, "Unmeasured frames before; more where something has to settle")
+        ->check(CLI::Range(0, 200))
+        ->capture_default_str();
     command->add_option("--device", options.device, "As for render");
     command->add_option("--width", options.deviceWidth,
                         "Lanes per work-item: 1, 4, 8 or 16; default: by probe");

@@ -107,6 +107,7 @@ Charter::Charter(const ChartOptions& options)
         limits_.seconds = 0.2;
         limits_.patience = 1.5;
     }
+    limits_.warmUp = options.warmUp;
     if (options.frames > 0) {
         limits_.fewest = limits_.most = options.frames;
         limits_.seconds = 0.0;

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "chart_frames.h"
 #include "chart_view.h"
 
 namespace cli {
@@ -15,6 +16,7 @@ struct ChartOptions {
     int width = 1280, height = 720;
     int deviceWidth = 0;  // lanes per work-item; 0: by probe
     int frames = 0;       // measured ones of each point; 0: enough for steady figures
+    int warmUp = FrameLimits{}.warmUp;  // unmeasured ones before
     bool quick = false, firstCameraOnly = false, onlyTruths = false, skipsAllBounces = false;
     TruthOptions truth;
 };

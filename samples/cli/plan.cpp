@@ -18,7 +18,7 @@ struct PlanOptions {
     ViewOptions view;
     std::string budget, error, device;
     int rsmSize = 512, cascades = 1, views = 1, width = 0;
-    bool asJson = false, listsAll = false, hasGeometry = true;
+    bool asJson = false, listsAll = false, hasGeometry = true, isAtRest = false;
     CLI::Option *budgetGiven = nullptr, *errorGiven = nullptr;
     bool hasBudget() const { return budgetGiven->count() > 0; }
     bool hasError() const { return errorGiven->count() > 0; }
@@ -45,6 +45,7 @@ LWPlanDesc describe(const PlanOptions& options) {
     if (options.hasBudget()) desc.budgetMs = parsePositive("--budget-ms", options.budget);
     if (options.hasError()) desc.errorTarget = parsePositive("--error", options.error);
     desc.views = std::uint32_t(options.views);
+    desc.atRest = options.isAtRest ? 1 : 0;
     return desc;
 }
 
@@ -71,8 +72,8 @@ void printText(const LWPlan& plan) {
 // The frame as a host of the library would give it, and as `lightwell render` does: the view itself is a source view.
 struct PlannedFrame {
     PlannedFrame(const RenderInputs& inputs, LWView view, bool hasGeometry) : source{view, &inputs.lwGBuffer()} {
-        frame.lights = inputs.lights().data();
-        frame.lightCount = std::uint32_t(inputs.lights().size());
+        frame.lights = inputs.versionedLights().data();
+        frame.lightCount = std::uint32_t(inputs.versionedLights().size());
         if (hasGeometry) frame.geometry = &inputs.geometry();
         std::copy_n(inputs.environment(), 3, frame.environment);
         frame.focus = inputs.focus();
@@ -101,6 +102,7 @@ void print(const PlanOptions& options, const std::string& scene, const std::stri
     document["size"] = {size.width, size.height};
     document["budget_ms"] = options.hasBudget() ? nlohmann::ordered_json(desc.budgetMs) : nlohmann::ordered_json();
     document["error_target"] = options.hasError() ? nlohmann::ordered_json(desc.errorTarget) : nlohmann::ordered_json();
+    document["at_rest"] = options.isAtRest;
     document["probes"] = probesJson(plan);
     document["triangles"] = frame.geometry ? frame.geometry->triangleCount : 0;
     document["device"] = deviceJson(device.info());
@@ -145,6 +147,7 @@ void addPlan(CLI::App& app) {
     options->budgetGiven = command->add_option("--budget-ms", options->budget, "Milliseconds that a frame may take; with --error: at most");
     options->errorGiven = command->add_option("--error", options->error, "relMSE against all bounces to reach, as cheaply as can be");
     command->add_option("--views", options->views, "Views that a frame renders: 2 for stereo")->check(CLI::Range(1, 64))->capture_default_str();
+    command->add_flag("--at-rest", options->isAtRest, "Of frames whose light and geometry stand still, of a host that tells versions (LWPlanDesc::atRest)");
     command->add_option("--rsm-size", options->rsmSize, "Texels along each side of an RSM")->check(CLI::Range(1, kMaxSize))->capture_default_str();
     command->add_option("--cascades", options->cascades, "Nested RSMs of a sun")->check(CLI::Range(1, 8))->capture_default_str();
     command->add_flag("!--no-geometry", options->hasGeometry, "As a host that gives neither triangles nor surfels");

@@ -26,7 +26,17 @@ LWPlanDesc checkedDesc(const LWPlanDesc* desc) {
     check(own.errorTarget, "errorTarget");
     if (own.views > kMostViews) fail(LW_ERROR_INVALID_ARGUMENT, "desc.views: expected 0 .. ", kMostViews, ", got ", own.views);
     if (own.views == 0) own.views = 1;
+    if (own.atRest > 1) fail(LW_ERROR_INVALID_ARGUMENT, "desc.atRest: expected 0 or 1, got ", own.atRest);
     return own;
+}
+
+// Nothing is kept of light that the host does not say stands still.
+void checkRest(const LWFrame& frame) {
+    if (frame.vplCount > 0) fail(LW_ERROR_INVALID_ARGUMENT, "frame.vplCount: expected 0 with desc.atRest, as VPLs have no version, got ", frame.vplCount);
+    for (std::uint32_t l = 0; l < frame.lightCount; ++l)
+        for (std::uint32_t r = 0; r < frame.lights[l].rsmCount; ++r)
+            if (frame.lights[l].rsms[r].version == 0)
+                fail(LW_ERROR_INVALID_ARGUMENT, "frame.lights[", l, "].rsms[", r, "].version: expected a version with desc.atRest, got 0");
 }
 
 // Cut where it does not fit.
@@ -73,7 +83,9 @@ Planning planFor(Call& call, const View& view, const LWFrame* frame, const LWGBu
     const SyncArgument sync(ownFrame.get().sync, device.context(), "frame.sync");
     device.raiseFailure();
     FrameProbing::check(device, view, ownFrame.get(), ownGBuffer);
-    const FrameTraits traits = traitsOf(ownFrame.get(), ownGBuffer, double(view.width) * view.height, planning.desc.views);
+    if (planning.desc.atRest) checkRest(ownFrame.get());
+    FrameTraits traits = traitsOf(ownFrame.get(), ownGBuffer, double(view.width) * view.height, planning.desc.views);
+    traits.isAtRest = planning.desc.atRest != 0;
     planning.missing = missingFor(traits);
     if (predict({}, traits, {}).empty())
         fail(LW_ERROR_INVALID_ARGUMENT, "frame, gbuffer: expected what a technique can make light of, got none of: ", planning.missing);

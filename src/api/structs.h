@@ -24,6 +24,8 @@ template <>
 inline constexpr std::uint32_t kFirstSize<LWRsm> = 392;
 template <>
 inline constexpr std::uint32_t kFirstSize<LWPlan> = 600;
+template <>
+inline constexpr std::uint32_t kFirstSize<LWPlanDesc> = 16;
 
 template <class T>
 std::uint32_t checkedStructSize(const T* from, const std::string& name) {

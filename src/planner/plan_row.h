@@ -25,6 +25,7 @@ constexpr std::size_t kPlanProbes = 8;  // in the order of LWPlanProbes' fields
 //                                              + cost[2] * Mtriangles)
 //          + memoryScale * cost[3] * Mtexels
 //
+// at rest, where the host tells so, less computeScale * rest[0], with rest[1] * cost[3] in the place of cost[3], and no more than that;
 // and, in a frame whose lights or geometry moved, computeScale * maps * (fixed + perMtriangles * Mtriangles) of kPlanMaps.
 //
 // with lit = Mpixels * (cost[5] + (1 - cost[5]) * coverage), and (here) and (there) the milliseconds of a launch on this device and on the one that was measured, scales of 1 there;
@@ -41,6 +42,7 @@ struct PlanRow {
     // ms; ms per million pixels with a surface, per million triangles, per million texels, per million such pixels with facing = 1; and what a
     // pixel without a surface takes, as a share of what one with takes.
     double cost[6];
+    double rest[2];  // at rest: ms that are saved beyond cost[3] (less than 0: by so much it is too large), and the share of cost[3] that is not
     double errorMean;
     double errorSlopes[kPlanProbes];
     double errorSigma;

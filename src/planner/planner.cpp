@@ -60,8 +60,11 @@ double millisecondsOf(const PlanRow& row, const Calibration& calibration, const 
     const double shapes = (traits.triangles + traits.surfels) * million;
     const double drawn = traits.hasMoved ? row.maps * (kPlanMaps.fixed + kPlanMaps.perMtriangles * shapes) : 0.0;
     const double computed = row.cost[0] - launching + (row.cost[1] + row.cost[4] * facing) * lit * million + row.cost[2] * shapes + drawn;
-    return calibration.launchScale * launching + calibration.computeScale * computed +
-           calibration.memoryScale * row.cost[3] * traits.rsmTexels * million;
+    const auto total = [&](double compute, double texels) {
+        return calibration.launchScale * launching + calibration.computeScale * compute + calibration.memoryScale * row.cost[3] * texels * million;
+    };
+    const double usual = total(computed, traits.rsmTexels);
+    return traits.isAtRest ? std::min(usual, total(std::max(computed - row.rest[0], 0.0), row.rest[1] * traits.rsmTexels)) : usual;
 }
 
 // Each probe as the error model takes it; NaN: not known.

@@ -27,6 +27,7 @@ struct FrameTraits {
     double triangles = 0.0, surfels = 0.0;
     std::uint32_t lights = 0, staticVpls = 0;
     bool hasRsms = false, hasVpls = false, hasDirectRadiance = false, hasAlbedo = false, hasCamera = false, hasMotion = false, hasViews = false;
+    bool isAtRest = false;   // light and geometry stand still, and the host tells so; traitsOf knows no frame before
     bool hasMoved = false;   // lights or geometry, since the frame before: maps are drawn anew; traitsOf knows no frame before
 };
 // Checks nothing: the arguments are checked by who records or plans.

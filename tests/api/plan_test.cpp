@@ -77,6 +77,47 @@ TEST_CASE("a plan can be run, and says what it rests on", "[api]") {
     CHECK(rig.plan(stereo).predictedMs >= quickest.predictedMs);
 }
 
+TEST_CASE("a plan for frames at rest counts on what is kept, of a host that tells versions", "[api]") {
+    ApiScene scene;
+    PlanRig rig(scene);
+    LWPlanDesc desc = budget(0.0f);
+    const auto list = [&] {
+        std::vector<LWPlan> plans(200, lightwell::make<LWPlan>());
+        std::uint32_t count = 0;
+        REQUIRE(lwListPlans(rig.view, &scene.frame, &scene.gbuffer, &desc, plans.data(), std::uint32_t(plans.size()), &count) == LW_SUCCESS);
+        REQUIRE(count <= plans.size());
+        plans.resize(count);
+        return plans;
+    };
+    const std::vector<LWPlan> usual = list();
+    LWLight light = scene.frame.lights[0];
+    std::vector<LWRsm> maps(light.rsms, light.rsms + light.rsmCount);
+    for (LWRsm& map : maps) map.version = 3;
+    light.rsms = maps.data();
+    scene.frame.lights = &light;
+    desc.atRest = 1;
+    int less = 0;
+    for (const LWPlan& each : list()) {
+        const auto same = std::find_if(usual.begin(), usual.end(), [&](const LWPlan& other) {
+            return std::string(other.technique) == each.technique && std::string(other.parameters) == each.parameters;
+        });
+        REQUIRE(same != usual.end());
+        CHECK(each.predictedMs <= same->predictedMs);
+        CHECK(each.predictedError == same->predictedError);
+        less += each.predictedMs < same->predictedMs;
+    }
+    CHECK(less > 0);
+    // A host that was built before `atRest`.
+    desc.structSize = 16;
+    CHECK(list().front().predictedMs == usual.front().predictedMs);
+    desc.structSize = sizeof desc;
+    LWVpl vpl{};
+    vpl.normal[1] = 1.0f;
+    scene.frame.vpls = &vpl;
+    scene.frame.vplCount = 1;
+    CHECK_THAT(rig.refuse(desc), Contains("frame.vplCount") && Contains("atRest"));
+}
+
 TEST_CASE("all plans are listed, quickest first", "[api]") {
     ApiScene scene;
     PlanRig rig(scene);
@@ -122,6 +163,11 @@ TEST_CASE("a plan's arguments are checked, and named", "[api]") {
     LWPlanDesc bad = good;
     bad.views = 65;
     CHECK_THAT(rig.refuse(bad), Contains("views") && Contains("65"));
+    bad = good;
+    bad.atRest = 2;
+    CHECK_THAT(rig.refuse(bad), Contains("atRest") && Contains("2"));
+    bad.atRest = 1;
+    CHECK_THAT(rig.refuse(bad), Contains("frame.lights[0].rsms[0].version") && Contains("atRest"));
     bad = good;
     bad.structSize = 4;
     CHECK_THAT(rig.refuse(bad), Contains("desc.structSize"));

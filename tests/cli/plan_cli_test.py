@@ -52,6 +52,11 @@ class Plan(CommandLine):
         self.assertEqual((cheap["predicted_ms"], cheap["reaches_error"]), (times[0], True))
         self.assertFalse(self.plan("--error", "1e-9", "--budget-ms", "50")["reaches_error"])
         self.assertGreater(self.plan("--error", "1e9", "--views", "2")["predicted_ms"], times[0])
+        rest = self.plan("--at-rest")
+        self.assertEqual((rest["at_rest"], everything["at_rest"]), (True, False))
+        usual = {(each["technique"], each["parameters"]): each["predicted_ms"] for each in candidates}
+        self.assertTrue(all(each["predicted_ms"] <= usual[each["technique"], each["parameters"]] for each in rest["candidates"]))
+        self.assertLess(sum(each["predicted_ms"] for each in rest["candidates"]), sum(times))
         flat = self.plan("--no-geometry")
         self.assertLess(len(flat["candidates"]), len(candidates))
         self.assertIn("triangles", self.plan("--no-geometry", "--error", "1e9")["reason"])

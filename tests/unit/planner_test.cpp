@@ -82,6 +82,12 @@ TEST_CASE("the planner's table holds techniques that can be made, each once, and
         CHECK(std::string(row.settings).size() < sizeof LWPlan::parameters);
         CHECK((row.needs & ~127u) == 0);
         for (const double cost : row.cost) CHECK((cost >= 0.0 && std::isfinite(cost)));
+        CHECK((std::isfinite(row.rest[0]) && row.rest[1] >= 0.0 && row.rest[1] <= 1.0));
+        // What keeps all of its light at rest reads no texel, however large the maps.
+        const std::string technique = row.technique, settings = row.settings;
+        const bool keeps = technique == "ssvp" && settings.find("sampling=view") == std::string::npos;
+        CHECK((row.rest[1] == 0.0) == keeps);
+        CHECK((row.rest[0] == 0.0 || keeps));
         CHECK(row.cost[0] + row.cost[1] > 0.0);
         CHECK((row.launches >= 0.0 && std::isfinite(row.errorMean)));
         CHECK((row.errorSigma > 0.0 && row.errorSigma < 5.0));
@@ -131,9 +137,10 @@ TEST_CASE("predicted times follow the frame's sizes and the device's rates", "[p
     const FrameTraits traits = everything();
     const auto plain = predict({}, traits, kNoProbes);
     for (std::size_t i = 1; i < plain.size(); ++i) CHECK(plain[i - 1].milliseconds <= plain[i].milliseconds);
-    FrameTraits stereo = traits, bare = traits, moved = traits;
+    FrameTraits stereo = traits, bare = traits, moved = traits, resting = traits;
     moved.hasMoved = true;
-    bool hasMaps = false;
+    resting.isAtRest = true;
+    bool hasMaps = false, keeps = false;
     stereo.views = 2;
     bare.pixels = bare.rsmTexels = bare.triangles = 0.0;
     bare.surfels = 1e-30;  // there, but next to none
@@ -162,6 +169,18 @@ TEST_CASE("predicted times follow the frame's sizes and the device's rates", "[p
         hasMaps = hasMaps || row.maps > 0.0;
         CHECK(find(predict({}, moved, kNoProbes), each.candidate)->milliseconds - each.milliseconds ==
               Approx(row.maps * (kPlanMaps.fixed + kPlanMaps.perMtriangles * triangles)).margin(1e-9));
+        // At rest less is computed and fewer texels are read, whatever the views; never more than else.
+        const double rested = find(predict({}, resting, kNoProbes), each.candidate)->milliseconds;
+        const double saved = row.rest[0] + (1.0 - row.rest[1]) * row.cost[3] * texels;
+        keeps = keeps || saved > 1.0;
+        CHECK(each.milliseconds - rested == Approx(std::max(saved, 0.0)).margin(1e-9));
+        FrameTraits restingStereo = resting, large = resting;
+        restingStereo.views = 2;
+        large.rsmTexels *= 6.0;
+        CHECK(find(predict({}, restingStereo, kNoProbes), each.candidate)->milliseconds - rested == Approx(perPixel * pixels).margin(1e-9));
+        CHECK(find(predict({}, large, kNoProbes), each.candidate)->milliseconds - rested == Approx(5.0 * row.rest[1] * row.cost[3] * texels).margin(1e-9));
+        CHECK(find(predict({2.0, 2.0, 2.0}, resting, kNoProbes), each.candidate)->milliseconds == Approx(2.0 * rested));
+        CHECK(find(predict({1.0, 2.0, 1.0}, resting, kNoProbes), each.candidate)->milliseconds - rested == Approx(row.rest[1] * row.cost[3] * texels).margin(1e-9));
         const auto twice = predict({}, stereo, kNoProbes), none = predict({}, bare, kNoProbes);
         CHECK(find(twice, each.candidate)->milliseconds - each.milliseconds == Approx(perPixel * pixels).margin(1e-12));
         CHECK(find(none, each.candidate)->milliseconds == Approx(row.cost[0]).margin(1e-12));
@@ -170,7 +189,12 @@ TEST_CASE("predicted times follow the frame's sizes and the device's rates", "[p
         CHECK(find(slow, each.candidate)->milliseconds == Approx(2.0 * each.milliseconds));
         CHECK(find(starved, each.candidate)->milliseconds - each.milliseconds == Approx(row.cost[3] * texels).margin(1e-12));
     }
-    CHECK(hasMaps);
+    CHECK((hasMaps && keeps));
+    resting.pixels = resting.triangles = 0.0;
+    resting.surfels = 1e-30;
+    const auto quiet = predict({}, resting, kNoProbes);
+    resting.isAtRest = false;
+    for (const Prediction& each : quiet) CHECK((each.milliseconds >= 0.0 && each.milliseconds <= find(predict({}, resting, kNoProbes), each.candidate)->milliseconds));
 }
 
 TEST_CASE("predicted errors follow the probes, within the fit's range", "[planner]") {

@@ -110,17 +110,20 @@ class View(Handle):
         """Dynamic resolution: any size up to the first."""
         check(lib.lwSetViewSize(self.handle, whole(width, "width", 1), whole(height, "height", 1)), self.device.handle)
 
-    def plan(self, frame: Frame, gbuffer: GBuffer, *, budget_ms: float = 0.0, error_target: float = 0.0, views: int = 1) -> Plan:
+    def plan(self, frame: Frame, gbuffer: GBuffer, *, budget_ms: float = 0.0, error_target: float = 0.0, views: int = 1,
+             at_rest: bool = False) -> Plan:
         """The technique and settings for this frame: the cheapest that is predicted to reach `error_target`, else the most accurate
-        within `budget_ms`. The first call on a device calibrates it, for up to two seconds."""
-        frame_, gbuffer_, desc, _kept = self._plan_arguments(frame, gbuffer, budget_ms, error_target, views)
+        within `budget_ms`. `at_rest`: of frames whose light and geometry stand still, all maps having a version. The first call on a
+        device calibrates it, for up to two seconds."""
+        frame_, gbuffer_, desc, _kept = self._plan_arguments(frame, gbuffer, budget_ms, error_target, views, at_rest)
         struct = new_struct("LWPlan")
         check(lib.lwPlan(self.handle, frame_, gbuffer_, desc, struct), self.device.handle)
         return _plan(struct)
 
-    def plans(self, frame: Frame, gbuffer: GBuffer, *, budget_ms: float = 0.0, error_target: float = 0.0, views: int = 1) -> List[Plan]:
+    def plans(self, frame: Frame, gbuffer: GBuffer, *, budget_ms: float = 0.0, error_target: float = 0.0, views: int = 1,
+              at_rest: bool = False) -> List[Plan]:
         """All that `plan` chooses from, quickest first."""
-        frame_, gbuffer_, desc, _kept = self._plan_arguments(frame, gbuffer, budget_ms, error_target, views)
+        frame_, gbuffer_, desc, _kept = self._plan_arguments(frame, gbuffer, budget_ms, error_target, views, at_rest)
         count = ffi.new("uint32_t*")
         check(lib.lwListPlans(self.handle, frame_, gbuffer_, desc, NULL, 0, count), self.device.handle)
         capacity = count[0]
@@ -130,12 +133,13 @@ class View(Handle):
         check(lib.lwListPlans(self.handle, frame_, gbuffer_, desc, structs, capacity, count), self.device.handle)
         return [_plan(structs[index]) for index in range(min(count[0], capacity))]
 
-    def _plan_arguments(self, frame: Frame, gbuffer: GBuffer, budget_ms: float, error_target: float, views: int) -> Tuple[Any, ...]:
+    def _plan_arguments(self, frame: Frame, gbuffer: GBuffer, budget_ms: float, error_target: float, views: int, at_rest: bool) -> Tuple[Any, ...]:
         self.device.handle  # closed: refused
         kept = Kept()
         desc = new_struct("LWPlanDesc", kept)
         desc.budgetMs, desc.errorTarget = real(budget_ms, "budget_ms"), real(error_target, "error_target")
         desc.views = whole(views, "views")
+        desc.atRest = bool(at_rest)
         return frame_struct(frame, kept), gbuffer_struct(gbuffer, kept), desc, kept
 
     @overload
