@@ -59,6 +59,13 @@ class Reports(Contract):
         self.assertIn((plan.technique, plan.parameters), [(each.technique, each.parameters) for each in plans])
         with self.assertRaisesRegex(lw.InvalidArgumentError, "views"):
             self.view.plan(frame, gbuffer, views=65)
+        with self.assertRaisesRegex(lw.InvalidArgumentError, "version: expected a version with desc.atRest"):
+            self.view.plan(frame, gbuffer, at_rest=True)
+        for rsm in frame.lights[0].rsms:
+            rsm.version = 1
+        resting = {(each.technique, each.parameters): each.predicted_ms for each in self.view.plans(frame, gbuffer, budget_ms=100, at_rest=True)}
+        self.assertTrue(all(resting[each.technique, each.parameters] <= each.predicted_ms for each in plans))
+        self.assertLessEqual(self.view.plan(frame, gbuffer, at_rest=True).predicted_ms, max(times))
 
     def test_sizes_and_memory(self):
         with self.device.view(64, 48) as view:
