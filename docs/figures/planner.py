@@ -50,13 +50,18 @@ def main():
     ridges = strengths(data, everything, kept)
     model, costs = ErrorModel(data, everything, kept, *ridges), fit_costs(data, everything)
     sigma = spread(data, heldOut[1])
+    check_rest(data, kept)
+    write_tables(data, kept, model, costs, fit_rest(data, costs, everything), sigma)
+    write_values(data, kept, model, costs)
+    planner_page.write(data, kept, heldOut, ridges, sigma, model, costs)
+
+
+def check_rest(data, kept):
+    """A row of the table whose times at rest nobody measured would be taken for one that keeps nothing."""
     known = {light_of(data.candidates[c]) for c in np.where((~np.isnan(data.rest)).any(axis=0))[0]}
     for c in kept:
         if needs_light(*data.candidates[c]) and light_of(data.candidates[c]) not in known:
             raise SystemExit(f"{data.names()[c]}: expected its times at rest, got none: measure them with docs/figures/planner_rest.py")
-    write_tables(data, kept, model, costs, fit_rest(data, costs, everything), sigma)
-    write_values(data, kept, model, costs)
-    planner_page.write(data, kept, heldOut, ridges, sigma, model, costs)
 
 
 def rows_of_table(data):

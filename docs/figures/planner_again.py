@@ -9,8 +9,6 @@ measured is kept: hours where truths are not cached. Then docs/figures/planner.p
 
 Errors by truths of other noise are not comparable: some rows alone are refused where, in a real view, it is not the noise that the others' errors were measured with.
 """
-import argparse
-import datetime
 import json
 import pathlib
 import statistics
@@ -18,24 +16,16 @@ import sys
 
 import planner
 import planner_scenes
-from planner_candidates import CANDIDATES, barred, is_drawn, parted, variant
-from planner_measure import (BLOCK, KEPT, MADE_TRUTH, MORE_SEEDS, RIVALS, SCENES, SEEDS, SHARED, SIZE, TAUGHT, TRUTH, UNSURE, compact, noiseless, read_points, rounded,
-                             seed_errors)
+from planner_candidates import CANDIDATES, is_drawn, parted
+from planner_measure import SCENES, SIZE, TRUTH, chart_errors, charter, compact, is_taught, noiseless, of_set, read_points, read_work, rounded, seed_errors
 from planner_model import DATA, Data
-from program import ROOT, caller
+from program import caller
 
 SAME_NOISE = 1.25  # of a view's truth: more off, and a row's error tells of the truth beside others'
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--rows", default="")
-    parser.add_argument("--lightwell", default=str(ROOT / "build/release/bin/lightwell"))
-    parser.add_argument("--work", type=pathlib.Path, default=ROOT / "build/planner_again")
-    parser.add_argument("--date", default=datetime.date.today().isoformat())
-    parser.add_argument("--put", action="store_true")
-    options = parser.parse_args()
-    options.work.mkdir(parents=True, exist_ok=True)
+    options = read_work(__doc__, "planner_again", lambda parser: parser.add_argument("--rows", default=""))
     rows = [c for c in CANDIDATES if not options.rows or options.rows in c.split()]
     if not rows:
         sys.exit(f"--rows: expected a setting of a candidate, got '{options.rows}'")
@@ -44,30 +34,10 @@ def main():
     put(options.work, rows, options.rows, options.date)
 
 
-def is_taught(candidate):
-    return parted(candidate)[0] in TAUGHT and "voxel" not in candidate and candidate not in barred(CANDIDATES)
-
-
 def measure(program, work, rows):
-    lightwell = caller(program)
-
-    def chart(folder, techniques, *more):
-        if techniques:
-            lightwell("chart", "--out", work / folder, "--size", f"{SIZE[0]}x{SIZE[1]}", "--judge-one-of", BLOCK, "--picture-noise", 0, "--no-report", "--frames", 1,
-                      "--techniques", *techniques, *more, shown=True)
-
-    def of_set(candidates, seed):
-        return [f"{variant(c)},seed={seed}" if is_drawn(c) else variant(c) for c in candidates if is_drawn(c) or seed == 0]
-
-    made = planner_scenes.write(work / "made")
-    taught = [c for c in rows if is_taught(c)]
-    for seed in (0, *SEEDS):
-        chart(f"seeds{seed}", of_set(rows, seed), "--scenes", *SCENES, *(TRUTH if seed == 0 else KEPT))
-        chart(f"train{seed}", of_set(taught, seed), "--scenes", *made, *MADE_TRUTH, *([] if seed == 0 else ["--kept-truths"]))
-        if len(rows) == len(CANDIDATES):
-            chart(f"rival{seed}", [f"{r},seed={seed}" for r in RIVALS], "--scenes", *SHARED, "--cameras", "first", *KEPT)
-    for seed in MORE_SEEDS:
-        chart(f"seeds{seed}", of_set(rows, seed), "--scenes", *UNSURE, *KEPT)
+    chart = charter(caller(program), work)
+    chart("seeds0", of_set(rows, 0), SIZE, 1, "--scenes", *SCENES, *TRUTH)
+    chart_errors(chart, rows, planner_scenes.write(work / "made"))
 
 
 # ------------------------------------------------------------------------------------ to the data

@@ -3,6 +3,8 @@
 Below `work`: chart*/ (errors and times of all views; of times the point with more frames counts, of equals the quicker, of errors the last folder's), seeds*/ (errors of further
 sample sets), train*/ and train_probes.json (of made-up scenes), sizes_*/ (times at other sizes), rival*/ (path tracing, a folder for each sample set), probes.json, rsm_sizes.json, launches.json, maps.json, rates.json; made/ has the made-up scenes themselves. Every command goes on where it was stopped.
 """
+import argparse
+import datetime
 import json
 import pathlib
 import re
@@ -11,7 +13,7 @@ import statistics
 import planner_scenes
 from planner_candidates import CANDIDATES, barred, is_drawn, parted, variant
 from planner_model import COVERAGE, DATA, PROBES
-from program import caller
+from program import ROOT, caller
 
 SIZE, BLOCK = (1280, 720), 10
 TRUTH = ["--noise", "3e-3", "--truth-seconds", 120]
@@ -31,29 +33,58 @@ MAPPED, MAPS = ["rooms", "bunny_corner", "sibenik", "sponza_crytek"], 16
 RIVALS = [f"rival,bounces=2,spp={spp},resolution={resolution}" for spp in (1, 2, 4, 8) for resolution in ("full", "half", "quarter")]
 
 
+def read_work(doc, folder, declare=lambda parser: None):
+    """Options of a script that measures below a folder, or with --put takes in what lies there."""
+    parser = argparse.ArgumentParser(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--lightwell", default=str(ROOT / "build/release/bin/lightwell"))
+    parser.add_argument("--work", type=pathlib.Path, default=ROOT / "build" / folder)
+    parser.add_argument("--date", default=datetime.date.today().isoformat())
+    parser.add_argument("--put", action="store_true")
+    declare(parser)
+    options = parser.parse_args()
+    options.work.mkdir(parents=True, exist_ok=True)
+    return options
+
+
+def charter(lightwell, work):
+    """chart(folder below `work`, techniques, size, frames, further options); of no techniques nothing."""
+    def chart(folder, techniques, size, frames, *more):
+        if techniques:
+            lightwell("chart", "--out", work / folder, "--size", f"{size[0]}x{size[1]}", "--judge-one-of", BLOCK, "--picture-noise", 0, "--no-report",
+                      "--frames", frames, "--techniques", *techniques, *more, shown=True)
+
+    return chart
+
+
+def is_taught(candidate):
+    return parted(candidate)[0] in TAUGHT and "voxel" not in candidate and candidate not in barred(CANDIDATES)
+
+
+def of_set(candidates, seed):
+    return [f"{variant(c)},seed={seed}" if is_drawn(c) else variant(c) for c in candidates if is_drawn(c) or seed == 0]
+
+
+def chart_errors(chart, rows, made):
+    """Of sample sets after the first in all views, of all sets in made-up scenes, and of path tracing where all rows are asked."""
+    for seed in SEEDS:
+        chart(f"seeds{seed}", of_set(rows, seed), SIZE, 1, "--scenes", *SCENES, *KEPT)
+    for seed in MORE_SEEDS:
+        chart(f"seeds{seed}", of_set(rows, seed), SIZE, 1, "--scenes", *UNSURE, *KEPT)
+    for seed in (0, *SEEDS):
+        chart(f"train{seed}", of_set(filter(is_taught, rows), seed), SIZE, 1, "--scenes", *made, *MADE_TRUTH, *([] if seed == 0 else ["--kept-truths"]))
+        if len(rows) == len(CANDIDATES):
+            chart(f"rival{seed}", [f"{r},seed={seed}" for r in RIVALS], SIZE, 1, "--scenes", *SHARED, "--cameras", "first", *KEPT)
+
+
 def measure(program, work):
     lightwell = caller(program)
-
-    def chart(folder, techniques, size, frames, *more):
-        lightwell("chart", "--out", work / folder, "--size", f"{size[0]}x{size[1]}", "--judge-one-of", BLOCK, "--picture-noise", 0, "--no-report",
-                  "--frames", frames, "--techniques", *techniques, *more, shown=True)
-
+    chart = charter(lightwell, work)
     all_of = list(map(variant, CANDIDATES))
     chart("chart", all_of, SIZE, 11, "--scenes", *SCENES, *TRUTH)
-    drawn = [c for c in CANDIDATES if is_drawn(c)]
-    for seed in SEEDS:
-        chart(f"seeds{seed}", [f"{variant(c)},seed={seed}" for c in drawn], SIZE, 1, "--scenes", *SCENES, *KEPT)
-    for seed in MORE_SEEDS:
-        chart(f"seeds{seed}", [f"{variant(c)},seed={seed}" for c in drawn], SIZE, 1, "--scenes", *UNSURE, *KEPT)
+    made = planner_scenes.write(work / "made")
+    chart_errors(chart, CANDIDATES, made)
     for size in SIZES:
         chart(f"sizes_{size[1]}", all_of, size, 11, "--scenes", *SIZED, "--cameras", "first", "--noise", "1e3")
-    for seed in (0, *SEEDS):
-        chart(f"rival{seed}", [f"{r},seed={seed}" for r in RIVALS], SIZE, 1, "--scenes", *SHARED, "--cameras", "first", *KEPT)
-    made = planner_scenes.write(work / "made")
-    taught = [c for c in CANDIDATES if c.split()[0] in TAUGHT and "voxel" not in c and c not in barred(CANDIDATES)]
-    chart("train0", list(map(variant, taught)), SIZE, 1, "--scenes", *made, *MADE_TRUTH)
-    for seed in SEEDS:
-        chart(f"train{seed}", [f"{variant(c)},seed={seed}" for c in taught if is_drawn(c)], SIZE, 1, "--scenes", *made, *MADE_TRUTH, "--kept-truths")
     (work / "train_probes.json").write_text(json.dumps([probe(lightwell, {"scene": path, "camera": "camera"}) for path in made]))
     views = json.loads((work / "chart/results.json").read_text())["views"]
     (work / "probes.json").write_text(json.dumps([probe(lightwell, v) for v in views]))

@@ -6,8 +6,6 @@
 Of rows of the table that read RSMs, of those with the same light the quickest, in five scenes: each with versions told beside itself without, in one sitting, as shares. --put: takes in what lies
 in --work. Then docs/figures/planner.py fits anew.
 """
-import argparse
-import datetime
 import json
 import pathlib
 
@@ -15,9 +13,9 @@ import numpy as np
 
 import planner
 from planner_candidates import CANDIDATES, variant
-from planner_measure import BLOCK, SIZE, compact, is_point_of, read_points, rounded, time_of
-from planner_model import DATA, Data, needs_light, light_of
-from program import ROOT, caller
+from planner_measure import SIZE, charter, compact, is_point_of, read_points, read_work, rounded, time_of
+from planner_model import DATA, Data, light_of, needs_light
+from program import caller
 
 WARMUP, FRAMES = 51, 15  # until VPLs of three bounces with clusters are kept, 16 updates each (docs/techniques/ssvp.md); measured ones
 RESTED = ["cornell_original", "sibenik", "living_room", "breakfast_room", "level_zdm2"]
@@ -25,13 +23,7 @@ TOLD = "rsm_versions=on"
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--lightwell", default=str(ROOT / "build/release/bin/lightwell"))
-    parser.add_argument("--work", type=pathlib.Path, default=ROOT / "build/planner_rest")
-    parser.add_argument("--date", default=datetime.date.today().isoformat())
-    parser.add_argument("--put", action="store_true")
-    options = parser.parse_args()
-    options.work.mkdir(parents=True, exist_ok=True)
+    options = read_work(__doc__, "planner_rest")
     data = Data()
     rows = quickest(data, [c for c in planner.rows_of_table(data) if needs_light(*data.candidates[c])])
     if not options.put:
@@ -51,8 +43,7 @@ def quickest(data, candidates):
 def measure(program, work, rows):
     """Told and not told stand side by side: a slow minute falls on both."""
     techniques = [text for c in rows for text in (variant(c), f"{variant(c)},{TOLD}")]
-    caller(program)("chart", "--out", work / "chart", "--size", f"{SIZE[0]}x{SIZE[1]}", "--judge-one-of", BLOCK, "--picture-noise", 0, "--no-report", "--warmup", WARMUP,
-                    "--frames", FRAMES, "--techniques", *techniques, "--scenes", *RESTED, "--cameras", "first", "--noise", "1e3", shown=True)
+    charter(caller(program), work)("chart", techniques, SIZE, FRAMES, "--warmup", WARMUP, "--scenes", *RESTED, "--cameras", "first", "--noise", "1e3")
 
 
 def put(work, date):
