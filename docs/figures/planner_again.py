@@ -17,9 +17,9 @@ import sys
 import planner
 import planner_scenes
 from planner_candidates import CANDIDATES, is_drawn, parted
-from planner_measure import SCENES, SIZE, TRUTH, chart_errors, charter, compact, is_taught, noiseless, of_set, read_points, read_work, rounded, seed_errors
+from planner_measure import SCENES, SIZE, TRUTH, chart_errors, charter, compact, is_taught, noiseless, of_set, read_points, rounded, seed_errors
 from planner_model import DATA, Data
-from program import caller
+from program import caller, read_work
 
 SAME_NOISE = 1.25  # of a view's truth: more off, and a row's error tells of the truth beside others'
 

@@ -3,8 +3,6 @@
 Below `work`: chart*/ (errors and times of all views; of times the point with more frames counts, of equals the quicker, of errors the last folder's), seeds*/ (errors of further
 sample sets), train*/ and train_probes.json (of made-up scenes), sizes_*/ (times at other sizes), rival*/ (path tracing, a folder for each sample set), probes.json, rsm_sizes.json, launches.json, maps.json, rates.json; made/ has the made-up scenes themselves. Every command goes on where it was stopped.
 """
-import argparse
-import datetime
 import json
 import pathlib
 import re
@@ -13,7 +11,7 @@ import statistics
 import planner_scenes
 from planner_candidates import CANDIDATES, barred, is_drawn, parted, variant
 from planner_model import COVERAGE, DATA, PROBES
-from program import ROOT, caller
+from program import caller
 
 SIZE, BLOCK = (1280, 720), 10
 TRUTH = ["--noise", "3e-3", "--truth-seconds", 120]
@@ -31,19 +29,6 @@ TAUGHT, MADE_TRUTH = ("rsm", "ssvp", "screen_space", "horizon"), ["--noise", "1e
 MAPPED, MAPS = ["rooms", "bunny_corner", "sibenik", "sponza_crytek"], 16
 # By chance as the VPLs are, and judged alike: the mean of as many sets. A single set's line would be that of its luckiest points.
 RIVALS = [f"rival,bounces=2,spp={spp},resolution={resolution}" for spp in (1, 2, 4, 8) for resolution in ("full", "half", "quarter")]
-
-
-def read_work(doc, folder, declare=lambda parser: None):
-    """Options of a script that measures below a folder, or with --put takes in what lies there."""
-    parser = argparse.ArgumentParser(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--lightwell", default=str(ROOT / "build/release/bin/lightwell"))
-    parser.add_argument("--work", type=pathlib.Path, default=ROOT / "build" / folder)
-    parser.add_argument("--date", default=datetime.date.today().isoformat())
-    parser.add_argument("--put", action="store_true")
-    declare(parser)
-    options = parser.parse_args()
-    options.work.mkdir(parents=True, exist_ok=True)
-    return options
 
 
 def charter(lightwell, work):

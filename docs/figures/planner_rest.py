@@ -13,9 +13,9 @@ import numpy as np
 
 import planner
 from planner_candidates import CANDIDATES, variant
-from planner_measure import SIZE, charter, compact, is_point_of, read_points, read_work, rounded, time_of
+from planner_measure import SIZE, charter, compact, is_point_of, read_points, rounded, time_of
 from planner_model import DATA, Data, light_of, needs_light
-from program import caller
+from program import caller, read_work
 
 WARMUP, FRAMES = 51, 15  # until VPLs of three bounces with clusters are kept, 16 updates each (docs/techniques/ssvp.md); measured ones
 RESTED = ["cornell_original", "sibenik", "living_room", "breakfast_room", "level_zdm2"]

@@ -1,5 +1,6 @@
 """What the scripts of docs/figures share: their options, and a call of the program `lightwell`."""
 import argparse
+import datetime
 import pathlib
 import subprocess
 import sys
@@ -40,3 +41,16 @@ def write_between(page, begin, end, lines):
     before, rest = page.read_text(encoding="utf-8").split(begin)
     page.write_text(before + begin + "\n" + "\n".join(lines) + "\n" + end + rest.split(end)[1], encoding="utf-8")
     print(page)
+
+
+def read_work(doc, folder, declare=lambda parser: None):
+    """Options of a script that measures below a folder, or with --put takes in what lies there."""
+    parser = argparse.ArgumentParser(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--lightwell", default=str(ROOT / "build/release/bin/lightwell"))
+    parser.add_argument("--work", type=pathlib.Path, default=ROOT / "build" / folder)
+    parser.add_argument("--date", default=datetime.date.today().isoformat())
+    parser.add_argument("--put", action="store_true")
+    declare(parser)
+    options = parser.parse_args()
+    options.work.mkdir(parents=True, exist_ok=True)
+    return options
