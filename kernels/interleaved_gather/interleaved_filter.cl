@@ -6,6 +6,7 @@
 #endif
 #include "shared/wide.h"
 #include "shared/surface.h"
+#include "shared/edge_slope.h"
 #include "shared/edge_weight.h"
 #include "shared/filter_rows.h"
 #include "shared/doubtful_light.h"
@@ -85,7 +86,7 @@ __kernel void interleaved_gather_filter(__global const float* position, int4 pos
         const lw_window_sum none = {(real)0.0f, (real)0.0f, (real)0.0f, (real)0.0f, (real)0.0f};
         const lw_surface s =
             load_surface(position, positionLayout, normal, normalLayout, x, min(y + k, height - 1));
-        edges[k] = edges_of(s, s.scale);
+        edges[k] = edges_within(s, s.scale, squared_edge_slope(s, position, positionLayout, x, min(y + k, height - 1), width, height));
         valid[k] = s.valid;
         sums[k] = none;
         some = or_(some, s.valid);

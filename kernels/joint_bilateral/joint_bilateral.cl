@@ -11,6 +11,7 @@
 #include "shared/pixel_repair_types.h"
 #include "shared/wide.h"
 #include "shared/surface.h"
+#include "shared/edge_slope.h"
 #include "shared/edge_weight.h"
 #include "shared/neighbours.h"
 
@@ -186,13 +187,14 @@ LW_FN void clear_sum(lw_sum* sum) {
 LW_FN float column_tent(int i, int odd) { return odd ? 2.0f / 3.0f : i == 0 ? 1.0f : 1.0f / 3.0f; }
 LW_FN float row_tent(int j, int k) { return 1.0f - (float)abs(2 * j - k) * (1.0f / 3.0f); }
 
-// Sums of the samples around row k of LW_WIDTH blocks, at their even columns and at their odd ones. All samples exist: every load is a
-// plain one. What down-sampling left empty has no normal, and fails the edge test. With LW_MARKS, k is a constant where it is called.
-LW_FN void sum_inside(lw_sum sum[2], const lw_surface s[2], const lw_coarse* coarse, int hx, int hy, int k) {
+// Sums of the samples around row k of LW_WIDTH blocks, at their even columns and at their odd ones, within their own samples' slope. All samples
+// exist: every load is a plain one. What down-sampling left empty has no normal, and fails the edge test. With LW_MARKS, k is a constant where it
+// is called.
+LW_FN void sum_inside(lw_sum sum[2], const lw_surface s[2], const lw_coarse* coarse, real slope2, int hx, int hy, int k) {
     lw_edges edges[2];
     LW_UNROLL for (int odd = 0; odd < 2; ++odd) {
         clear_sum(&sum[odd]);
-        edges[odd] = edges_of(s[odd], (real)1.0f);
+        edges[odd] = edges_within(s[odd], (real)1.0f, slope2);
     }
     const int pz = coarse->positionLayout.z, nz = coarse->normalLayout.z, lz = coarse->lightLayout.z;
     const int last = min(hy + 1, coarse->height - 1);
@@ -219,9 +221,9 @@ LW_FN void sum_inside(lw_sum sum[2], const lw_surface s[2], const lw_coarse* coa
 }
 
 // The same beside borders, and by likeness of the normals alone: rare, so that little code matters more.
-LW_FN void sum_any(lw_sum* sum, const lw_surface s, const lw_coarse* coarse, int hx, int hy, int k, int odd, int byLikeness) {
+LW_FN void sum_any(lw_sum* sum, const lw_surface s, const lw_coarse* coarse, real slope2, int hx, int hy, int k, int odd, int byLikeness) {
     clear_sum(sum);
-    const lw_edges edges = edges_of(s, (real)1.0f);
+    const lw_edges edges = edges_within(s, (real)1.0f, slope2);
     const int last = min(hy + 1, coarse->height - 1);
     for (int row = max(hy - 1 + k, 0); row <= last; ++row)
         for (int i = odd ? 0 : -1; i <= 1; ++i) {
@@ -237,21 +239,23 @@ LW_FN void sum_any(lw_sum* sum, const lw_surface s, const lw_coarse* coarse, int
         }
 }
 
+// A weight this far below a sample's own tent comes from rounding at the edge tests' borders.
+LW_FN mask is_lost(const lw_surface s, const lw_sum sum) { return and_(s.valid, not_(sum.weight > 1e-4f)); }
+
 // Sums around row k of LW_WIDTH blocks, and the pixels that no sample is on the surface of.
-LW_FN void sum_around(lw_sum sum[2], mask lost[2], const lw_surface s[2], const lw_coarse* coarse, int hx, int hy, int k) {
+LW_FN void sum_around(lw_sum sum[2], mask lost[2], const lw_surface s[2], const lw_coarse* coarse, real slope2, int hx, int hy, int k) {
     if (rarely_(!any_(or_(s[0].valid, s[1].valid))))  // sky
         LW_UNROLL for (int odd = 0; odd < 2; ++odd) clear_sum(&sum[odd]);
     else if (usually_(shift_inside(hx, -1, coarse->width) && shift_inside(hx, 1, coarse->width)))
 #if LW_MARKS
-        if (k == 0) sum_inside(sum, s, coarse, hx, hy, 0);
-        else sum_inside(sum, s, coarse, hx, hy, 1);
+        if (k == 0) sum_inside(sum, s, coarse, slope2, hx, hy, 0);
+        else sum_inside(sum, s, coarse, slope2, hx, hy, 1);
 #else
-        sum_inside(sum, s, coarse, hx, hy, k);
+        sum_inside(sum, s, coarse, slope2, hx, hy, k);
 #endif
     else
-        LW_UNROLL for (int odd = 0; odd < 2; ++odd) sum_any(&sum[odd], s[odd], coarse, hx, hy, k, odd, 0);
-    // A weight this far below a sample's own tent comes from rounding at the edge tests' borders.
-    LW_UNROLL for (int odd = 0; odd < 2; ++odd) lost[odd] = and_(s[odd].valid, not_(sum[odd].weight > 1e-4f));
+        LW_UNROLL for (int odd = 0; odd < 2; ++odd) sum_any(&sum[odd], s[odd], coarse, slope2, hx, hy, k, odd, 0);
+    LW_UNROLL for (int odd = 0; odd < 2; ++odd) lost[odd] = is_lost(s[odd], sum[odd]);
 }
 
 #if LW_MARKS
@@ -267,18 +271,25 @@ LW_FN uint marks_of(const lw_surface s[2], const mask lost[2], mask steep, int x
 }
 #endif
 
-// For pixels that have no sample on their own surface, and those that are neither surface nor background: counts those that exist (the
-// former by 1, the latter by 1 << 16), and lights the former like their neighbourhood.
+// Lights lost pixels by samples within the largest slope, or by likeness.
+LW_FN void replace(lw_sum* sum, mask lost, const lw_surface s, const lw_coarse* coarse, int hx, int hy, int k, int odd, int byLikeness) {
+    if (!any_(lost)) return;
+    lw_sum rest;
+    sum_any(&rest, s, coarse, (real)(LW_EDGE_SLOPE * LW_EDGE_SLOPE), hx, hy, k, odd, byLikeness);
+    sum->weight = select_(sum->weight, rest.weight, lost);
+    LW_UNROLL for (int a = 0; a < LW_CHANNELS; ++a) sum->light[a] = select_(sum->light[a], rest.light[a], lost);
+}
+
+// For pixels that have no sample on their own surface, and those that are neither surface nor background: lights the former by samples within the
+// largest slope (their block's sample may be of a flatter surface, or normals leave the geometry's), or else like their neighbourhood, and
+// counts those that exist (of the former the latter, by 1; of no surfaces by 1 << 16).
 LW_FN int substitute(lw_sum sum[2], const mask lost[2], const lw_surface s[2], const lw_coarse* coarse, int hx, int hy, int k, int width) {
     lanei found = (lanei)0;
     LW_UNROLL for (int odd = 0; odd < 2; ++odd) {
-        const mask exists = lanei_iota() * 2 + (lanei)(2 * hx + odd) < (lanei)width;
-        found += selecti_((lanei)0, (lanei)1, and_(lost[odd], exists)) + selecti_((lanei)0, (lanei)(1 << 16), and_(s[odd].rejected, exists));
-        if (!any_(lost[odd])) continue;
-        lw_sum rest;
-        sum_any(&rest, s[odd], coarse, hx, hy, k, odd, 1);
-        sum[odd].weight = select_(sum[odd].weight, rest.weight, lost[odd]);
-        LW_UNROLL for (int a = 0; a < LW_CHANNELS; ++a) sum[odd].light[a] = select_(sum[odd].light[a], rest.light[a], lost[odd]);
+        replace(&sum[odd], lost[odd], s[odd], coarse, hx, hy, k, odd, 0);
+        const mask still = and_(lost[odd], is_lost(s[odd], sum[odd])), exists = lanei_iota() * 2 + (lanei)(2 * hx + odd) < (lanei)width;
+        replace(&sum[odd], still, s[odd], coarse, hx, hy, k, odd, 1);
+        found += selecti_((lanei)0, (lanei)1, and_(still, exists)) + selecti_((lanei)0, (lanei)(1 << 16), and_(s[odd].rejected, exists));
     }
     return sum_(found);
 }
@@ -317,6 +328,8 @@ __kernel void joint_bilateral_upsample(__global const float* position, int4 posi
 
     if (hy + 1 < coarse.height) expect_samples(&coarse, hx + 2 * LW_WIDTH, hy + 1);
     const int hasSecond = x + LW_WIDTH < rowEnd;
+    const real slope2 = squared_edge_slope(load_surface(halfPosition, halfPositionLayout, halfNormal, halfNormalLayout, hx, hy), halfPosition,
+                                           halfPositionLayout, hx, hy, coarse.width, coarse.height);
     int found = 0;
 #if LW_MARKS
     mask steep = splat_mask(0);
@@ -328,7 +341,7 @@ __kernel void joint_bilateral_upsample(__global const float* position, int4 posi
         const lw_surface s[2] = {surface_of(p, n, 0), surface_of(p, n, 1)};
         lw_sum sum[2];
         mask lost[2];
-        sum_around(sum, lost, s, &coarse, hx, hy, k);
+        sum_around(sum, lost, s, &coarse, slope2, hx, hy, k);
 #if LW_MARKS
         if (k == 0) steep = is_steep(&sum[0], share);
         marks[(y + k) * LW_REPAIR_WORDS_OF_ROW(width) + (int)get_global_id(0)] = marks_of(s, lost, steep, x, width);

@@ -9,13 +9,14 @@
 // tangent plane: |n.d| <= slope |d|. Larger: light crosses steps lower than slope * pixel spacing.
 // Smaller: smooth normals of coarse meshes lean away from their triangles, by 15 to 30 degrees on the
 // vaults of Sponza, and the interleaving pattern stays there (seen at 0.25 and, faintly, at 0.5).
+// Filters that take a surface's own slope (edge_slope.h) allow so much where it is this steep.
 #define LW_EDGE_SLOPE 0.7f
 // Cosine between normals at which a neighbour stops counting; full weight at 1, linear between.
 // Lower: light bleeds around corners and over small curvature. Higher: noise on normal-mapped surfaces.
 #define LW_EDGE_NORMAL_COSINE 0.8f
 
 // A pixel as its neighbours are measured by it: its place, its normal times a factor that makes the product with a
-// neighbour's normal fall from 1 to 0 over the range of the weight, and what that factor makes of the slope.
+// neighbour's normal fall from 1 to 0 over the range of the weight, and what that factor makes of the squared slope.
 typedef struct {
     real px, py, pz;
     real tx, ty, tz;
@@ -24,11 +25,13 @@ typedef struct {
 
 // `scale` brings the neighbours' normals to unit length. Raw neighbours are given the pixel's own scale: a
 // G-buffer's normals share one length (or nearly), and the pixel itself then has a weight of 1.
-LW_FN lw_edges edges_of(const lw_surface s, real scale) {
+LW_FN lw_edges edges_within(const lw_surface s, real scale, real slope2) {
     const real factor = scale * (1.0f / (1.0f - LW_EDGE_NORMAL_COSINE));
-    const lw_edges e = {s.px, s.py, s.pz, s.nx * factor, s.ny * factor, s.nz * factor, sq(LW_EDGE_SLOPE * factor)};
+    const lw_edges e = {s.px, s.py, s.pz, s.nx * factor, s.ny * factor, s.nz * factor, slope2 * sq(factor)};
     return e;
 }
+
+LW_FN lw_edges edges_of(const lw_surface s, real scale) { return edges_within(s, scale, (real)(LW_EDGE_SLOPE * LW_EDGE_SLOPE)); }
 
 // What edge_weight clamps to 0 ... 1, and whether the neighbour lies near the tangent plane.
 LW_FN real edge_ramp(const lw_edges e, real mx, real my, real mz) {

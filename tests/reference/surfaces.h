@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <functional>
 #include <random>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "shared/subset_order.h"
@@ -89,13 +91,28 @@ inline Image gather(const Image& position, const Image& normal, const std::vecto
     return out;
 }
 
-// Neighbour q on the tangent plane of s (slope 0.7), weight linear in the cosine from 0.8 on.
-inline double edgeWeight(const Surface& s, const Surface& q) {
+// Neighbour q on the tangent plane of s (within the slope), weight linear in the cosine from 0.8 on.
+inline double edgeWeight(const Surface& s, const Surface& q, double slope = 0.7) {
     if (!q.valid) return 0.0;
     const Vec d = q.position - s.position;
     const double off = dot(d, s.normal);
-    if (off * off > 0.7 * 0.7 * dot(d, d)) return 0.0;
+    if (off * off > slope * slope * dot(d, d)) return 0.0;
     return std::clamp((dot(q.normal, s.normal) - 0.8) / 0.2, 0.0, 1.0);
+}
+
+// The slope within which a pixel's neighbours are its own surface: three times the sine of what leads to the pixels beside it, in quadrature with 0.05; of two
+// on opposite sides the lesser, of rows and columns the larger; 0.7 at most, and where there is nothing beside it.
+inline double edgeSlope(const Image& position, const Image& normal, std::uint32_t x, std::uint32_t y) {
+    const Surface s = surfaceAt(position, normal, x, y);
+    const auto sine = [&](int dx, int dy) {
+        const int qx = int(x) + dx, qy = int(y) + dy;
+        if (qx < 0 || qy < 0 || qx >= int(position.width) || qy >= int(position.height)) return 1.0;
+        const Vec d = position.get(std::uint32_t(qx), std::uint32_t(qy)) - s.position;
+        const double found = std::abs(dot(d, s.normal)) / std::sqrt(dot(d, d));
+        return found < 1.0 ? found : 1.0;  // also where it is no number
+    };
+    const double lean = std::max(std::min(sine(-1, 0), sine(1, 0)), std::min(sine(0, -1), sine(0, 1)));
+    return std::min(std::hypot(3.0 * lean, 0.05), 0.7);
 }
 
 // n x n window around each pixel, moved inside at the border.
@@ -109,11 +126,12 @@ inline Image filter(const Image& position, const Image& normal, const Image& lig
         for (std::uint32_t x = 0; x < out.width; ++x) {
             const Surface s = surfaceAt(position, normal, x, y);
             if (!s.valid) continue;
+            const double slope = edgeSlope(position, normal, x, y);
             Vec sum;
             double weight = 0.0;
             for (std::uint32_t j = first(y, out.height); j < std::min(first(y, out.height) + n, out.height); ++j)
                 for (std::uint32_t i = first(x, out.width); i < std::min(first(x, out.width) + n, out.width); ++i) {
-                    const double w = edgeWeight(s, surfaceAt(position, normal, i, j));
+                    const double w = edgeWeight(s, surfaceAt(position, normal, i, j), slope);
                     sum = sum + light.get(i, j) * w;
                     weight += w;
                 }
@@ -138,7 +156,25 @@ inline void downsample(const Image& position, const Image& normal, Image& halfPo
             }
 }
 
-// Returns the number of pixels lit without the edge test.
+// Sum over the 3x3 samples around a pixel, each with its tent times what `weigh` makes of its surface, and the sum of those weights.
+template <typename Weigh>
+std::pair<Vec, double> sumOfSamples(const Image& halfPosition, const Image& halfNormal, const Image& halfLight, std::uint32_t x, std::uint32_t y, Weigh weigh) {
+    std::pair<Vec, double> sum;
+    for (int j = -1; j <= 1; ++j)
+        for (int i = -1; i <= 1; ++i) {
+            const int hx = int(x / 2) + i, hy = int(y / 2) + j;
+            if (hx < 0 || hy < 0 || hx >= int(halfLight.width) || hy >= int(halfLight.height)) continue;
+            const double tx = 1.0 - std::abs(2 * hx - int(x)) / 3.0, ty = 1.0 - std::abs(2 * hy - int(y)) / 3.0;
+            const Surface q = surfaceAt(halfPosition, halfNormal, std::uint32_t(hx), std::uint32_t(hy));
+            if (tx <= 1e-9 || ty <= 1e-9 || !q.valid) continue;
+            const double w = tx * ty * weigh(q);
+            sum.first = sum.first + halfLight.get(std::uint32_t(hx), std::uint32_t(hy)) * w;
+            sum.second += w;
+        }
+    return sum;
+}
+
+// By samples within the slope of their block's; else within 0.7; else by likeness of normals. Returns the number of pixels lit by the last.
 inline std::uint32_t upsample(const Image& position, const Image& normal, const Image& halfPosition,
                               const Image& halfNormal, const Image& halfLight, Image& out) {
     std::uint32_t fallbacks = 0;
@@ -146,26 +182,15 @@ inline std::uint32_t upsample(const Image& position, const Image& normal, const 
         for (std::uint32_t x = 0; x < out.width; ++x) {
             const Surface s = surfaceAt(position, normal, x, y);
             if (!s.valid) continue;
-            Vec sum, rest;
-            double weight = 0.0, restWeight = 0.0;
-            for (int j = -1; j <= 1; ++j)
-                for (int i = -1; i <= 1; ++i) {
-                    const int hx = int(x / 2) + i, hy = int(y / 2) + j;
-                    if (hx < 0 || hy < 0 || hx >= int(halfLight.width) || hy >= int(halfLight.height)) continue;
-                    const double tx = 1.0 - std::abs(2 * hx - int(x)) / 3.0, ty = 1.0 - std::abs(2 * hy - int(y)) / 3.0;
-                    const Surface q = surfaceAt(halfPosition, halfNormal, std::uint32_t(hx), std::uint32_t(hy));
-                    if (tx <= 1e-9 || ty <= 1e-9 || !q.valid) continue;
-                    const Vec e = halfLight.get(std::uint32_t(hx), std::uint32_t(hy));
-                    const double w = tx * ty * edgeWeight(s, q);
-                    const double r = tx * ty * (std::max(0.0, dot(q.normal, s.normal)) + 1e-3);
-                    sum = sum + e * w;
-                    weight += w;
-                    rest = rest + e * r;
-                    restWeight += r;
-                }
-            const bool lost = weight <= 1e-4;
-            fallbacks += lost ? 1 : 0;
-            out.set(x, y, lost ? rest * (1.0 / restWeight) : sum * (1.0 / weight));
+            const auto sum = [&](auto weigh) { return sumOfSamples(halfPosition, halfNormal, halfLight, x, y, weigh); };
+            const double slope = edgeSlope(halfPosition, halfNormal, x / 2, y / 2);
+            auto [light, weight] = sum([&](const Surface& q) { return edgeWeight(s, q, slope); });
+            if (weight <= 1e-4) std::tie(light, weight) = sum([&](const Surface& q) { return edgeWeight(s, q); });
+            if (weight <= 1e-4) {
+                std::tie(light, weight) = sum([&](const Surface& q) { return std::max(0.0, dot(q.normal, s.normal)) + 1e-3; });
+                ++fallbacks;
+            }
+            out.set(x, y, light * (1.0 / weight));
         }
     return fallbacks;
 }
