@@ -18,7 +18,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 # What the sidebar shows, in this order. A page of docs/techniques that is not named stands behind the one whose name it begins with.
 SECTIONS = [
     ("guide", "Guide", ["getting-started", "integration", "viewer", "python", "packaging", "conventions", "checking-inputs", "troubleshooting", "choosing", "planner",
-                        "points", "temporal_history"]),
+                        "points", "edge_slope", "temporal_history"]),
     ("techniques", "Techniques", ["techniques/rsm", "techniques/ssvp", "techniques/screen_space", "techniques/horizon", "techniques/ao",
                                   "techniques/lpv", "techniques/cone_tracing", "techniques/static_vpl", "techniques/fallback",
                                   "techniques/auto", "techniques/voxel_grid", "techniques/voxel_light", "techniques/voxel_mips",

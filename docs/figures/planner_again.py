@@ -3,7 +3,7 @@
 
     docs/figures/planner_again.py [--rows visibility=careful] [--lightwell build/release/bin/lightwell] [--work build/planner_again] [--date 2026-11-30] [--put]
 
---rows: a setting that candidates have, after a change of their light; without: all candidates, and path tracing. In all views and made-up scenes, of as many sample sets as
+--rows: a setting that candidates have, after a change of their light; `table`: those of the table whose VPLs are drawn; without: all candidates, and path tracing. In all views and made-up scenes, of as many sample sets as
 planner_measure.py takes. --put: measures nothing, and takes in what lies in folders of --work (called as planner_measure.py's are, with anything behind the set's number). What has been
 measured is kept: hours where truths are not cached. Then docs/figures/planner.py fits anew. Of what `planner.py --collect` takes in nothing changes: it would bring the old errors back.
 
@@ -21,14 +21,15 @@ from planner_measure import SCENES, SIZE, TRUTH, chart_errors, charter, compact,
 from planner_model import DATA, Data
 from program import caller, read_work
 
+TABLE = "table"  # of --rows
 SAME_NOISE = 1.25  # of a view's truth: more off, and a row's error tells of the truth beside others'
 
 
 def main():
     options = read_work(__doc__, "planner_again", lambda parser: parser.add_argument("--rows", default=""))
-    rows = [c for c in CANDIDATES if not options.rows or options.rows in c.split()]
+    rows = rows_of_table() if options.rows == TABLE else [c for c in CANDIDATES if not options.rows or options.rows in c.split()]
     if not rows:
-        sys.exit(f"--rows: expected a setting of a candidate, got '{options.rows}'")
+        sys.exit(f"--rows: expected a setting of a candidate or '{TABLE}', got '{options.rows}'")
     if not options.put:
         measure(options.lightwell, options.work, rows)
     put(options.work, rows, options.rows, options.date)
@@ -108,10 +109,15 @@ def put_rivals(data, work):
         row.update(all=rounded(statistics.geometric_mean(found)), sets=len(found))
 
 
+def rows_of_table():
+    """Whose VPLs are drawn. The table is chosen by errors: of what is measured that is taken in, it may be another."""
+    data = Data()
+    return [c for c in (data.names()[k] for k in planner.rows_of_table(data)) if is_drawn(c)]
+
+
 def sets_of(data, counts, rows):
     """Of the rows of the table, which is chosen by these very errors, where VPLs are drawn; of other rows fewer sets do."""
-    fresh = Data()
-    table = [c for c in (fresh.names()[k] for k in planner.rows_of_table(fresh)) if c in rows and is_drawn(c)]
+    table = [c for c in rows_of_table() if c in rows]
     least = {}
     for v, view in enumerate(data["views"]):
         least.setdefault(view["scene"], []).append(min(counts[c][v] for c in table) if table else 0)

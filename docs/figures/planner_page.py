@@ -86,7 +86,7 @@ def again(raw):
     """What planner_again.py measured once more."""
     def told(run):
         more = "".join(f", {n} in {scene}" for scene, n in run["more_sets"].items())
-        what = f"with `{run['rows']}` ({run['sets']} sets{more})" if run["rows"] else "of all rows and of path tracing"
+        what = "of all rows and of path tracing" if not run["rows"] else f"{'of the table, where VPLs are drawn,' if run['rows'] == 'table' else 'with `' + run['rows'] + '`'} ({run['sets']} sets{more})"
         made = f", of {run['made_rows']} rows also in made-up scenes ({' or '.join(map(str, run['made_sets']))} sets; others 3)" if run["made_rows"] else ""
         return f" Errors {what} were measured again on {run['date']}{made}."
     return "".join(map(told, raw.get("errors_again", [])))
