@@ -4,11 +4,10 @@
     docs/figures/edge_slope.py [--lightwell build/release/bin/lightwell] [--work build/figures] [--part errors times picture]
 
 Scenes other than the shipped ones are looked for in LIGHTWELL_SCENES. Errors take some minutes where truths are cached; the charts below --work are kept. Times: on an
-otherwise idle machine. One slope for all is what is left of the kernels where the least slope is the largest: they are copied, and read from there.
+otherwise idle machine. For one slope for all the kernels are copied, and read from a copy in which the largest slope stands for each surface's own.
 """
 import json
 import os
-import re
 import shutil
 import statistics
 
@@ -40,10 +39,8 @@ def main():
 def with_one_slope(work):
     folder = work / "kernels_one_slope"
     shutil.copytree(ROOT / "kernels", folder, dirs_exist_ok=True)
-    header = folder / "shared/edge_slope.h"
-    text, count = re.subn(r"(#define LW_EDGE_SLOPE_LEAST) \S+", r"\1 LW_EDGE_SLOPE", header.read_text(encoding="utf-8"))
-    assert count == 1, header
-    header.write_text(text, encoding="utf-8")
+    (folder / "shared/edge_slope.h").write_text('#include "edge_weight.h"\n#include "neighbours.h"\n'
+                                                "#define squared_edge_slope(...) ((real)(LW_EDGE_SLOPE * LW_EDGE_SLOPE))\n", encoding="utf-8")
     return folder
 
 
