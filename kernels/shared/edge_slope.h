@@ -6,7 +6,8 @@
 #include "neighbours.h"
 
 // Of the slope to the pixels right beside, so much is allowed. A surface that curves leaves its tangent plane in proportion to the way, and a
-// filter's farthest tap is 2.8 pixels away. Smaller: the pattern of interleaving stays on curved surfaces. Larger: as LW_EDGE_SLOPE_LEAST.
+// window of 4 x 4 has its farthest tap 2.8 pixels away (of 8 x 8 it is 5.7, and some of it is left out there). Smaller: the pattern of
+// interleaving stays on curved surfaces. Larger: as LW_EDGE_SLOPE_LEAST.
 #define LW_EDGE_SLOPE_FACTOR 3.0f
 // And at least this, of a plane. Larger: seen at a grazing angle, where a pixel is long, light crosses between parallel layers (a lamp and the
 // ceiling above it, a gallery's rail and the floor below). Smaller: positions and normals of compact formats are off their plane by rounding.

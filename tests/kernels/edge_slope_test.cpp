@@ -173,6 +173,30 @@ TEST_CASE("pixels whose normals leave their block's plane are lit by samples nea
     for (const float value : upsampled.planes) REQUIRE(value == Approx(3.0).epsilon(kTolerance));
 }
 
+TEST_CASE("pixels that no sample is like are lit by the likest, and counted", "[edge_slope]") {
+    // Normals of lone pixels, in odd rows and columns, stand at 60 degrees to the wall's.
+    const auto width = GENERATE(1u, 16u);
+    const auto size = testSize(std::make_pair(67u, 41u));
+    const std::uint32_t w = size.first, h = size.second, hw = JointBilateral::halved(w), hh = JointBilateral::halved(h);
+    CAPTURE(width);
+    KernelRig rig(width);
+    Picture picture = facet(w, h, 0.0);
+    const Picture turned = facet(w, h, 60.0);
+    int lone = 0;
+    for (std::uint32_t y = 1; y < h; y += 6)
+        for (std::uint32_t x = 1; x < w; x += 4, ++lone) picture.normal.set(x, y, turned.normal.get(x, y));
+    const Image light = reference::randomImage(w, h, 29);
+    Image halfPosition(hw, hh), halfNormal(hw, hh), half(hw, hh), expected(w, h);
+    reference::downsample(picture.position, picture.normal, halfPosition, halfNormal);
+    for (std::uint32_t y = 0; y < hh; ++y)
+        for (std::uint32_t x = 0; x < hw; ++x) half.set(x, y, light.get(2 * x, 2 * y));
+    int fallbacks = -1;
+    const Image upsampled = upsampleOn(rig, picture, light, fallbacks);
+    CHECK(int(reference::upsample(picture.position, picture.normal, halfPosition, halfNormal, half, expected)) == lone);
+    CHECK(fallbacks == lone);
+    CHECK(disagreement(upsampled.planes, expected.planes, 1e-5) == "");
+}
+
 TEST_CASE("slopes do not depend on a scene's scale, and what is beside a surface may be no number", "[edge_slope]") {
     const auto width = GENERATE(1u, 16u);
     const auto size = testSize(std::make_pair(67u, 41u));
