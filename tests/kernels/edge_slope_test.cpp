@@ -3,9 +3,9 @@
 #include <cmath>
 #include <limits>
 
-#include "passes/interleaved_gather.h"
 #include "passes/joint_bilateral.h"
 #include "reference/surfaces.h"
+#include "support/gather_rig.h"
 #include "support/kernel_rig.h"
 
 using namespace lightwell;
@@ -24,16 +24,7 @@ struct Picture {
 };
 
 Image filterOn(KernelRig& rig, const Picture& picture, const Image& light, std::uint32_t n) {
-    const std::uint32_t w = light.width, h = light.height;
-    const auto up = [&](const Image& image) { return rig.uploadPlanes(image.planes, w, h, 3, kNaN); };
-    const auto planes = [&](const Guarded& buffer) { return rig.planes(buffer, w, h, 3); };
-    const Guarded p = up(picture.position), nr = up(picture.normal), e = up(light), out = rig.makePlanes(w, h, 3);
-    InterleavedGather pass(rig.device(), n);
-    pass.recordFilter(rig.executor(), planes(p), planes(nr), planes(e), planes(out));
-    rig.device().finish();
-    Image result(w, h);
-    result.planes = rig.downloadPlanes(planes(out));
-    return result;
+    return filterImage(rig, picture.position, picture.normal, light, n);
 }
 
 // The light of every second pixel and row, and what up-sampling makes of it.

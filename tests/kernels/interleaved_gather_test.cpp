@@ -27,19 +27,6 @@ Gathered gatherOn(KernelRig& rig, const Image& position, const Image& normal, co
     return gatherImage(rig, position, normal, vpls, n, Bits::all);
 }
 
-Image filterOn(KernelRig& rig, const Image& position, const Image& normal, const Image& light, std::uint32_t n) {
-    const std::uint32_t w = position.width, h = position.height;
-    const Guarded p = rig.uploadPlanes(position.planes, w, h, 3, kNaN), nr = rig.uploadPlanes(normal.planes, w, h, 3, kNaN);
-    const Guarded e = rig.uploadPlanes(light.planes, w, h, 3, kNaN), out = rig.makePlanes(w, h, 3);
-    InterleavedGather pass(rig.device(), n);
-    pass.recordFilter(rig.executor(), rig.planes(p, w, h, 3), rig.planes(nr, w, h, 3), rig.planes(e, w, h, 3),
-                      rig.planes(out, w, h, 3));
-    rig.device().finish();
-    Image result(w, h);
-    result.planes = rig.downloadPlanes(rig.planes(out, w, h, 3));
-    return result;
-}
-
 // One pixel that looks up from the origin.
 void lookUp(Image& position, Image& normal) {
     for (std::uint32_t y = 0; y < position.height; ++y)
@@ -208,7 +195,7 @@ TEST_CASE("light beyond float's range is brought down, counted, and harms no nei
     CHECK(out.irradiance.get(4, 2).x == double(LW_LARGEST_IRRADIANCE));
     CHECK(out.irradiance.get(4, 2).y > 1e17);
     CHECK(out.irradiance.get(4, 2).z == 0.0);
-    const Image filtered = filterOn(rig, position, normal, out.irradiance, 4);
+    const Image filtered = filterImage(rig, position, normal, out.irradiance, 4);
     for (const float value : filtered.planes) REQUIRE(std::isfinite(value));
     CHECK(filtered.get(5, 2).x < 1e31);  // across an edge
 }
@@ -234,7 +221,7 @@ TEST_CASE("the filter equals its serial twin", "[interleaved_gather]") {
     const Image twin = reference::filter(position, normal, light, n);
     CAPTURE(width, n, size.first);
     // 1e-3 of the pixels may decide the edge test differently within rounding.
-    CHECK(disagreement(filterOn(rig, position, normal, light, n).planes, twin.planes, kTwinTolerance, 1e-3) == "");
+    CHECK(disagreement(filterImage(rig, position, normal, light, n).planes, twin.planes, kTwinTolerance, 1e-3) == "");
 }
 
 TEST_CASE("a constant image passes the filter unchanged, and nothing crosses an edge", "[interleaved_gather][large]") {
@@ -243,7 +230,7 @@ TEST_CASE("a constant image passes the filter unchanged, and nothing crosses an 
     Image position(96, 64), normal(96, 64), light(96, 64);
     reference::fillCorner(position, normal);
     for (float& v : light.planes) v = 0.7f;
-    const Image constant = filterOn(rig, position, normal, light, 4);
+    const Image constant = filterImage(rig, position, normal, light, 4);
     // Light on the slab only: none of it may reach wall, floor or background, and none may be lost.
     for (std::uint32_t y = 0; y < 64; ++y)
         for (std::uint32_t x = 0; x < 96; ++x) {
@@ -251,7 +238,7 @@ TEST_CASE("a constant image passes the filter unchanged, and nothing crosses an 
             REQUIRE(constant.get(x, y).x == Approx(surface ? 0.7 : 0.0).epsilon(1e-6));
             light.set(x, y, position.get(x, y).z == Approx(0.7) && normal.get(x, y).z > 0.5 ? Vec{5, 5, 5} : Vec{0, 0, 0});
         }
-    const Image slab = filterOn(rig, position, normal, light, 4);
+    const Image slab = filterImage(rig, position, normal, light, 4);
     for (std::uint32_t y = 0; y < 64; ++y)
         for (std::uint32_t x = 0; x < 96; ++x) REQUIRE(slab.get(x, y).x == Approx(light.get(x, y).x).epsilon(1e-6));
 }
@@ -266,7 +253,7 @@ TEST_CASE("a neighbour without a usable normal takes no part in the filter", "[i
         normal.set(x, 7, {kNaN, kNaN, kNaN});
         light.set(x, 7, {0, 0, 0});
     }
-    const Image filtered = filterOn(rig, position, normal, light, 4);
+    const Image filtered = filterImage(rig, position, normal, light, 4);
     for (std::uint32_t y = 0; y < 16; ++y)
         for (std::uint32_t x = 0; x < 48; ++x)
             REQUIRE(filtered.get(x, y).x == Approx(std::isnan(normal.get(x, y).x) ? 0.0 : 0.7).epsilon(1e-6));

@@ -1,4 +1,4 @@
-// The gather of one image on a test's device.
+// The gather of one image, and its filter, on a test's device.
 #pragma once
 
 #include <limits>
@@ -42,6 +42,21 @@ inline Gathered gatherImage(KernelRig& rig, const reference::Image& position, co
     const std::vector<cl_int> counted = rig.download<cl_int>(counts);
     Gathered result{reference::Image(w, h), counted[0], counted[2]};
     result.irradiance.planes = rig.downloadPlanes(rig.planes(out, w, h, 3));
+    return result;
+}
+
+inline reference::Image filterImage(KernelRig& rig, const reference::Image& position, const reference::Image& normal,
+                                    const reference::Image& light, std::uint32_t n) {
+    const std::uint32_t w = position.width, h = position.height;
+    constexpr float kPadding = std::numeric_limits<float>::quiet_NaN();
+    const auto up = [&](const reference::Image& image) { return rig.uploadPlanes(image.planes, w, h, 3, kPadding); };
+    const auto planes = [&](const Guarded& buffer) { return rig.planes(buffer, w, h, 3); };
+    const Guarded p = up(position), nr = up(normal), e = up(light), out = rig.makePlanes(w, h, 3);
+    InterleavedGather pass(rig.device(), n);
+    pass.recordFilter(rig.executor(), planes(p), planes(nr), planes(e), planes(out));
+    rig.device().finish();
+    reference::Image result(w, h);
+    result.planes = rig.downloadPlanes(planes(out));
     return result;
 }
 
